@@ -1,0 +1,1 @@
+"""The embedded corpus and homes, as package data. Never edited by code."""

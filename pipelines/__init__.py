@@ -1,0 +1,1 @@
+"""The six stages, from raw answers to a published dataset."""

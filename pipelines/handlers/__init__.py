@@ -1,0 +1,1 @@
+"""Repairs, one small function a failure code, mirrored on `simulation/actions`."""

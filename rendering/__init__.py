@@ -1,0 +1,1 @@
+"""What it looks like: meshes, cameras, rays and pictures."""

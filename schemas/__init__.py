@@ -1,0 +1,1 @@
+"""What things are: programs, environment graphs, goals, failure codes, table columns. Imports nothing of ours."""

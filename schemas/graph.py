@@ -1,0 +1,134 @@
+"""Environment graphs: the nodes of a home and how they relate (thesis 2.3.2, 5.4.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+
+class Box(NamedTuple):
+    """An axis-aligned box in metres: centre and full size as (x, y, z), y upwards."""
+
+    center: tuple[float, float, float]
+    size: tuple[float, float, float]
+
+
+class Edge(NamedTuple):
+    """`source` stands in `relation` to `target`; both are node ids."""
+
+    source: int
+    relation: str
+    target: int
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One thing of a home.
+
+    Attributes:
+        id: unique within its graph.
+        class_name: `television`.
+        category: `Electronics`, `Rooms`, ...
+        properties: names of `vocabulary.PROPERTIES` as far as known.
+        states: names of `vocabulary.STATES`, in the order given.
+        prefab: the model that shows it, if any.
+        box: where it is, if known.
+        yaw: the way it faces, in degrees about y from +z; None when unknown.
+    """
+
+    id: int
+    class_name: str
+    category: str = ""
+    properties: tuple[str, ...] = ()
+    states: tuple[str, ...] = ()
+    prefab: str | None = None
+    box: Box | None = None
+    yaw: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EnvironmentGraph:
+    """Nodes and edges, in the order given; `extra` keeps what a file said beyond them."""
+
+    nodes: tuple[Node, ...] = ()
+    edges: tuple[Edge, ...] = ()
+    extra: tuple[tuple[str, Any], ...] = ()
+
+    def node(self, node_id: int) -> Node:
+        """The node of that id.
+
+        Raises:
+            KeyError: there is none.
+        """
+        for node in self.nodes:
+            if node.id == node_id:
+                return node
+        raise KeyError(node_id)
+
+
+def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
+    """Read a graph as the release writes it.
+
+    Raises:
+        HearthError: BAD_GRAPH, naming the first node or edge that lacks a required field.
+    """
+    try:
+        nodes = tuple(map(_node, data["nodes"]))
+        edges = tuple(Edge(e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"])
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise HearthError.of(
+            Code.BAD_GRAPH,
+            f"not an environment graph: {type(error).__name__} {error}",
+            file=file,
+            suggestion="nodes need id and class_name; edges need from_id, relation_type and to_id",
+        ) from error
+    extra = tuple((key, value) for key, value in data.items() if key not in ("nodes", "edges"))
+    return EnvironmentGraph(nodes, edges, extra)
+
+
+def to_release(graph: EnvironmentGraph) -> dict[str, Any]:
+    """Write a graph as the release does: the inverse of `from_release`."""
+    return {
+        **dict(graph.extra),
+        "nodes": [_node_json(node) for node in graph.nodes],
+        "edges": [{"from_id": e.source, "relation_type": e.relation, "to_id": e.target} for e in graph.edges],
+    }
+
+
+def edge_set(edges: Iterable[Edge]) -> frozenset[tuple[int, str, int]]:
+    """Edges for comparison: order and duplicates left out."""
+    return frozenset((e.source, e.relation, e.target) for e in edges)
+
+
+def _node(data: Mapping[str, Any]) -> Node:
+    box = data.get("bounding_box")
+    return Node(
+        id=int(data["id"]),
+        class_name=str(data["class_name"]),
+        category=str(data.get("category") or ""),
+        properties=tuple(data.get("properties") or ()),
+        states=tuple(data.get("states") or ()),
+        prefab=data.get("prefab_name"),
+        box=Box(tuple(box["center"]), tuple(box["size"])) if box else None,
+        yaw=data.get("yaw"),
+    )
+
+
+def _node_json(node: Node) -> dict[str, Any]:
+    box = node.box and {"center": list(node.box.center), "size": list(node.box.size)}
+    data = {
+        "id": node.id,
+        "class_name": node.class_name,
+        "category": node.category,
+        "properties": list(node.properties),
+        "states": list(node.states),
+        "prefab_name": node.prefab,
+        "bounding_box": box,
+    }
+    if node.yaw is not None:
+        data["yaw"] = node.yaw
+    return data

@@ -1,0 +1,106 @@
+"""Programs: what a person says is to be done, step by step (thesis 2.3.3, eq. 2.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ObjectRef:
+    """An object as a program names it: `<television> (1)`.
+
+    Attributes:
+        name: class name, lower case with underscores.
+        instance: counter among the program's objects of that name, from 1; 0 when only a node is named.
+        node: id of the graph node it is bound to, or None.
+    """
+
+    name: str
+    instance: int = 1
+    node: int | None = None
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """Identity within its program, whatever it is bound to."""
+        return (self.name, self.instance)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One instruction of one agent.
+
+    Attributes:
+        action: canonical name (`PutBack`).
+        objects: its arguments in order.
+        agent: which agent acts.
+        joins: done in the same tick as the step before (`... | ...`).
+        modifiers: how it is done, as (name, value) pairs: `("at", "3,2")`, `("hand", "left")`, `("speed", "slow")`.
+    """
+
+    action: str
+    objects: tuple[ObjectRef, ...] = ()
+    agent: int = 0
+    joins: bool = False
+    modifiers: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A titled, described list of steps.
+
+    Attributes:
+        title: one line.
+        description: sentences, possibly over several lines.
+        steps: the instructions in order.
+        lines: where each step stood in its file, from 1; empty when unknown, and not part of its identity.
+    """
+
+    title: str = ""
+    description: str = ""
+    steps: tuple[Step, ...] = ()
+    lines: tuple[int, ...] = field(default=(), compare=False)
+
+    def line(self, number: int) -> int:
+        """The file line of step `number` (from 0), or 0 when unknown."""
+        return self.lines[number] if number < len(self.lines) else 0
+
+    def ticks(self) -> Iterator[tuple[Step, ...]]:
+        """The steps that happen together, in order."""
+        group: list[Step] = []
+        for step in self.steps:
+            if group and not step.joins:
+                yield tuple(group)
+                group = []
+            group.append(step)
+        if group:
+            yield tuple(group)
+
+    def objects(self) -> tuple[ObjectRef, ...]:
+        """Every distinct object, in order of first mention."""
+        seen: dict[tuple[str, int], ObjectRef] = {}
+        for step in self.steps:
+            for ref in step.objects:
+                seen.setdefault(ref.key if ref.instance else (ref.name, -(ref.node or 0)), ref)
+        return tuple(seen.values())
+
+    def agents(self) -> int:
+        """How many agents it needs: one more than the highest it names."""
+        return max((step.agent for step in self.steps), default=0) + 1
+
+    def with_steps(self, steps: Iterable[Step]) -> Program:
+        """The same title and description with other steps."""
+        return Program(self.title, self.description, tuple(steps))
+
+    def unbound(self) -> Program:
+        """The program as collected: node ids left out."""
+        return self.bound({})
+
+    def bound(self, nodes: dict[tuple[str, int], int]) -> Program:
+        """The program with each object bound to the node given for its (name, instance), or to none."""
+
+        def bind(ref: ObjectRef) -> ObjectRef:
+            return replace(ref, node=nodes.get(ref.key))
+
+        steps = tuple(replace(step, objects=tuple(map(bind, step.objects))) for step in self.steps)
+        return replace(self, steps=steps)

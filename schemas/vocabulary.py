@@ -1,0 +1,41 @@
+"""The closed vocabularies of a scene graph, with stable integer ids (their positions).
+
+Ids are published; append only. Sources: thesis 2.3.2, 5.4.1, table A.2, and the ActivityPrograms release.
+"""
+
+from __future__ import annotations
+
+STATES: tuple[str, ...] = (
+    "CLOSED", "OPEN", "OFF", "ON", "DIRTY", "CLEAN", "PLUGGED_OUT", "PLUGGED_IN", "SITTING", "LYING",
+)  # fmt: skip
+"""The ten simulated states. Neighbours (0,1), (2,3), (4,5), (6,7), (8,9) exclude each other."""
+
+STATE_ID = {name: number for number, name in enumerate(STATES)}
+
+OPPOSITE = {name: STATES[number ^ 1] for number, name in enumerate(STATES)}
+"""The state that cannot hold at the same time."""
+
+RELATIONS: tuple[str, ...] = ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN", "HOLDS_RH", "HOLDS_LH")
+"""`a R b`: a is ON b, a is INSIDE b, a is CLOSE to b (symmetric), a is FACING b, door a is BETWEEN room b and another,
+character a holds b in its right or left hand."""
+
+RELATION_ID = {name: number for number, name in enumerate(RELATIONS)}
+
+PROPERTIES: tuple[str, ...] = (
+    "SURFACES", "GRABBABLE", "SITTABLE", "LIEABLE", "HANGABLE", "DRINKABLE", "EATABLE", "RECIPIENT", "CUTTABLE",
+    "POURABLE", "CAN_OPEN", "HAS_SWITCH", "READABLE", "LOOKABLE", "CONTAINERS", "CLOTHES", "PERSON", "BODY_PART",
+    "COVER_OBJECT", "HAS_PLUG", "HAS_PAPER", "MOVABLE", "CREAM",
+)  # fmt: skip
+"""What an object can be used for."""
+
+PROPERTY_ID = {name: number for number, name in enumerate(PROPERTIES)}
+
+ROOM_CATEGORY = "Rooms"
+CHARACTER_CATEGORY = "Characters"
+CHARACTER_CLASS = "character"
+
+FIRST_ADDED_ID = 1000
+"""Ids from here are objects of a program that the home lacked (semantics: preparing an environment)."""
+
+FIRST_FILLED_ID = 2000
+"""Ids from here are common-sense objects added to make an environment more diverse."""

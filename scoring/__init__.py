@@ -1,0 +1,1 @@
+"""How good a program is: LCS, graph F1, parsability, executability."""

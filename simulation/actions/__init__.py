@@ -1,0 +1,1 @@
+"""One function an action, grouped by what is acted on; `registry` names them all."""
