@@ -1,0 +1,301 @@
+"""The literals in which preconditions and effects are written, as values and as text.
+
+A formula is one of
+
+    NAME(term, ...)            an atom: `CLOSE(a, o)`, `state(o, OPEN)`, `close(a, o)`
+    not F, F & F, F | F, (F)   as usual; `not` binds tightest, then `&`, then `|`
+    some x: F                  for at least one thing x; reaches as far right as it can
+    count x: F < limit(o)      fewer things than a number known of o
+
+and an effect is
+
+    NAME(term, ...)            becomes true
+    not NAME(term, ...)        becomes false
+    F -> E                     only if F held before
+    for x, y: F -> E           for all things x, y for which F held before; F may be left out
+
+A term is a variable (`a` the acting character, `o` and `s` the first and second object, or one bound by `some`,
+`count`, `for`), a thing found from one (`room(o)`), or a name in capitals or letters (`OPEN`, `knife`).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+FUNCTIONS = frozenset({"room", "origin", "place"})
+"""Terms that find a thing from a thing; they may find nothing."""
+
+NAMED = frozenset({"state", "property", "class", "class_contains", "came_from"})
+"""Predicates whose second argument is a name, not a thing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A variable or name (`function` empty), or the thing a function finds from a variable."""
+
+    name: str
+    function: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.function}({self.name})" if self.function else self.name
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A predicate of terms."""
+
+    name: str
+    terms: tuple[Term, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.name}({', '.join(map(str, self.terms))})"
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """Holds when its part does not."""
+
+    part: Formula
+
+    def __str__(self) -> str:
+        return f"not {_grouped(self.part)}"
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """Holds when all parts hold; of no parts, always."""
+
+    parts: tuple[Formula, ...]
+
+    def __str__(self) -> str:
+        return " & ".join(_grouped(part) for part in self.parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Holds when a part holds."""
+
+    parts: tuple[Formula, ...]
+
+    def __str__(self) -> str:
+        return " | ".join(_grouped(part) if isinstance(part, Or | Some | Count) else str(part) for part in self.parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Some:
+    """Holds when some thing makes its part hold."""
+
+    variable: str
+    part: Formula
+
+    def __str__(self) -> str:
+        return f"some {self.variable}: {self.part}"
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Holds when fewer things than `limit` allows make its part hold."""
+
+    variable: str
+    part: Formula
+    limit: Term
+
+    def __str__(self) -> str:
+        return f"count {self.variable}: {self.part} < {self.limit}"
+
+
+Formula = Atom | Not | And | Or | Some | Count
+
+TRUE = And(())
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """A change: `atom` becomes true (or false when `delete`), for all `variables` for which `condition` held before."""
+
+    atom: Atom
+    delete: bool = False
+    condition: Formula = TRUE
+    variables: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        text = f"not {self.atom}" if self.delete else str(self.atom)
+        if self.condition != TRUE:
+            text = f"{self.condition} -> {text}"
+        return f"for {', '.join(self.variables)}: {text}" if self.variables else text
+
+
+def _grouped(part: Formula) -> str:
+    return str(part) if isinstance(part, Atom | Not) else f"({part})"
+
+
+_TOKEN = re.compile(r"\s*(?:(->|[()&|:,<])|([A-Za-z_][A-Za-z_0-9]*))")
+
+
+@lru_cache(maxsize=4096)
+def parse_formula(text: str) -> Formula:
+    """Read a formula.
+
+    Raises:
+        HearthError: SYNTAX, saying what was expected where.
+    """
+    parser = _Parser(text)
+    result = parser.alternatives()
+    parser.end()
+    return result
+
+
+@lru_cache(maxsize=4096)
+def parse_effect(text: str) -> Effect:
+    """Read an effect.
+
+    Raises:
+        HearthError: SYNTAX, saying what was expected where.
+    """
+    parser = _Parser(text)
+    result = parser.effect()
+    parser.end()
+    return result
+
+
+@lru_cache(maxsize=512)
+def parse_atom(text: str) -> Atom:
+    """Read a single atom, such as the head of a definition.
+
+    Raises:
+        HearthError: SYNTAX.
+    """
+    parser = _Parser(text)
+    result = parser.atom()
+    parser.end()
+    return result
+
+
+class _Parser:
+    """Recursive descent over the tokens of one line."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens: list[str] = []
+        position = 0
+        while position < len(text.rstrip()):
+            found = _TOKEN.match(text, position)
+            if not found:
+                raise self.fault(f"cannot read `{text[position:].strip()[:20]}`")
+            self.tokens.append(found[1] or found[2])
+            position = found.end()
+        self.next = 0
+
+    def fault(self, message: str) -> HearthError:
+        return HearthError.of(Code.SYNTAX, f"in `{self.text}`: {message}")
+
+    def peek(self, ahead: int = 0) -> str:
+        return self.tokens[self.next + ahead] if self.next + ahead < len(self.tokens) else ""
+
+    def take(self, wanted: str = "") -> str:
+        token = self.peek()
+        if not token or (wanted and token != wanted):
+            raise self.fault(f"expected {wanted or 'a name'} but found `{token or 'the end'}`")
+        self.next += 1
+        return token
+
+    def name(self) -> str:
+        token = self.take()
+        if not (token[0].isalpha() or token[0] == "_"):
+            raise self.fault(f"expected a name but found `{token}`")
+        return token
+
+    def end(self) -> None:
+        if self.peek():
+            raise self.fault(f"`{self.peek()}` is too much")
+
+    def effect(self) -> Effect:
+        variables: list[str] = []
+        if self.peek() == "for":
+            self.take()
+            variables.append(self.name())
+            while self.peek() == ",":
+                self.take()
+                variables.append(self.name())
+            self.take(":")
+        condition = TRUE
+        if "->" in self.tokens[self.next :]:
+            condition = self.alternatives()
+            self.take("->")
+            if self.peek() == "for":
+                inner = self.effect()
+                return Effect(
+                    inner.atom, inner.delete, _both(condition, inner.condition), (*variables, *inner.variables)
+                )
+        delete = self.peek() == "not"
+        if delete:
+            self.take()
+        return Effect(self.atom(), delete, condition, tuple(variables))
+
+    def alternatives(self) -> Formula:
+        parts = [self.conjunction()]
+        while self.peek() == "|":
+            self.take()
+            parts.append(self.conjunction())
+        return parts[0] if len(parts) == 1 else Or(tuple(parts))
+
+    def conjunction(self) -> Formula:
+        parts = [self.unit()]
+        while self.peek() == "&":
+            self.take()
+            parts.append(self.unit())
+        return parts[0] if len(parts) == 1 else And(tuple(parts))
+
+    def unit(self) -> Formula:
+        token = self.peek()
+        if token == "not":
+            self.take()
+            return Not(self.unit())
+        if token == "(":
+            self.take()
+            inner = self.alternatives()
+            self.take(")")
+            return inner
+        if token in ("some", "count") and self.peek(1) != "(":
+            return self.quantified()
+        return self.atom()
+
+    def quantified(self) -> Formula:
+        kind, variable = self.take(), self.name()
+        self.take(":")
+        part = self.alternatives()
+        if kind == "some":
+            return Some(variable, part)
+        self.take("<")
+        function = self.name()
+        return Count(variable, part, Term(self.arguments()[0].name, function))
+
+    def atom(self) -> Atom:
+        return Atom(self.name(), self.arguments())
+
+    def arguments(self) -> tuple[Term, ...]:
+        self.take("(")
+        terms = [self.term()]
+        while self.peek() == ",":
+            self.take()
+            terms.append(self.term())
+        self.take(")")
+        return tuple(terms)
+
+    def term(self) -> Term:
+        name = self.name()
+        if name in FUNCTIONS and self.peek() == "(":
+            self.take()
+            inner = self.name()
+            self.take(")")
+            return Term(inner, name)
+        return Term(name)
+
+
+def _both(first: Formula, second: Formula) -> Formula:
+    return first if second == TRUE else second if first == TRUE else And((first, second))
