@@ -1,0 +1,199 @@
+"""The command line: `python cli.py COMMAND`, or `hearth COMMAND` once installed.
+
+Each command is a function of `hearth.commands`; its module is imported when it is called, so that `--help` is quick.
+This is the one place where bad input becomes a message and an exit status.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+
+_ROOT = Path(__file__).resolve().parent
+
+
+def _find_package() -> None:
+    """Go on under `.venv`'s Python when this one has no Hearth (`python cli.py` with the system's Python)."""
+    import importlib.util
+
+    if importlib.util.find_spec("hearth") and importlib.util.find_spec("typer"):
+        return
+    python = _ROOT / ".venv/bin/python"
+    if python.exists() and Path(sys.prefix).resolve() != python.parent.parent.resolve():
+        os.execv(python, [str(python), *sys.argv])
+    sys.exit("Hearth is not set up here: run `make setup` (or `pip install .`) first.")
+
+
+if __name__ == "__main__":
+    # As a script its folder stands first in the path, where `schemas` or `version` would hide modules of those names.
+    sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != _ROOT]
+    _find_package()
+
+import typer
+from typer.core import TyperGroup
+
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+
+if TYPE_CHECKING:
+    from click import Command, Context, HelpFormatter
+else:
+    Command = Context = HelpFormatter = Any
+
+
+class Entry(NamedTuple):
+    """Where a command lives (`module:function` or `module:app` of `hearth.commands`) and its line in `--help`."""
+
+    place: str
+    line: str
+
+
+COMMANDS: dict[str, dict[str, Entry]] = {
+    "Make a dataset": {
+        "build": Entry("build:build", "Run the stages one after another and publish a dataset."),
+        "ingest": Entry("build:ingest", "Read descriptions and programs, from whatever they arrived in."),
+        "validate": Entry("build:validate", "Check every program against the action grammar."),
+        "sample": Entry("build:sample", "Place every program in a home where it runs."),
+        "augment": Entry("build:augment", "Perturb what programs rely on, run them, and repair what breaks."),
+        "render": Entry("build:render", "Picture programs while they run."),
+        "publish": Entry("build:publish", "Write the tables, the catalog and the manifest."),
+    },
+    "Use a dataset": {
+        "query": Entry("query:query", "Ask a published dataset a question in SQL."),
+        "score": Entry("score:app", "Score predicted programs against references."),
+    },
+    "Try a program": {
+        "check": Entry("check:check", "Check program files and underline what is wrong."),
+        "run": Entry("run:run", "Run a program in a home and print what happens."),
+        "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
+    },
+    "Look around": {
+        "kb": Entry("kb:app", "What is known of actions and objects."),
+        "home": Entry("home:app", "The homes: list, show and check them."),
+        "doctor": Entry("doctor:doctor", "Say what is there, what is missing and what it costs."),
+    },
+}
+"""Every command. To add one: a function in `commands/`, and a row here."""
+
+_ENTRIES = {name: entry for section in COMMANDS.values() for name, entry in section.items()}
+
+
+def load(name: str) -> Command:
+    """The command of that name; imports its module."""
+    import importlib
+
+    module, attribute = _ENTRIES[name].place.split(":")
+    target = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
+    if isinstance(target, typer.Typer):
+        target.rich_markup_mode = None
+        command = typer.main.get_group(target)
+        command.name = name
+        return command
+    single = typer.Typer(add_completion=False, rich_markup_mode=None)
+    single.command(name)(target)
+    return typer.main.get_command(single)
+
+
+class Commands(TyperGroup):
+    """The commands of `COMMANDS`, each loaded when it is called; turns bad input into messages and status 1."""
+
+    def list_commands(self, ctx: Context) -> list[str]:
+        """Every name, in the order of the table."""
+        return list(_ENTRIES)
+
+    def get_command(self, ctx: Context, cmd_name: str) -> Command | None:
+        """The command of that name, or None."""
+        return load(cmd_name) if cmd_name in _ENTRIES else None
+
+    def resolve_command(self, ctx: Context, args: list[str]) -> tuple[str | None, Command | None, list[str]]:
+        """Find the command, or say which name was probably meant."""
+        if args and args[0] not in _ENTRIES and not args[0].startswith("-"):
+            import difflib
+
+            close = difflib.get_close_matches(args[0], list(_ENTRIES), n=1)
+            ctx.fail(f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""))
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
+        """List the commands by what they are for, without importing any."""
+        for title, entries in COMMANDS.items():
+            with formatter.section(title):
+                formatter.write_dl([(name, entry.line) for name, entry in entries.items()])
+
+    def parse_args(self, ctx: Context, args: list[str]) -> list[str]:
+        """Note whether the command was asked for JSON, so that an error can be JSON too."""
+        ctx.meta["hearth.json"] = "--json" in args
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Context) -> Any:
+        """Run the command; bad input is printed and ends with status 1."""
+        try:
+            return super().invoke(ctx)
+        except (HearthError, OSError) as error:
+            if ctx.params.get("debug") or isinstance(error, BrokenPipeError):
+                raise
+            _fail(error, as_json=ctx.meta["hearth.json"])
+
+
+def _fail(error: HearthError | OSError, *, as_json: bool) -> NoReturn:
+    from hearth.commands import output
+
+    faults = error.diagnostics if isinstance(error, HearthError) else (_of_system(error),)
+    if as_json:
+        output.emit({"errors": [output.diagnostic_json(fault) for fault in faults]})
+    else:
+        output.report(faults)
+    raise typer.Exit(output.BAD_INPUT)
+
+
+def _of_system(error: OSError) -> Diagnostic:
+    """A missing, forbidden or full file, as the fault it is to the user."""
+    message = (error.strerror or str(error) or type(error).__name__).lower()
+    return Diagnostic(Code.MISSING_FILE, message, file=str(error.filename or ""))
+
+
+app = typer.Typer(
+    cls=Commands,
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from hearth.version import ACTION_SET, VERSION
+
+        typer.echo(f"hearth {VERSION} ({ACTION_SET})")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: bool = typer.Option(
+        False, "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
+    ),
+    debug: bool = typer.Option(False, "--debug", envvar="HEARTH_DEBUG", help="Show where in the code an error arose."),
+) -> None:
+    """Hearth turns what people say they do at home into datasets that machines can run.
+
+    \b
+    Examples:
+      python cli.py check morning.txt        underline what is wrong in a program
+      python cli.py build --out data_out     make a dataset of the starter corpus
+      python cli.py COMMAND --help           what a command takes, with an example
+    """
+
+
+def main() -> None:
+    """Run the command line. Statuses: 0 done, 1 bad input, 2 wrong usage."""
+    script = Path(sys.argv[0]).name == "cli.py"
+    app(prog_name="python cli.py" if script else "hearth")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+"""What commands print: tables, JSON for machines, faults with their source underlined; and how commands exit."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any, TextIO
+
+import typer
+
+from hearth.schemas.errors import Diagnostic
+
+OK = 0
+"""Done; rejected records are reported, not fatal."""
+
+BAD_INPUT = 1
+"""Something could not be read or run, or, with `--strict`, something was rejected."""
+
+USAGE = 2
+"""The command line itself is wrong (typer's own status)."""
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document for machines instead of text.")]
+Strict = Annotated[bool, typer.Option("--strict", help="Exit with status 1 if anything was rejected.")]
+
+_RED, _BLUE, _BOLD, _RESET = "\x1b[31m", "\x1b[34m", "\x1b[1m", "\x1b[0m"
+_SHOWN = 100
+_AROUND = 40
+
+
+def status(rejected: int, *, strict: bool) -> None:
+    """End the command with status 1 when something was rejected and `strict` was asked for; otherwise return."""
+    if strict and rejected:
+        raise typer.Exit(BAD_INPUT)
+
+
+def emit(value: Any) -> None:
+    """Print one JSON document: keys in the order given, dataclasses and paths understood, a line break at the end."""
+    import orjson
+
+    options = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE | orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
+    sys.stdout.write(orjson.dumps(value, default=_plain, option=options).decode())
+    sys.stdout.flush()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, (set, frozenset)):
+        return sorted(value)
+    if isinstance(value, tuple) and hasattr(value, "_asdict"):
+        return value._asdict()
+    if isinstance(value, tuple):
+        return list(value)
+    raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = "") -> None:
+    """Print a table: drawn by rich on a terminal, plain aligned columns elsewhere. Numbers stand to the right."""
+    cells = [[_text(cell) for cell in row] for row in rows]
+    numeric = [_is_numeric(row[number] for row in cells) for number in range(len(columns))]
+    if sys.stdout.isatty():
+        _rich_table(columns, cells, numeric, title)
+        return
+    if title:
+        print(title)
+    widths = [max(map(len, column)) for column in zip(columns, *cells, strict=True)]
+    for row in [list(columns), *cells]:
+        parts = (_aligned(cell, width, right) for cell, width, right in zip(row, widths, numeric, strict=True))
+        print("  ".join(parts).rstrip())
+
+
+def _rich_table(columns: Sequence[str], rows: list[list[str]], numeric: list[bool], title: str) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    drawn = Table(title=title or None, title_justify="left", header_style="bold")
+    for name, right in zip(columns, numeric, strict=True):
+        drawn.add_column(name, justify="right" if right else "left", overflow="fold")
+    for row in rows:
+        drawn.add_row(*map(Text, row))
+    Console().print(drawn)
+
+
+def _text(cell: Any) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    if isinstance(cell, int):
+        return f"{cell:,}"
+    if isinstance(cell, float):
+        return f"{cell:,.3f}"
+    return str(cell)
+
+
+def _is_numeric(cells: Iterable[str]) -> bool:
+    shown = [cell.replace(",", "").replace(".", "").lstrip("-") for cell in cells if cell]
+    return bool(shown) and all(cell.isdigit() for cell in shown)
+
+
+def _aligned(cell: str, width: int, right: bool) -> str:
+    return cell.rjust(width) if right else cell.ljust(width)
+
+
+def diagnostic_json(fault: Diagnostic) -> dict[str, Any]:
+    """A fault as JSON: the fields of `Diagnostic`."""
+    return asdict(fault)
+
+
+def report(faults: Iterable[Diagnostic], stream: TextIO | None = None) -> None:
+    """Print faults as a compiler does: code, place, the line, and the offending words underlined."""
+    out = stream or sys.stderr
+    colour = out.isatty()
+    for fault in faults:
+        print(explain(fault, colour=colour), file=out)
+
+
+def explain(fault: Diagnostic, *, colour: bool = False) -> str:
+    """One fault as text of several lines.
+
+    error[UNKNOWN_OBJECT]: no object is called `televison`
+      --> watch.txt:5:9
+        |
+      5 | [Watch] <televison> (1)
+        |         ^^^^^^^^^^^ did you mean `television`?
+    """
+    red, blue, bold, reset = (_RED, _BLUE, _BOLD, _RESET) if colour else ("", "", "", "")
+    lines = [f"{red}error[{fault.code}]{reset}: {bold}{_one_line(fault.message)}{reset}"]
+    pad = " " * max(3, len(str(fault.line or "")))
+    if fault.place():
+        lines.append(f"{pad}{blue}-->{reset} {fault.place()}")
+    if fault.source and fault.line:
+        source, column = _window(fault.source, fault.column)
+        lines.append(f"{pad} {blue}|{reset}")
+        lines.append(f"{blue}{fault.line:>{len(pad)}} |{reset} {source}")
+        marks = _underline(source, column, fault.length)
+        lines.append(f"{pad} {blue}|{reset} {red}{marks}{reset} {fault.suggestion}".rstrip())
+    elif fault.suggestion:
+        lines.append(f"{pad} {blue}={reset} {fault.suggestion}")
+    return "\n".join(lines)
+
+
+def _one_line(message: str) -> str:
+    return " ".join(message.split())
+
+
+def _window(source: str, column: int) -> tuple[str, int]:
+    """The part of a long line around `column` (from 1), and the column within it."""
+    shown = "".join(char if char.isprintable() else " " for char in source)
+    start = column - 1 - _AROUND if column - 1 > _SHOWN - _AROUND else 0
+    start = max(0, start)
+    return shown[start : start + _SHOWN], max(1, column - start)
+
+
+def _underline(source: str, column: int, length: int) -> str:
+    marks = "^" * max(1, min(length or 1, len(source) - column + 1))
+    return " " * (_cells(source[: column - 1])) + marks
+
+
+def _cells(text: str) -> int:
+    """Terminal columns a text takes: wide East Asian characters take two, combining marks none."""
+    import unicodedata
+
+    wide = sum(unicodedata.east_asian_width(char) in "WF" for char in text)
+    return len(text) + wide - sum(unicodedata.combining(char) > 0 for char in text)
+
+
+def counted(number: int, noun: str) -> str:
+    """`1 file`, `2,300 files`."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
