@@ -1,0 +1,91 @@
+"""Walk, Run, Find, TurnTo: where the character is and what it faces."""
+
+from __future__ import annotations
+
+from hearth.schemas.failures import Code, Failure
+from hearth.simulation import doors, rows
+from hearth.simulation.actions.common import LYING, SITTING, need_close, refuse
+from hearth.simulation.agent import Agent
+from hearth.simulation.bits import indices
+from hearth.simulation.moved import NOTHING, carry
+from hearth.simulation.rules import Rules
+from hearth.simulation.world import World
+
+
+def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+    """Go to o, into its room; Run is the same."""
+    agent = world.agents[number]
+    states = world.states
+    if (states[SITTING] | states[LYING]) & agent.bit:
+        lying = states[LYING] & agent.bit
+        return refuse(world, Code.LYING if lying else Code.SITTING, "standing", "lying" if lying else "sitting", o)
+    room = rows.room_of(world, o)
+    if room < 0:
+        return refuse(world, Code.NO_ROOM, "an object in some room", "INSIDE no room", o)
+    if rules.doors:
+        blocked = doors.blocking(world, agent, room)
+        if blocked is not None:
+            return blocked
+    return _arrive(world, number, agent, o, room)
+
+
+def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+    """Notice o; a walk to it comes first, and is all there is to it, unless it is near or the character can't walk."""
+    agent = world.agents[number]
+    near = (world.home.properties["BODY_PART"] | agent.worn) >> o & 1 or rows.is_close(world, agent, o)
+    if not near and not (world.states[SITTING] | world.states[LYING]) & agent.bit:
+        return walk(world, number, o, -1, rules)
+    failure = need_close(world, agent, o)
+    if failure is not None:
+        return failure
+    index, bit, close, _facing, faced, *rest = agent
+    return world.with_agent(number, Agent(index, bit, close | 1 << o, 0, faced, *rest))
+
+
+def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+    """Face o alone."""
+    index, bit, close, _facing, faced, *rest = world.agents[number]
+    return world.with_agent(number, Agent(index, bit, close, 1 << o, faced, *rest))
+
+
+def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World:
+    home = world.home
+    moved = world.moved
+    if moved is NOTHING:
+        near = home.reach[o]
+    else:
+        near = 1 << o | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms)
+        if home.properties["SURFACES"] >> o & 1:
+            near |= rows.bears(world, o)
+    if home.properties["SURFACES"] >> o & 1:
+        for other in world.agents:
+            if other.on >> o & 1:
+                near |= other.bit
+    held = agent.right | agent.left
+    for i in indices(held):
+        moved = carry(moved, i, room)
+    _index, bit, _close, _facing, _faced, _inside, _contents, on, worn, right, left, origins = agent
+    arrived = Agent(agent.index, bit, near | held, 0, 0, 1 << room, 0, on, worn, right, left, origins)
+    if len(world.agents) == 1:
+        return World(home, world.states, (arrived,), moved)
+    return World(home, world.states, _seen_by_others(world.agents, number, arrived, held), moved)
+
+
+def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held: int) -> tuple[Agent, ...]:
+    """Keep the other characters' rows in step with one who has walked: the edges between two stand in both."""
+    gone = ~(arrived.bit | held)
+    return tuple(
+        arrived
+        if i == number
+        else Agent(
+            other.index,
+            other.bit,
+            other.close & gone | (arrived.bit if arrived.close & other.bit else 0),
+            other.facing & gone,
+            other.faced & gone,
+            other.inside & gone,
+            other.contents & gone,
+            *other[7:],
+        )
+        for i, other in enumerate(agents)
+    )

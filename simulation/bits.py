@@ -1,0 +1,26 @@
+"""Sets of nodes as integers: bit i stands for the node of index i."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+
+def indices(mask: int) -> Iterator[int]:
+    """The members of a set, ascending."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
+
+
+def lowest(mask: int) -> int:
+    """The smallest member, or -1 of the empty set."""
+    return (mask & -mask).bit_length() - 1
+
+
+def mask_of(members: Iterable[int]) -> int:
+    """The set with these members."""
+    mask = 0
+    for index in members:
+        mask |= 1 << index
+    return mask

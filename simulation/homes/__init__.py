@@ -1,0 +1,1 @@
+"""Homes: floor plans, their geometry, and the scene graphs that follow from it."""

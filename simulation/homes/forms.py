@@ -1,0 +1,59 @@
+"""The shapes of things as a floor plan needs them: sizes, where they are mounted, where things stand on and in them."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+
+from hearth.kb.knowledge import Knowledge
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """A class's shape.
+
+    Attributes:
+        size: width (along its back), height and depth in metres.
+        mount: `floor`; `flat` (a rug: others stand over it); `wall`; `ceiling`; `window`; `sunk` (into what it is on);
+            `door`; or `item` (stands on or in something).
+        up: the height of the underside of what hangs on a wall.
+        levels: heights above its underside at which things stand ON it; empty: on its top.
+        shelves: at how many heights things stand INSIDE it.
+        front: free depth that using it takes, in metres.
+    """
+
+    size: tuple[float, float, float]
+    mount: str = "item"
+    up: float = 0.0
+    levels: tuple[float, ...] = ()
+    shelves: int = 1
+    front: float = 0.0
+
+
+def form(class_name: str, knowledge: Knowledge) -> Form | None:
+    """The shape of a class; with the knowledge's size where the table has none; None when nobody knows its size."""
+    known = _table().get(class_name)
+    if known is not None:
+        return known
+    found = knowledge.objects.get(class_name)
+    size = found.size if found else (0.0, 0.0, 0.0)
+    return Form(size) if all(size) else None
+
+
+@lru_cache(maxsize=1)
+def _table() -> dict[str, Form]:
+    text = (files("hearth.simulation.homes") / "forms.csv").read_text(encoding="utf-8")
+    return {row["class"]: _form(row) for row in csv.DictReader(text.splitlines())}
+
+
+def _form(row: dict[str, str]) -> Form:
+    return Form(
+        size=(float(row["width"]), float(row["height"]), float(row["depth"])),
+        mount=row["mount"],
+        up=float(row["up"] or 0),
+        levels=tuple(map(float, row["levels"].split())),
+        shelves=int(row["shelves"] or 1),
+        front=float(row["front"] or 0),
+    )

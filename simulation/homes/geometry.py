@@ -1,0 +1,120 @@
+"""Rectangles, directions and boxes of a floor plan.
+
+Metres; x grows eastwards, y upwards, z northwards. Yaw is in degrees about y from +z (north) towards +x (east).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from hearth.schemas.graph import Box
+
+DIRECTIONS: dict[str, float] = {"north": 0.0, "east": 90.0, "south": 180.0, "west": 270.0}
+OPPOSITE_WALL = {"north": "south", "south": "north", "east": "west", "west": "east"}
+EPSILON = 1e-6
+
+
+class Rect(NamedTuple):
+    """A rectangle on the floor: west, south, east and north bounds."""
+
+    x0: float
+    z0: float
+    x1: float
+    z1: float
+
+    @property
+    def width(self) -> float:
+        """Extent from west to east."""
+        return self.x1 - self.x0
+
+    @property
+    def depth(self) -> float:
+        """Extent from south to north."""
+        return self.z1 - self.z0
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """The middle, as (x, z)."""
+        return (self.x0 + self.x1) / 2, (self.z0 + self.z1) / 2
+
+    def inset(self, margin: float) -> Rect:
+        """Smaller by `margin` on every side (larger when negative)."""
+        return Rect(self.x0 + margin, self.z0 + margin, self.x1 - margin, self.z1 - margin)
+
+    def overlap(self, other: Rect) -> float:
+        """The area both cover, in square metres."""
+        width = min(self.x1, other.x1) - max(self.x0, other.x0)
+        depth = min(self.z1, other.z1) - max(self.z0, other.z0)
+        return max(0.0, width) * max(0.0, depth)
+
+    def contains(self, other: Rect, slack: float = 0.005) -> bool:
+        """Whether the other lies within, give or take `slack`."""
+        return (
+            other.x0 >= self.x0 - slack
+            and other.z0 >= self.z0 - slack
+            and other.x1 <= self.x1 + slack
+            and other.z1 <= self.z1 + slack
+        )
+
+    def holds(self, x: float, z: float) -> bool:
+        """Whether a point lies within."""
+        return self.x0 <= x <= self.x1 and self.z0 <= z <= self.z1
+
+
+def along_x(wall: str) -> bool:
+    """Whether a wall runs from west to east."""
+    return wall in ("north", "south")
+
+
+def facing_from(wall: str) -> float:
+    """The yaw of a thing with its back to that wall."""
+    return DIRECTIONS[OPPOSITE_WALL[wall]]
+
+
+def wall_of(yaw: float) -> str:
+    """The wall that a thing of this yaw turns its back to."""
+    return next(wall for wall in DIRECTIONS if facing_from(wall) == yaw % 360)
+
+
+def front_of(yaw: float) -> str:
+    """The direction a thing of this yaw faces."""
+    return OPPOSITE_WALL[wall_of(yaw)]
+
+
+def footprint(box: Box) -> Rect:
+    """The floor a box stands over."""
+    (x, _, z), (w, _, d) = box
+    return Rect(x - w / 2, z - d / 2, x + w / 2, z + d / 2)
+
+
+def bottom(box: Box) -> float:
+    """The height of a box's underside."""
+    return box.center[1] - box.size[1] / 2
+
+
+def top(box: Box) -> float:
+    """The height of a box's upper side."""
+    return box.center[1] + box.size[1] / 2
+
+
+def box_over(rect: Rect, y0: float, y1: float) -> Box:
+    """The box over a rectangle between two heights, to a tenth of a millimetre."""
+    x, z = rect.center
+    center = (x, (y0 + y1) / 2, z)
+    size = (rect.width, y1 - y0, rect.depth)
+    return Box(_rounded(center), _rounded(size))
+
+
+def _rounded(values: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = (round(value, 4) + 0.0 for value in values)
+    return x, y, z
+
+
+def intrusion(a: Box, b: Box) -> float:
+    """How deep two boxes stand in each other, in metres; 0 or less when they do not."""
+    return min((sa + sb) / 2 - abs(ca - cb) for ca, cb, sa, sb in zip(a.center, b.center, a.size, b.size, strict=True))
+
+
+def turned(width: float, depth: float, yaw: float) -> tuple[float, float]:
+    """A thing's extents along x and z when it faces `yaw` (a multiple of 90 degrees)."""
+    return (width, depth) if yaw % 180 == 0 else (depth, width)

@@ -1,0 +1,200 @@
+"""Reading rows of a world: the home's, less what is gone, plus what is extra.
+
+All take and give indices and bit sets. Edges between a character and anything stand in the character's `Agent`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from hearth.simulation.agent import Agent
+from hearth.simulation.bits import indices
+from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, INSIDE, NOTHING, ON
+
+if TYPE_CHECKING:
+    from hearth.simulation.world import World
+
+Numbered = tuple[int, str, int]
+
+
+def on(world: World, i: int) -> int:
+    """The things that i is ON."""
+    return _row(world.home.on[i], world.moved.on, world.moved.extra, i, ON)
+
+
+def bears(world: World, i: int) -> int:
+    """The things ON i."""
+    return _row(world.home.bears[i], world.moved.on, world.moved.extra, i, BEARS)
+
+
+def inside(world: World, i: int) -> int:
+    """The things and rooms that i is INSIDE."""
+    return _row(world.home.inside[i], world.moved.inside, world.moved.extra, i, INSIDE)
+
+
+def contents(world: World, i: int) -> int:
+    """The things INSIDE i."""
+    return _row(world.home.contents[i], world.moved.inside, world.moved.extra, i, CONTENTS)
+
+
+def close(world: World, i: int) -> int:
+    """The things that i is CLOSE to."""
+    return _row(world.home.close[i], world.moved.close, world.moved.extra, i, CLOSE)
+
+
+def facing(world: World, i: int) -> int:
+    """The things that i is FACING."""
+    gone = world.moved.facing
+    return 0 if gone >> i & 1 else world.home.facing[i] & ~gone
+
+
+def faced(world: World, i: int) -> int:
+    """The things that are FACING i."""
+    gone = world.moved.facing
+    return 0 if gone >> i & 1 else world.home.faced[i] & ~gone
+
+
+def _row(row: int, gone: int, extra: dict[int, int], i: int, kind: int) -> int:
+    if gone:
+        row = 0 if gone >> i & 1 else row & ~gone
+    return row | extra.get(8 * i + kind, 0)
+
+
+def is_close(world: World, agent: Agent, i: int) -> bool:
+    """Whether a character is close to i: by its own CLOSE edge, or by one hop from what it is CLOSE to (to something
+    CLOSE to it, or to something that i is ON).
+    """
+    mine = agent.close
+    if mine >> i & 1:
+        return True
+    moved = world.moved
+    if moved is NOTHING:
+        if mine & world.home.near[i]:
+            return True
+    elif mine & (close(world, i) | on(world, i)):
+        return True
+    home = world.home
+    if home.characters >> i & 1:
+        other = next(a for a in world.agents if a.index == i)
+        return bool(mine & (other.close | other.on))
+    if len(world.agents) == 1 and not mine & agent.bit:
+        return False
+    return any(mine & other.bit and (other.close | other.worn) >> i & 1 for other in world.agents)
+
+
+def is_facing(world: World, agent: Agent, i: int) -> bool:
+    """Whether a character faces i, by its own FACING edge or by one hop."""
+    mine = agent.facing
+    if mine >> i & 1 or mine & faced(world, i):
+        return True
+    return len(world.agents) > 1 and any(mine & other.bit and other.facing >> i & 1 for other in world.agents)
+
+
+def room_of(world: World, i: int) -> int:
+    """Index of the room that i is, or is INSIDE directly or through its containers; -1 when there is none.
+
+    Of several rooms the first by id; a cycle of INSIDE is left once it closes.
+    """
+    home = world.home
+    if not world.moved.inside >> i & 1:
+        room = home.direct_room[i]
+        if room >= 0:
+            return room
+    if home.characters >> i & 1:
+        return agent_room(world, next(a for a in world.agents if a.index == i))
+    return _search_room(world, inside(world, i), 1 << i)
+
+
+def agent_room(world: World, agent: Agent) -> int:
+    """Index of the room a character is in, or -1."""
+    rooms = agent.inside & world.home.rooms
+    if rooms:
+        return (rooms & -rooms).bit_length() - 1
+    return _search_room(world, agent.inside, agent.bit)
+
+
+def _search_room(world: World, frontier: int, seen: int) -> int:
+    rooms = world.home.rooms
+    while frontier:
+        found = frontier & rooms
+        if found:
+            return (found & -found).bit_length() - 1
+        seen |= frontier
+        outer = 0
+        for i in indices(frontier & ~world.home.characters):
+            outer |= inside(world, i)
+        frontier = outer & ~seen
+    return -1
+
+
+def closed_container(world: World, i: int) -> int:
+    """Index of a closed thing that hides i, or -1."""
+    hiding = inside(world, i) & ~world.home.rooms & world.states[0]
+    return (hiding & -hiding).bit_length() - 1
+
+
+def bearing(world: World, i: int) -> int:
+    """Everything ON i, characters included."""
+    found = bears(world, i)
+    for agent in world.agents:
+        if agent.on >> i & 1:
+            found |= agent.bit
+    return found
+
+
+def held_indices(agent: Agent) -> Iterator[int]:
+    """What a character holds, right hand first."""
+    yield from indices(agent.right)
+    yield from indices(agent.left & ~agent.right)
+
+
+def thing_edges(world: World) -> Iterator[Numbered]:
+    """Every edge between things, as (index, relation, index)."""
+    home = world.home
+    for i in range(len(home)):
+        for relation, row in (
+            ("ON", on(world, i)),
+            ("INSIDE", inside(world, i)),
+            ("CLOSE", close(world, i)),
+            ("FACING", facing(world, i)),
+            ("BETWEEN", home.between[i]),
+        ):
+            for j in indices(row):
+                yield i, relation, j
+
+
+def agent_edges(agent: Agent) -> Iterator[Numbered]:
+    """Every edge of a character, in both directions, as (index, relation, index)."""
+    me = agent.index
+    out = (("ON", agent.on), ("INSIDE", agent.inside), ("CLOSE", agent.close), ("FACING", agent.facing))
+    for relation, row in (*out, ("HOLDS_RH", agent.right), ("HOLDS_LH", agent.left)):
+        for j in indices(row):
+            yield me, relation, j
+    into = (("ON", agent.worn), ("INSIDE", agent.contents), ("CLOSE", agent.close), ("FACING", agent.faced))
+    for relation, row in into:
+        for j in indices(row):
+            yield j, relation, me
+
+
+def difference(world: World) -> frozenset[tuple[int, int, int]]:
+    """Rows of things that differ from the home's, as (index, kind, row): equal for equal graphs."""
+    moved = world.moved
+    if moved is NOTHING:
+        return frozenset()
+    home = world.home
+    found = set()
+    touched = {key >> 3 for key in moved.extra} | set(indices(moved.on | moved.inside | moved.close | moved.facing))
+    for i in touched:
+        for kind, now, before in (
+            (ON, on(world, i), home.on[i]),
+            (BEARS, bears(world, i), home.bears[i]),
+            (INSIDE, inside(world, i), home.inside[i]),
+            (CONTENTS, contents(world, i), home.contents[i]),
+            (CLOSE, close(world, i), home.close[i]),
+            (5, facing(world, i), home.facing[i]),
+            (6, faced(world, i), home.faced[i]),
+        ):
+            if now != before:
+                found.add((i, kind, now))
+    return frozenset(found)

@@ -1,0 +1,97 @@
+"""Worlds: immutable values, each the home it shares with all others plus what differs from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.vocabulary import STATE_ID
+from hearth.simulation import rows
+from hearth.simulation.agent import Agent
+from hearth.simulation.change import Change, between
+from hearth.simulation.home import Home
+from hearth.simulation.moved import NOTHING, Moved
+from hearth.simulation.nodes import with_states
+
+
+class World:
+    """The state of everything at one moment.
+
+    Two worlds are equal when they show the same graph with the same memories, however they came about.
+
+    Attributes:
+        home: what never changes.
+        states: one set of nodes for each of `vocabulary.STATES`.
+        agents: the characters, in id order.
+        moved: what differs from the home's edges between things.
+    """
+
+    __slots__ = ("_key", "agents", "home", "moved", "states")
+
+    def __init__(self, home: Home, states: tuple[int, ...], agents: tuple[Agent, ...], moved: Moved) -> None:
+        self.home = home
+        self.states = states
+        self.agents = agents
+        self.moved = moved
+
+    @classmethod
+    def start(cls, home: Home) -> World:
+        """The home as it is given."""
+        agents = tuple(Agent(i, 1 << i, *row) for i, row in zip(home.agents, home.agent_rows, strict=True))
+        return cls(home, home.states, agents, NOTHING)
+
+    def with_agent(self, number: int, agent: Agent) -> World:
+        """The same world with one agent's edges replaced."""
+        agents = (agent,) if len(self.agents) == 1 else (*self.agents[:number], agent, *self.agents[number + 1 :])
+        return World(self.home, self.states, agents, self.moved)
+
+    def has_state(self, node_id: int, state: str) -> bool:
+        """Whether a node is in a state."""
+        return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
+
+    def graph(self) -> EnvironmentGraph:
+        """The whole graph, rebuilt: nodes in id order, edges sorted."""
+        home = self.home
+        nodes = tuple(with_states(home.node(i), i, self.states) for i in range(len(home)))
+        return EnvironmentGraph(nodes, tuple(sorted(self.edges())))
+
+    def edges(self) -> list[Edge]:
+        """Every edge, each once, in no particular order."""
+        home = self.home
+        ids = home.ids
+        found = {Edge(ids[i], relation, ids[j]) for i, relation, j in rows.thing_edges(self)}
+        for agent in self.agents:
+            found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in rows.agent_edges(agent))
+        known = home.index
+        found.update(Edge(*edge) for edge in home.others if edge[0] in known and edge[2] in known)
+        return list(found)
+
+    def changes(self, since: World) -> Change:
+        """What is different from an earlier world of the same home; cost follows what differs."""
+        return between(since, self)
+
+    def key(self) -> tuple[object, ...]:
+        """What makes it equal to another: its difference from its home, and what the agents remember."""
+        try:
+            return self._key
+        except AttributeError:
+            pass
+        memories = tuple(frozenset(agent.origins) for agent in self.agents)
+        self._key = (self.states, rows.difference(self), tuple(a[:-1] for a in self.agents), memories)
+        return self._key
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        return isinstance(other, World) and self.home is other.home and self.key() == other.key()
+
+    def __hash__(self) -> int:
+        return hash(self.key())
+
+    def __repr__(self) -> str:
+        return f"World({self.home!r}, {len(self.agents)} agents)"
+
+    def holding(self) -> Mapping[int, tuple[int, ...]]:
+        """What each agent holds, by agent number: node ids, right hand first."""
+        ids = self.home.ids
+        return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}
