@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from hearth.simulation import moved as kinds
@@ -14,22 +15,24 @@ if TYPE_CHECKING:
     from hearth.simulation.world import World
 
 
+_RELATIONS = (
+    (kinds.ON, rows.on, attrgetter("worn")),
+    (kinds.INSIDE, rows.inside, attrgetter("contents")),
+    (kinds.CLOSE, rows.close, attrgetter("close")),
+)
+"""Where to look, in this order: what it is ON, INSIDE, CLOSE to; among things, then among characters."""
+
+
 def remembered(world: World, agent: Agent, o: int, rules: Rules) -> tuple[int, int]:
     """(index of the place, kind of relation) that Grab remembers, or (-1, 0)."""
     choose = _by_hash_order if rules.origin == "release" else _nearest
     bit = 1 << o
     rooms = world.home.rooms
-    on = rows.on(world, o)
-    inside = rows.inside(world, o)
-    close = rows.close(world, o)
-    for other in world.agents:
-        if other.worn & bit:
-            on |= other.bit
-        if other.contents & bit:
-            inside |= other.bit
-        if other.close & bit:
-            close |= other.bit
-    for kind, row in ((kinds.ON, on), (kinds.INSIDE, inside), (kinds.CLOSE, close)):
+    for kind, things, characters in _RELATIONS:
+        row = things(world, o)
+        for other in world.agents:
+            if characters(other) & bit:
+                row |= other.bit
         place = choose(world, row & ~rooms, row, kind)
         if place >= 0:
             return place, kind
