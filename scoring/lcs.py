@@ -109,10 +109,10 @@ def matrix(
     a, b = _encode(rows, columns)  # two lists even when equal: of one with itself cdist does not use wide registers
     found: NDArray[np.float32] = cdist(a, b, scorer=LCSseq.similarity, dtype=np.float32, workers=workers)
     lengths = np.array([len(sequence) for sequence in b], dtype=np.float32)
-    for row, sequence in zip(found, a, strict=True):
+    for number, sequence in enumerate(a):
         longest = np.maximum(lengths, len(sequence))
-        row /= np.maximum(longest, 1)
-        row[longest == 0] = 1
+        found[number] /= np.maximum(longest, 1)
+        found[number, longest == 0] = 1
     return found
 
 

@@ -2,122 +2,106 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
-from functools import cached_property
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
-from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
-from hearth.simulation.nodes import states_of
+from hearth.simulation.home import Home
+from hearth.simulation.nodes import with_states
 from hearth.simulation.world import World
 
 DOORS_CATEGORY = "Doors"
 DOOR = "door"
 
+StateTuple = tuple[int, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Nodes:
+    """The nodes of a graph, as far as scoring tells them apart.
+
+    Attributes:
+        classes: class name by id.
+        instances: ids by class name, ascending.
+        left_out: rooms and doors (a door's parts too, such as `doorjamb`), which are not scored.
+        characters: who acts.
+    """
+
+    classes: Mapping[int, str]
+    instances: Mapping[str, tuple[int, ...]]
+    left_out: frozenset[int]
+    characters: frozenset[int]
+
+    @classmethod
+    def of(cls, nodes: Iterable[Node]) -> Nodes:
+        """The table of some nodes."""
+        nodes = sorted(nodes, key=lambda node: node.id)
+        instances: dict[str, list[int]] = {}
+        for node in nodes:
+            instances.setdefault(node.class_name, []).append(node.id)
+        return cls(
+            classes={node.id: node.class_name for node in nodes},
+            instances={name: tuple(ids) for name, ids in instances.items()},
+            left_out=frozenset(node.id for node in nodes if _is_room_or_door(node)),
+            characters=frozenset(instances.get(CHARACTER_CLASS, ())),
+        )
+
 
 class View(Protocol):
-    """A final graph as its scorer reads it. `classes` are the class names by node id."""
+    """A final graph as a scorer reads it."""
 
     @property
-    def classes(self) -> dict[int, str]: ...
+    def nodes(self) -> Nodes:
+        """The table of its nodes."""
 
-    @property
-    def left_out(self) -> frozenset[int]:
-        """Rooms and doors, which are not scored."""
-
-    @property
-    def characters(self) -> frozenset[int]: ...
-
-    def instances(self, class_name: str) -> tuple[int, ...]:
-        """The nodes of a class, ascending."""
-
-    def states(self, nodes: Collection[int]) -> Iterable[tuple[int, str]]:
-        """The states of some nodes, as (id, state)."""
-
-    def edges(self, nodes: Collection[int]) -> Iterable[Edge]:
-        """Every edge with an end in some nodes, each once."""
-
-
-def view_of(final: EnvironmentGraph | World) -> View:
-    """A graph or world as a view."""
-    return WorldView(final) if isinstance(final, World) else GraphView(final)
-
-
-def is_door(class_name: str, category: str) -> bool:
-    """Whether a node is a door, or part of one (`doorjamb`)."""
-    return category == DOORS_CATEGORY or DOOR in class_name
-
-
-class _Classes:
-    """Which nodes are of which class; read from `_nodes`, (id, class, category) of each."""
-
-    @cached_property
-    def _nodes(self) -> list[tuple[int, str, str]]:
-        raise NotImplementedError
-
-    @cached_property
-    def classes(self) -> dict[int, str]:
-        return {node: class_name for node, class_name, _ in self._nodes}
-
-    @cached_property
-    def left_out(self) -> frozenset[int]:
-        return frozenset(n for n, name, category in self._nodes if category == ROOM_CATEGORY or is_door(name, category))
-
-    @cached_property
-    def characters(self) -> frozenset[int]:
-        return frozenset(node for node, class_name, _ in self._nodes if class_name == CHARACTER_CLASS)
-
-    def instances(self, class_name: str) -> tuple[int, ...]:
-        return self._by_class.get(class_name, ())
-
-    @cached_property
-    def _by_class(self) -> dict[str, tuple[int, ...]]:
-        found: dict[str, list[int]] = {}
-        for node, class_name, _ in sorted(self._nodes):
-            found.setdefault(class_name, []).append(node)
-        return {name: tuple(nodes) for name, nodes in found.items()}
-
-
-class GraphView(_Classes):
-    """A view of an `EnvironmentGraph`; looks through all its edges once a call."""
-
-    def __init__(self, graph: EnvironmentGraph) -> None:
-        self._graph = graph
-
-    @cached_property
-    def _nodes(self) -> list[tuple[int, str, str]]:
-        return [(node.id, node.class_name, node.category) for node in self._graph.nodes]
-
-    def states(self, nodes: Collection[int]) -> Iterator[tuple[int, str]]:
-        wanted = frozenset(nodes)
-        return ((node.id, state) for node in self._graph.nodes if node.id in wanted for state in set(node.states))
+    def states(self, nodes: Collection[int]) -> Iterator[StateTuple]:
+        """The states of some nodes, as (id, state), each once."""
 
     def edges(self, nodes: Collection[int]) -> set[Edge]:
+        """Every edge with an end in some nodes."""
+
+
+class GraphView:
+    """A view of an `EnvironmentGraph`; looks through all its edges at each call."""
+
+    def __init__(self, graph: EnvironmentGraph) -> None:
+        self.nodes = Nodes.of(graph.nodes)
+        self._graph = graph
+
+    def states(self, nodes: Collection[int]) -> Iterator[StateTuple]:
+        """The states of some nodes, as (id, state), each once."""
+        wanted = frozenset(nodes)
+        return ((node.id, state) for node in self._graph.nodes if node.id in wanted for state in {*node.states})
+
+    def edges(self, nodes: Collection[int]) -> set[Edge]:
+        """Every edge with an end in some nodes."""
         wanted = frozenset(nodes)
         return {edge for edge in self._graph.edges if edge.source in wanted or edge.target in wanted}
 
 
-class WorldView(_Classes):
-    """A view of a world, which reads only the rows of the nodes asked for: a hundredth of rebuilding the graph."""
+class WorldView:
+    """A view of a world, equal to that of its graph, which reads only the rows of the nodes asked for."""
 
     def __init__(self, world: World) -> None:
+        self.nodes = _nodes_of(world.home)
         self._world = world
 
-    @cached_property
-    def _nodes(self) -> list[tuple[int, str, str]]:
-        home = self._world.home
-        return [(node.id, node.class_name, node.category) for node in map(home.node, range(len(home)))]
-
-    def states(self, nodes: Collection[int]) -> Iterator[tuple[int, str]]:
+    def states(self, nodes: Collection[int]) -> Iterator[StateTuple]:
+        """The states of some nodes, as (id, state), each once."""
         world = self._world
-        index = world.home.index
+        home = world.home
         for node in nodes:
-            if node in index:
-                yield from ((node, state) for state in states_of(index[node], world.states))
+            i = home.index.get(node)
+            if i is not None:
+                yield from ((node, state) for state in with_states(home.node(i), i, world.states).states)
 
     def edges(self, nodes: Collection[int]) -> set[Edge]:
+        """Every edge with an end in some nodes."""
         world = self._world
         ids, index = world.home.ids, world.home.index
         wanted = {index[node] for node in nodes if node in index}
@@ -129,6 +113,21 @@ class WorldView(_Classes):
         others = (edge for edge in world.home.others if edge[0] in index and edge[2] in index)
         found.update(Edge(*edge) for edge in others if index[edge[0]] in wanted or index[edge[2]] in wanted)
         return found
+
+
+def view_of(final: EnvironmentGraph | World) -> View:
+    """A graph or world as a view."""
+    return WorldView(final) if isinstance(final, World) else GraphView(final)
+
+
+def _is_room_or_door(node: Node) -> bool:
+    return node.category in (ROOM_CATEGORY, DOORS_CATEGORY) or DOOR in node.class_name
+
+
+@lru_cache(maxsize=4)
+def _nodes_of(home: Home) -> Nodes:
+    """The table of a home: a prediction and its reference end in worlds of the same one."""
+    return Nodes.of(home.node(i) for i in range(len(home)))
 
 
 def _thing_edges(world: World, i: int) -> Iterator[tuple[int, str, int]]:

@@ -1,0 +1,244 @@
+"""Which of a prediction's objects plays the part of which of the reference's: instances of a class are interchangeable.
+
+An alignment gives every object that either program names a counterpart of its class in the other graph, no two the
+same one. Aligned objects, rooms, doors and characters are told apart; what neither program names is told apart by its
+class only, so that no score depends on the ids instances happen to have.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from itertools import combinations, permutations, product
+
+from hearth.schemas.graph import Edge
+from hearth.scoring.counts import Match, Matches
+from hearth.scoring.views import View
+
+LIMIT = 1_000
+"""Up to so many alignments all are tried; beyond, a search finds a lower bound of the best."""
+
+ROUNDS = 20
+"""A search's improvements from one start at most."""
+
+Pair = tuple[int | None, int | None]
+"""A reference node and its counterpart; None where the other graph has no instance left."""
+
+Label = int | str | tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Best:
+    """The best alignment found.
+
+    Attributes:
+        matches: its counts.
+        pairs: (reference node, predicted node) wherever the two are not the same id.
+        exact: whether it is the best of all; otherwise a search's best, which is a lower bound.
+    """
+
+    matches: Matches
+    pairs: tuple[Pair, ...]
+    exact: bool
+
+
+class Problem:
+    """A predicted and a reference graph with the objects that each program names.
+
+    Args:
+        predicted, reference: the final graphs.
+        named_predicted, named_reference: node ids, rooms, doors and characters left out.
+        either: score tuples about the objects of either program in both graphs; otherwise each graph's about its own.
+    """
+
+    def __init__(
+        self, predicted: View, reference: View, named_predicted: Set[int], named_reference: Set[int], either: bool
+    ) -> None:
+        self.either = either
+        self.groups = _groups(predicted, reference, named_predicted, named_reference)
+        self.predicted = _Side(predicted, named_predicted, {i for group in self.groups for i in group.predicted})
+        self.reference = _Side(reference, named_reference, {i for group in self.groups for i in group.reference})
+
+    def best(self, limit: int = LIMIT) -> Best:
+        """The best alignment, of all where there are at most `limit`."""
+        count = math.prod(group.count() for group in self.groups)
+        exact = count <= limit
+        found = max(self._scored(self._all() if exact else self._searched()), key=lambda scored: scored[0].rank())
+        pairs = tuple(sorted((pair for pair in found[1] if pair[0] != pair[1]), key=str))
+        return Best(found[0], pairs, exact or found[0].rank() == (1.0, 2.0))
+
+    def _scored(self, alignments: Iterator[tuple[Pair, ...]]) -> Iterator[tuple[Matches, tuple[Pair, ...]]]:
+        for pairs in alignments:
+            matches = self.matches(pairs)
+            yield matches, pairs
+            if matches.rank() == (1.0, 2.0):
+                return
+
+    def matches(self, pairs: Sequence[Pair]) -> Matches:
+        """Count what two graphs share under an alignment."""
+        to_label: dict[int, Label] = {}
+        for reference, predicted in pairs:
+            if reference is not None:
+                to_label[reference] = predicted if predicted is not None else ("reference", reference)
+        kept = {predicted: predicted for _, predicted in pairs if predicted is not None}
+        ours, theirs = self.predicted, self.reference
+        a = ours.tuples(kept, kept.keys() if self.either else ours.named)
+        b = theirs.tuples(to_label, to_label.keys() if self.either else theirs.named)
+        return Matches(_match(a[0], b[0]), _match(a[1], b[1]))
+
+    def _all(self) -> Iterator[tuple[Pair, ...]]:
+        yield self._derived([group.identity() for group in self.groups])
+        for choice in product(*(group.alignments() for group in self.groups)):
+            yield tuple(pair for pairs in choice for pair in pairs)
+
+    def _derived(self, bijections: Sequence[Sequence[Pair]]) -> tuple[Pair, ...]:
+        """The pairs of whole bijections that concern a named object."""
+        ours, theirs = self.predicted.named, self.reference.named
+        return tuple(pair for pairs in bijections for pair in pairs if pair[0] in theirs or pair[1] in ours)
+
+    def _searched(self) -> Iterator[tuple[Pair, ...]]:
+        """Alignments met while improving two first guesses by exchanging the counterparts of two objects."""
+        for start in ([group.identity() for group in self.groups], [self._guess(group) for group in self.groups]):
+            yield self._derived(start)
+            yield from self._improved(start)
+
+    def _improved(self, bijections: list[list[Pair]]) -> Iterator[tuple[Pair, ...]]:
+        rank = self.matches(self._derived(bijections)).rank()
+        for _ in range(ROUNDS):
+            options = [option for n in range(len(bijections)) for option in self._exchanges(bijections, n)]
+            scored = [(self.matches(self._derived(option)).rank(), number) for number, option in enumerate(options)]
+            best, number = max(scored, key=lambda pair: (pair[0], -pair[1]), default=(rank, -1))
+            if best <= rank:
+                return
+            rank, bijections = best, options[number]
+            yield self._derived(bijections)
+
+    def _exchanges(self, bijections: list[list[Pair]], number: int) -> Iterator[list[list[Pair]]]:
+        pairs = bijections[number]
+        named = [p[0] in self.reference.named or p[1] in self.predicted.named for p in pairs]
+        for i, j in combinations(range(len(pairs)), 2):
+            if named[i] or named[j]:
+                swapped = list(pairs)
+                swapped[i], swapped[j] = (pairs[i][0], pairs[j][1]), (pairs[j][0], pairs[i][1])
+                yield [*bijections[:number], swapped, *bijections[number + 1 :]]
+
+    def _guess(self, group: _Group) -> list[Pair]:
+        """The bijection of a class by which most tuples match when all others are told apart by class only."""
+        import numpy as np
+        from scipy.optimize import linear_sum_assignment
+
+        pairs = group.identity()
+        ours = [self.predicted.profile(node) for _, node in pairs]
+        theirs = [self.reference.profile(node) for node, _ in pairs]
+        weights = np.array([[(a & b).total() for b in ours] for a in theirs])
+        rows, columns = linear_sum_assignment(weights, maximize=True)
+        return [(pairs[i][0], pairs[j][1]) for i, j in zip(rows.tolist(), columns.tolist(), strict=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """A class that either program names: its instances in both graphs, and the named ones."""
+
+    predicted: tuple[int, ...]
+    reference: tuple[int, ...]
+    named_predicted: tuple[int, ...]
+    named_reference: tuple[int, ...]
+
+    def count(self) -> int:
+        """At least as many as `alignments` yields."""
+        ours, theirs = len(self.predicted), len(self.reference)
+        images = math.perm(max(ours, len(self.named_reference)), len(self.named_reference))
+        if len(self.named_reference) == ours and ours == theirs:
+            return images
+        left = max(theirs - len(self.named_reference), len(self.named_predicted))
+        return images * math.perm(left, len(self.named_predicted))
+
+    def identity(self) -> list[Pair]:
+        """A bijection that keeps every id both graphs have, and pairs the rest in order, or with None."""
+        same = [i for i in self.reference if i in self.predicted]
+        theirs: list[int | None] = [i for i in self.reference if i not in same]
+        ours: list[int | None] = [i for i in self.predicted if i not in same]
+        longest = max(len(ours), len(theirs))
+        padded = zip(theirs + [None] * (longest - len(theirs)), ours + [None] * (longest - len(ours)), strict=True)
+        return [*((i, i) for i in same), *padded]
+
+    def alignments(self) -> Iterator[tuple[Pair, ...]]:
+        """Every way to give the named objects of either program counterparts."""
+        for images in _choices(self.predicted, len(self.named_reference)):
+            first = tuple(zip(self.named_reference, images, strict=True))
+            rest = [node for node in self.named_predicted if node not in images]
+            free = [node for node in self.reference if node not in self.named_reference]
+            for origins in _choices(free, len(rest)):
+                yield (*first, *zip(origins, rest, strict=True))
+
+
+class _Side:
+    """One graph: the states and edges of all nodes that an alignment may concern, read once."""
+
+    def __init__(self, view: View, named: Set[int], candidates: Set[int]) -> None:
+        nodes = view.nodes
+        self.named = named
+        self.characters = nodes.characters
+        self.fixed = nodes.characters | nodes.left_out
+        self.classes = nodes.classes
+        every = candidates | nodes.characters
+        self.states: dict[int, list[str]] = {node: [] for node in every}
+        for node, state in view.states(every):
+            self.states[node].append(state)
+        self.edges: dict[int, list[Edge]] = {node: [] for node in every}
+        for edge in view.edges(every):
+            for end in {edge.source, edge.target} & every:
+                self.edges[end].append(edge)
+
+    def tuples(self, labels: Mapping[int, Label], about: Set[int]) -> tuple[Counter[object], Counter[object]]:
+        """State and relation tuples about some nodes and the characters, ends written as their labels."""
+        about = about | self.characters
+        states: Counter[object] = Counter(
+            (labels.get(node, node), state) for node in about for state in self.states.get(node, ())
+        )
+        edges = {edge for node in about for edge in self.edges.get(node, ())}
+        relations: Counter[object] = Counter(
+            (edge.relation, self._label(edge.source, labels), self._label(edge.target, labels)) for edge in edges
+        )
+        return states, relations
+
+    def profile(self, node: int | None) -> Counter[object]:
+        """The tuples about one node, every other end that is not fixed written as its class."""
+        if node is None:
+            return Counter()
+        labels: dict[int, Label] = {node: "self"}
+        found: Counter[object] = Counter(self.states[node])
+        found.update((e.relation, self._label(e.source, labels), self._label(e.target, labels)) for e in self.edges[node])
+        return found
+
+    def _label(self, node: int, labels: Mapping[int, Label]) -> Label:
+        found = labels.get(node)
+        if found is not None:
+            return found
+        return node if node in self.fixed else self.classes.get(node, "?")
+
+
+def _groups(predicted: View, reference: View, ours: Set[int], theirs: Set[int]) -> list[_Group]:
+    classes = {predicted.nodes.classes[i] for i in ours} | {reference.nodes.classes[i] for i in theirs}
+    return [
+        _Group(
+            predicted.nodes.instances.get(name, ()),
+            reference.nodes.instances.get(name, ()),
+            tuple(sorted(i for i in ours if predicted.nodes.classes[i] == name)),
+            tuple(sorted(i for i in theirs if reference.nodes.classes[i] == name)),
+        )
+        for name in sorted(classes)
+    ]
+
+
+def _choices(candidates: Sequence[int], number: int) -> Iterator[tuple[int | None, ...]]:
+    """Every way to choose so many, in order; None stands in where there are too few."""
+    padded: list[int | None] = [*candidates, *[None] * (number - len(candidates))]
+    return permutations(padded, number)
+
+
+def _match(ours: Counter[object], theirs: Counter[object]) -> Match:
+    both = sum(min(count, theirs[item]) for item, count in ours.items() if item in theirs)
+    return Match(both, ours.total(), theirs.total())

@@ -1,0 +1,53 @@
+"""Precision, recall and F1 from counts, with the empty cases said (thesis A.3)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Prf(NamedTuple):
+    """Precision, recall and their harmonic mean, each from 0 to 1."""
+
+    precision: float
+    recall: float
+    f1: float
+
+
+class Match(NamedTuple):
+    """How many tuples were found in both, predicted and in the reference."""
+
+    both: int
+    predicted: int
+    reference: int
+
+    def __add__(self, other: object) -> Match:
+        if not isinstance(other, Match):
+            return NotImplemented
+        return Match(self.both + other.both, self.predicted + other.predicted, self.reference + other.reference)
+
+    def prf(self) -> Prf:
+        """Two empty sets agree: all 1. Of an empty and a filled one, or when nothing matches: all 0."""
+        if not self.predicted and not self.reference:
+            return Prf(1.0, 1.0, 1.0)
+        if not self.both:
+            return NOTHING
+        f1 = 2 * self.both / (self.predicted + self.reference)  # 2PR / (P + R), rounded once
+        return Prf(self.both / self.predicted, self.both / self.reference, f1)
+
+
+NOTHING = Prf(0.0, 0.0, 0.0)
+
+
+class Matches(NamedTuple):
+    """Matches of state tuples and of relation tuples."""
+
+    states: Match
+    relations: Match
+
+    def rank(self) -> tuple[float, float]:
+        """By this the best of several assignments is chosen: F1 over both, then the sum of the two."""
+        return ((self.states + self.relations).prf().f1, self.states.prf().f1 + self.relations.prf().f1)
+
+    def published_rank(self) -> float:
+        """By this the published scorer chooses: the sum of the three F1."""
+        return sum(self.rank())
