@@ -1,0 +1,51 @@
+"""One build at a time in a folder."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+_HELD: set[Path] = set()
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold a folder for this process; may be entered again by the process that holds it.
+
+    Raises:
+        HearthError: CONFLICT, naming the process that builds there now.
+    """
+    key = folder.resolve()
+    if key in _HELD:
+        yield
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("a+") as file:
+        _take(file.fileno(), folder)
+        file.truncate(0)
+        file.write(f"{os.getpid()}\n")
+        file.flush()
+        _HELD.add(key)
+        try:
+            yield
+        finally:
+            _HELD.discard(key)
+
+
+def _take(descriptor: int, folder: Path) -> None:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        holder = (folder / ".lock").read_text().strip() or "?"
+        raise HearthError.of(
+            Code.CONFLICT,
+            f"process {holder} is building here",
+            file=str(folder),
+            suggestion="wait until it has ended, or choose another folder with --out",
+        ) from None

@@ -1,0 +1,229 @@
+"""Crowd-sourcing batches: CSV of both stages (thesis 3.3), worker ids replaced by salted hashes."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.pipelines.readers.item import LARGEST_FILE, Item, fault_of, lines, refused
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.syntax import normal_name
+
+NAME = "crowd"
+
+SHARED = ("HITId", "WorkerId", "AssignmentStatus")
+DESCRIPTIONS = (*SHARED, "Input.scene", "Answer.title", "Answer.description")
+PROGRAMS = (
+    *SHARED,
+    "Input.description_id",
+    "Input.title",
+    "Input.description",
+    "Answer.rooms",
+    "Answer.props",
+    "Answer.program",
+)
+
+LONGEST_RECORD = 2_000
+"""Lines that one answer may have. Beyond it a quote was never closed, and reading goes on after the line it stood in."""
+
+_ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
+_LOOK_AHEAD = 200
+_DELIMITERS = ",;\t"
+_QUANTITY = re.compile(r"\s*<?([^*<>]+?)>?\s*(?:\*\s*(\d{1,6}))?\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A batch's first line: its columns, what parts them, which stage it is and which columns it lacks."""
+
+    columns: tuple[str, ...]
+    delimiter: str
+    stage: int
+    missing: tuple[str, ...]
+
+
+def header_of(line: str) -> Header | None:
+    """Read a first line; None when it is not that of a batch."""
+    delimiter = max(_DELIMITERS, key=line.count)
+    columns = tuple(cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), []))
+    names = set(columns)
+    lacking = [(len(set(wanted) - names), stage) for stage, wanted in ((1, DESCRIPTIONS), (2, PROGRAMS))]
+    _, stage = min(lacking)
+    wanted = DESCRIPTIONS if stage == 1 else PROGRAMS
+    telling = names & {name for name in wanted if name.startswith(("Input.", "Answer."))}
+    if not telling:
+        return None
+    return Header(columns, delimiter, stage, tuple(name for name in wanted if name not in names))
+
+
+def scan(path: Path, place: str) -> Iterator[Item]:
+    """One item for each answer of a batch."""
+    rows = _Rows(path)
+    first = next(rows, None)
+    header = header_of(first[1]) if first else None
+    if header is None:
+        fault = Reject.of(Code.BAD_TABLE, "no batch: its first line names none of the columns", file=place, line=1)
+        yield refused(place, fault)
+    elif header.missing:
+        columns = ", ".join(f"`{name}`" for name in header.missing)
+        message = f"the table lacks the column{'s' * (len(header.missing) > 1)} {columns}"
+        found = ", ".join(header.columns)
+        suggestion = f"a batch of stage {header.stage} has them; download it again, unchanged"
+        yield refused(place, Reject.of(Code.BAD_TABLE, message, file=place, line=1, found=found, suggestion=suggestion))
+    else:
+        yield from _answers(rows, header, place)
+
+
+def _answers(rows: _Rows, header: Header, place: str) -> Iterator[Item]:
+    for line, raw, cells in rows.parsed(header):
+        where = f"{place}:{line}"
+        fault = _row_fault(line, raw, cells, header, place)
+        if fault:
+            yield refused(where, Reject((fault,)))
+        elif cells:
+            values = dict(zip(header.columns, cells, strict=False))
+            record_id = f"{NAME}:{values['HITId'].strip() or where}"
+            yield Item(record_id, NAME, where, {"stage": header.stage, "line": line, "cells": values})
+
+
+def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, place: str) -> Diagnostic | None:
+    if cells is None:
+        message = "cells that can't be told apart: a quote that is never closed, or too many cells"
+        suggestion = "quote cells that hold separators or line breaks, and double the quotes inside"
+        return Diagnostic(Code.BAD_TABLE, message, place, line, found=raw[:60], suggestion=suggestion)
+    if len(cells) != len(header.columns) and cells:
+        message = f"{len(cells)} cells where the table has {len(header.columns)} columns"
+        suggestion = "quote cells that hold separators or line breaks"
+        return Diagnostic(Code.BAD_TABLE, message, place, line, found=raw[:60], suggestion=suggestion)
+    return fault_of(raw, place, line)
+
+
+class _Rows(Iterator[tuple[int, str]]):
+    """A file's lines with their numbers, some of which can be read again."""
+
+    def __init__(self, path: Path) -> None:
+        self._source = enumerate((line for line, _ in lines(path)), 1)
+        self._again: list[tuple[int, str]] = []
+
+    def __next__(self) -> tuple[int, str]:
+        return self._again.pop() if self._again else next(self._source)
+
+    def parsed(self, header: Header) -> Iterator[tuple[int, str, list[str] | None]]:
+        """Each record: its first line's number, its text and its cells; None for cells that can't be told apart."""
+        for number, line in self:
+            taken = self._record(number, line, header)
+            text = "\n".join(piece for _, piece in taken)
+            cells = _cells(text, header) if _even(taken) or len(taken) == 1 else None
+            if len(taken) > 1 and (cells is None or len(cells) != len(header.columns)):
+                # A quote left open swallows the records after it: give back from where one is whole again.
+                keep = next((k for k in range(1, len(taken)) if _whole(taken[k:], header)), len(taken))
+                self._again.extend(reversed(taken[keep:]))
+                text = "\n".join(piece for _, piece in taken[:keep])
+                cells = None
+            yield number, text, cells
+
+    def _record(self, number: int, line: str, header: Header) -> list[tuple[int, str]]:
+        """The lines of the record that begins here, as far as quotes tell."""
+        taken = [(number, line)]
+        odd = line.count('"') % 2 == 1
+        if odd and _whole(taken, header):
+            return taken
+        while odd and len(taken) < LONGEST_RECORD and (more := next(self, None)):
+            taken.append(more)
+            odd ^= more[1].count('"') % 2 == 1
+        return taken
+
+
+def _even(taken: list[tuple[int, str]]) -> bool:
+    return sum(piece.count('"') for _, piece in taken) % 2 == 0
+
+
+def _whole(taken: list[tuple[int, str]], header: Header) -> bool:
+    """Whether these lines begin with a record of the right number of cells."""
+    text = ""
+    for _, piece in taken[:_LOOK_AHEAD]:
+        text += piece
+        try:
+            return len(_cells(text, header, strict=True)) == len(header.columns)
+        except csv.Error:
+            text += "\n"
+    return False
+
+
+def _cells(text: str, header: Header, strict: bool = False) -> list[str]:
+    csv.field_size_limit(LARGEST_FILE)
+    return next(csv.reader(io.StringIO(text, newline=""), delimiter=header.delimiter, strict=strict), [])
+
+
+def read(item: Item, salt: str) -> dict[str, Any] | Reject:
+    """The record of an answer, or why it is not used."""
+    cells = item.value["cells"]
+    status = cells["AssignmentStatus"].strip()
+    if status.lower() not in _ACCEPTED:
+        return Reject.of(Code.REJECTED_ANSWER, f"the assignment is {status}", file=item.place, found=status)
+    return _description(item, cells, salt) if item.value["stage"] == 1 else _program(item, cells, salt)
+
+
+def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | Reject:
+    empty = [name for name in ("Answer.title", "Answer.description") if not cells[name].strip()]
+    if empty:
+        return _empty(item, empty)
+    return {
+        **_common(item, cells, salt),
+        "kind": "description",
+        "program_id": item.record_id,
+        "description_id": item.record_id,
+        "title": cells["Answer.title"].strip(),
+        "description": cells["Answer.description"].strip(),
+        "scene": normal_name(cells["Input.scene"]),
+    }
+
+
+def _program(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | Reject:
+    if not cells["Answer.program"].strip():
+        return _empty(item, ["Answer.program"])
+    text = cells["Answer.program"]
+    described = cells["Input.description_id"].strip()
+    return {
+        **_common(item, cells, salt),
+        "kind": "program",
+        "program_id": item.record_id,
+        "description_id": f"{NAME}:{described}" if described else item.record_id,
+        "title": cells["Input.title"].strip(),
+        "description": cells["Input.description"].strip(),
+        "rooms": _quantities(cells["Answer.rooms"]),
+        "props": _quantities(cells["Answer.props"]),
+        "text": text if text.endswith("\n") else text + "\n",
+        "line": item.value["line"] - 1,
+    }
+
+
+def _common(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]:
+    worker = cells["WorkerId"].strip()
+    return {
+        "origin": NAME,
+        "place": item.place.rsplit(":", 1)[0],
+        "worker": hashlib.blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest() if worker else None,
+        "platform": next((cells[name].strip() for name in ("Platform", "platform") if cells.get(name)), None),
+    }
+
+
+def _empty(item: Item, columns: list[str]) -> Reject:
+    return Reject.of(Code.EMPTY, f"an empty answer: {', '.join(columns)}", file=item.place)
+
+
+def _quantities(text: str) -> list[dict[str, Any]]:
+    found = []
+    for piece in re.split(r"[,;\n]", text):
+        match = _QUANTITY.fullmatch(piece)
+        if match:
+            found.append({"name": normal_name(match[1]), "quantity": int(match[2] or 1)})
+    return found

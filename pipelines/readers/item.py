@@ -1,0 +1,107 @@
+"""What readers share: items found while scanning, text read without trusting it, and safe archive members."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
+
+LONGEST_LINE = 1_000_000
+"""Characters kept of a line while reading; what is longer is refused, and its length still told."""
+
+LARGEST_FILE = 256_000_000
+"""Bytes a member of an archive may unpack to."""
+
+_MARKS = ((b"\xff\xfe", "utf-16-le", 2), (b"\xfe\xff", "utf-16-be", 2), (b"\xef\xbb\xbf", "utf-8", 3))
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One record as found while scanning: what is needed to read it, in plain values.
+
+    Attributes:
+        record_id: stable, unique within a build.
+        reader: the name of the reader that found it and will read it.
+        place: source, file inside it, and line.
+        value: what the reader needs; JSON values only.
+        version: changes when the content behind `value` does.
+    """
+
+    record_id: str
+    reader: str
+    place: str
+    value: Any
+    version: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A file or folder to read: its path, and the label it goes by in places, ids and manifests."""
+
+    label: str
+    path: Path
+
+
+def refused(place: str, reject: Reject) -> Item:
+    """An item of which only the fault is known."""
+    faults = [[str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics]
+    return Item(place, "refused", place, faults)
+
+
+def read_refused(item: Item) -> Reject:
+    """The reject of an item made by `refused`."""
+    return Reject(
+        tuple(
+            Diagnostic(Code(code), message, file, line, column, len(found), found, suggestion)
+            for code, message, file, line, column, found, suggestion in item.value
+        )
+    )
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[tuple[BinaryIO, str]]:
+    """A file's bytes after its byte-order mark, and the encoding that the mark names (else UTF-8)."""
+    with path.open("rb") as file:
+        start = file.read(4)
+        encoding, skip = next(((name, size) for mark, name, size in _MARKS if start.startswith(mark)), ("utf-8", 0))
+        file.seek(skip)
+        yield file, encoding
+
+
+def lines(path: Path) -> Iterator[tuple[str, int]]:
+    """Each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
+
+    Bytes that are no text become lone surrogates, which `fault_of` finds; no line is lost for the sake of another.
+    """
+    import io
+
+    with opened(path) as (file, encoding):
+        text = io.TextIOWrapper(file, encoding, errors="surrogateescape" if encoding == "utf-8" else "replace")
+        while piece := text.readline(LONGEST_LINE + 1):
+            length = len(piece)
+            kept, ended = piece, piece.endswith("\n")
+            while not ended and (more := text.readline(LONGEST_LINE)):
+                length += len(more)
+                ended = more.endswith("\n")
+            yield kept.rstrip("\n")[:LONGEST_LINE], length - ended
+
+
+_NOT_TEXT = re.compile(r"[\x00\ud800-\udfff]")
+
+
+def fault_of(text: str, place: str, line: int) -> Diagnostic | None:
+    """Why a piece of a file is not text; `line` is that of its first line."""
+    bad = _NOT_TEXT.search(text)
+    if bad is None:
+        return None
+    at = line + text.count("\n", 0, bad.start())
+    column = bad.start() - text.rfind("\n", 0, bad.start())
+    message = "a NUL character" if bad[0] == "\x00" else "bytes that are not UTF-8 text"
+    return Diagnostic(Code.NOT_TEXT, message, place, at, column, 1, suggestion="save the file as UTF-8 text")

@@ -1,0 +1,264 @@
+"""The ActivityPrograms release, as a zip or a folder in its own layout, any of its folders missing."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.pipelines.files import walk
+from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
+from hearth.pipelines.readers.text import header
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import edge_set, from_release
+from hearth.schemas.text import decode
+
+NAME = "release"
+
+FOLDERS: dict[str, str] = {
+    "withoutconds": "collected",
+    "initstate": "conditions",
+    "executable_programs": "grounded",
+    "init_and_final_graphs": "graphs",
+    "init_and_final_graph": "graphs",
+    "state_list": "states",
+}
+"""The release's folders, and what they hold."""
+
+_IN_HOMES = frozenset({"grounded", "graphs", "states"})
+_HOME = re.compile(r"(.*?)(_graph)?")
+
+
+def names_it(path: str) -> bool:
+    """Whether a path inside an archive or folder belongs to the release's layout."""
+    return _located(path) is not None
+
+
+def _located(path: str) -> tuple[str, str, str] | None:
+    """What a file holds, in which home, for which program (`batch/file`)."""
+    parts = path.split("/")
+    for number, part in enumerate(parts[:-1]):
+        kind = FOLDERS.get(part)
+        if kind:
+            inside = parts[number + 1 :]
+            home = inside.pop(0) if kind in _IN_HOMES and len(inside) > 1 else ""
+            stem, dot, suffix = "/".join(inside).rpartition(".")
+            if not dot or suffix not in ("txt", "json"):
+                return None
+            match = _HOME.fullmatch(home)
+            return kind, match[1] if match else home, stem
+    return None
+
+
+def scan(path: Path, place: str) -> Iterator[Item]:
+    """One item for each program that any of the folders names, in the order of their names.
+
+    Raises:
+        HearthError: the archive is damaged, or holds none of the folders.
+    """
+    programs: dict[str, dict[str, Any]] = {}
+    versions: dict[str, str] = {}
+    for name, version in _listing(path):
+        located = _located(name)
+        if located is None or located[0] == "states":
+            continue
+        kind, home, key = located
+        members = programs.setdefault(key, {})
+        if kind in _IN_HOMES:
+            members.setdefault(kind, {})[home] = name
+        else:
+            members[kind] = name
+        versions[key] = f"{versions.get(key, '')}{version} "
+    if not programs:
+        suggestion = f"it needs one of the folders {', '.join(sorted(FOLDERS))}"
+        raise HearthError.of(Code.BAD_ARCHIVE, "no release: no programs in it", file=place, suggestion=suggestion)
+    for key in sorted(programs):
+        yield _item(path, place, key, programs[key], versions[key])
+
+
+def _item(path: Path, place: str, key: str, members: dict[str, Any], version: str) -> Item:
+    where = f"{place}/{key}"
+    if "collected" not in members and "grounded" not in members:
+        have = " and ".join(sorted(members))
+        fault = Diagnostic(Code.MISSING_FILE, f"{have} of a program that is in no other folder", where)
+        return Item(f"{NAME}:{key}", "refused", where, refused(where, Reject((fault,))).value)
+    return Item(f"{NAME}:{key}", NAME, where, {"path": str(path), "label": place, "key": key, **members}, version)
+
+
+def _listing(path: Path) -> Iterable[tuple[str, str]]:
+    """Names of files, and what tells versions of them apart."""
+    if path.is_dir():
+        for file in walk(path):
+            stat = file.stat()
+            yield f"{path.name}/{file.relative_to(path).as_posix()}", f"{stat.st_size}.{stat.st_mtime_ns}"
+    else:
+        for info in archive(path).infolist():
+            if not info.is_dir():
+                yield info.filename, f"{info.CRC:08x}"
+
+
+@lru_cache(maxsize=4)
+def _archive(path: str, changed: int) -> zipfile.ZipFile:
+    try:
+        return zipfile.ZipFile(path)
+    except (zipfile.BadZipFile, EOFError, NotImplementedError) as error:
+        raise HearthError.of(
+            Code.BAD_ARCHIVE, f"a damaged or truncated archive: {error}", file=path, suggestion="download it again"
+        ) from error
+
+
+def archive(path: Path) -> zipfile.ZipFile:
+    """The archive at a path, open once a process.
+
+    Raises:
+        HearthError: BAD_ARCHIVE.
+    """
+    return _archive(str(path), path.stat().st_mtime_ns)
+
+
+def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
+    """A member's bytes, or why they can't be had."""
+    path = Path(value["path"])
+    place = f"{value['label']}/{name}"
+    try:
+        if path.is_dir():
+            return (path / name.split("/", 1)[1]).read_bytes()
+        info = archive(path).getinfo(name)
+        if info.file_size > LARGEST_FILE:
+            message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"
+            return Diagnostic(Code.BAD_ARCHIVE, message, place)
+        return archive(path).read(info)
+    except (OSError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError, ValueError) as error:
+        return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
+    except Exception as error:  # zlib, lzma and bz2 have errors of their own
+        return Diagnostic(Code.BAD_ARCHIVE, f"damaged: {error}", place, suggestion="download it again")
+
+
+def _text(value: dict[str, Any], name: str) -> str | Diagnostic:
+    data = _bytes(value, name)
+    return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
+
+
+def _json(value: dict[str, Any], name: str) -> Any:
+    data = _bytes(value, name)
+    if isinstance(data, Diagnostic):
+        return data
+    try:
+        return orjson.loads(data)
+    except orjson.JSONDecodeError as error:
+        return Diagnostic(Code.BAD_JSON, f"not JSON: {error}", f"{value['label']}/{name}", error.lineno, error.colno)
+
+
+def read(item: Item) -> Iterator[dict[str, Any] | Reject]:
+    """The record of a program with all its groundings. A grounding that can't be read is refused alone."""
+    value = item.value
+    groundings: list[dict[str, Any]] = []
+    faults: list[Diagnostic] = []
+    for home in sorted({*value.get("grounded", {}), *value.get("graphs", {})}):
+        grounding = _grounding(value, home)
+        if isinstance(grounding, Diagnostic):
+            faults.append(grounding)
+        elif grounding:
+            groundings.append(grounding)
+    text = _collected(value, groundings)
+    conditions = _conditions(value)
+    faults.extend(fault for fault in (text, conditions) if isinstance(fault, Diagnostic))
+    if isinstance(text, str):
+        yield _row(item, text, groundings, conditions if isinstance(conditions, list) else [])
+    yield from (Reject((fault,)) for fault in faults)
+
+
+def _row(item: Item, text: str, groundings: list[dict[str, Any]], conditions: list[Any]) -> dict[str, Any]:
+    title, description = header(text)
+    value = item.value
+    place = value.get("collected") or value["grounded"][min(value["grounded"])]
+    return {
+        "kind": "program",
+        "program_id": item.record_id,
+        "origin": NAME,
+        "place": f"{value['label']}/{place}",
+        "description_id": f"{NAME}:{value['key'].rpartition('_')[0] or value['key']}",
+        "title": title,
+        "description": description,
+        "text": text,
+        "line": 0,
+        "groundings": groundings,
+        "conditions": conditions,
+    }
+
+
+def _collected(value: dict[str, Any], groundings: list[dict[str, Any]]) -> str | Diagnostic:
+    """The text as collected, or failing that the first grounded one with its node ids left out."""
+    if "collected" in value:
+        return _text(value, value["collected"])
+    if groundings:
+        return re.sub(r"\((\d+)\.\d+\)", r"(\1)", groundings[0]["text"])
+    return Diagnostic(Code.MISSING_FILE, "no text of it can be read", f"{value['label']}/{value['key']}")
+
+
+def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic | None:
+    name = value.get("grounded", {}).get(home)
+    if name is None:
+        place = f"{value['label']}/{value['graphs'][home]}"
+        return Diagnostic(Code.MISSING_FILE, f"graphs for {home}, but no program grounded there", place)
+    text = _text(value, name)
+    if isinstance(text, Diagnostic):
+        return text
+    start, final = None, None
+    if home in value.get("graphs", {}):
+        graphs = _graphs(value, value["graphs"][home])
+        if isinstance(graphs, Diagnostic):
+            return graphs
+        start, final = graphs
+    return {"home": home, "text": text, "start": start, "final": final}
+
+
+def _graphs(value: dict[str, Any], name: str) -> tuple[Any, Any] | Diagnostic:
+    data = _json(value, name)
+    place = f"{value['label']}/{name}"
+    if isinstance(data, Diagnostic):
+        return data
+    try:
+        start = from_release(data["init_graph"], place)
+        final = from_release(data["final_graph"], place) if data.get("final_graph") else None
+    except HearthError as error:
+        return error.diagnostics[0]
+    except (KeyError, TypeError, AttributeError) as error:
+        return Diagnostic(Code.BAD_GRAPH, f"no pair of graphs: {type(error).__name__} {error}", place)
+    return graph_row(start), final and change_row(start, final)
+
+
+def graph_row(graph: Any) -> dict[str, Any]:
+    """A graph as `tables.GRAPH`."""
+    edges = sorted(edge_set(graph.edges))
+    return {
+        "nodes": [node_row(node) for node in graph.nodes],
+        "sources": [source for source, _, _ in edges],
+        "relations": [relation for _, relation, _ in edges],
+        "targets": [target for _, _, target in edges],
+    }
+
+
+def _conditions(value: dict[str, Any]) -> list[dict[str, Any]] | Diagnostic:
+    if "conditions" not in value:
+        return []
+    data = _json(value, value["conditions"])
+    if isinstance(data, Diagnostic):
+        return data
+    try:
+        return [_condition(name, objects) for entry in data for name, objects in entry.items()]
+    except (AttributeError, TypeError, ValueError, IndexError, KeyError) as error:
+        message = f"no list of preconditions: {error}"
+        return Diagnostic(Code.BAD_JSON, message, f"{value['label']}/{value['conditions']}")
+
+
+def _condition(name: str, objects: list[Any]) -> dict[str, Any]:
+    pairs = objects if objects and isinstance(objects[0], list) else [objects]
+    return {"name": name, "objects": [{"name": str(o[0]).lower(), "instance": int(o[1])} for o in pairs]}

@@ -1,0 +1,114 @@
+"""Plain program text: a title, a description, then one step a line; several programs a file, files in folders."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hearth.pipelines.readers.item import LONGEST_LINE, Item, fault_of, lines, refused
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.failures import Code
+from hearth.schemas.syntax import MAX_LINE
+
+NAME = "text"
+
+_STEP = re.compile(r"\s*[\[<(|]")
+
+
+@dataclass(slots=True)
+class _Block:
+    first: int
+    lines: list[str] = field(default_factory=list)
+    has_steps: bool = False
+    longest: int = 0
+
+
+def scan(path: Path, place: str) -> Iterator[Item]:
+    """One item for each program of a file.
+
+    A plain line after a blank one, once steps were seen, begins the next program.
+    """
+    found = False
+    for number, block in enumerate(_blocks(path), 1):
+        found = True
+        record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}#{number}"
+        yield _item(block, record_id, place)
+    if not found:
+        reason = "nothing to read" if path.stat().st_size else "an empty file"
+        suggestion = "write a title, a blank line, then one [Step] a line"
+        yield refused(place, Reject.of(Code.EMPTY, reason, file=place, suggestion=suggestion))
+
+
+def _item(block: _Block, record_id: str, place: str) -> Item:
+    text = "\n".join(block.lines)
+    fault = fault_of(text, place, block.first)
+    if fault:
+        return _named(refused(place, Reject((fault,))), record_id)
+    if block.longest > MAX_LINE:
+        long = next(number for number, line in enumerate(block.lines) if len(line) > MAX_LINE)
+        reject = Reject.of(
+            Code.LINE_TOO_LONG,
+            f"a line of {block.longest:,} characters",
+            file=place,
+            line=block.first + long,
+            found=block.lines[long][:60],
+            suggestion=f"at most {MAX_LINE:,}",
+        )
+        return _named(refused(place, reject), record_id)
+    return Item(record_id, NAME, place, {"text": text + "\n", "line": block.first - 1})
+
+
+def _named(item: Item, record_id: str) -> Item:
+    return Item(record_id, item.reader, item.place, item.value)
+
+
+def _blocks(path: Path) -> Iterator[_Block]:
+    block: _Block | None = None
+    blank = False
+    for number, (line, length) in enumerate(lines(path), 1):
+        if not line.strip():
+            blank = True
+            if block:
+                block.lines.append("")
+            continue
+        is_step = length > MAX_LINE or _STEP.match(line) is not None
+        if block is None or (block.has_steps and blank and not is_step):
+            if block:
+                yield block
+            block = _Block(number)
+        block.lines.append(line[:LONGEST_LINE])
+        block.has_steps |= is_step
+        block.longest = max(block.longest, length)
+        blank = False
+    if block:
+        yield block
+
+
+def header(text: str) -> tuple[str, str]:
+    """Title and description of a program's text: the lines before its first step."""
+    found: list[str] = []
+    for line in text.split("\n"):
+        if _STEP.match(line):
+            break
+        if line.strip():
+            found.append(line.strip())
+    return (found[0] if found else "", "\n".join(found[1:]))
+
+
+def read(item: Item) -> dict[str, Any]:
+    """The record of an item."""
+    title, description = header(item.value["text"])
+    return {
+        "kind": "program",
+        "program_id": item.record_id,
+        "origin": NAME,
+        "place": item.place,
+        "description_id": item.record_id,
+        "title": title,
+        "description": description,
+        "text": item.value["text"],
+        "line": item.value["line"],
+    }

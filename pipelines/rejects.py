@@ -1,0 +1,84 @@
+"""What a stage refuses, and why: the other half of every ledger."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code, Failure
+
+INTERNAL_ERROR = "INTERNAL_ERROR"
+"""The code of a record that made a stage's own code fail: a fault of ours, not of the record."""
+
+_LONGEST = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """A record, or a part of one, that does not go on.
+
+    Attributes:
+        diagnostics: every fault, the one it counts under first.
+        internal: the fault is ours: an exception that no stage expected.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    internal: bool = False
+
+    @classmethod
+    def of(
+        cls, code: Code, message: str, *, file: str = "", line: int = 0, found: str = "", suggestion: str = ""
+    ) -> Reject:
+        """A reject for one fault."""
+        return cls((Diagnostic(code, message, file, line, found=found, suggestion=suggestion),))
+
+    @classmethod
+    def because(cls, faults: Iterable[Diagnostic], file: str = "") -> Reject:
+        """A reject for several faults; `file` is put where they name none."""
+        return cls(tuple(fault if fault.file or not file else fault.at(file) for fault in faults))
+
+    @classmethod
+    def failed(cls, failure: Failure, file: str = "", line: int = 0) -> Reject:
+        """A reject for a failure of the engine or of grounding."""
+        found = " ".join(failure.names)
+        return cls((Diagnostic(failure.code, failure.message(), file, line, found=found),))
+
+    @classmethod
+    def caused(cls, error: Exception, file: str = "") -> Reject:
+        """A reject for an exception: a `HearthError` keeps its faults; anything else is ours, and says where it arose."""
+        if isinstance(error, HearthError):
+            return cls.because(error.diagnostics, file)
+        frames = traceback.extract_tb(error.__traceback__)
+        where = f"{PurePath(frames[-1].filename).name}:{frames[-1].lineno}" if frames else "?"
+        message = f"{type(error).__name__} at {where}: {error}"[:_LONGEST]
+        fault = Diagnostic(Code.SYNTAX, message, file, suggestion="this is a fault of Hearth; please report it")
+        return cls((fault,), internal=True)
+
+    @property
+    def code(self) -> str:
+        """What it counts under."""
+        return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
+
+    def rows(self, stage: str, record_id: str, partition: int, partial: bool) -> list[dict[str, Any]]:
+        """One row of the rejects table for each fault."""
+        return [
+            {
+                "stage": stage,
+                "record_id": record_id,
+                "code": self.code if self.internal else str(fault.code),
+                "file": fault.file,
+                "line": fault.line,
+                "column": fault.column,
+                "found": fault.found[:_LONGEST],
+                "message": fault.message[:_LONGEST],
+                "suggestion": fault.suggestion,
+                "partial": partial,
+                "fault": number,
+                "partition": partition,
+            }
+            for number, fault in enumerate(self.diagnostics)
+        ]

@@ -1,0 +1,49 @@
+"""What a build was asked to do."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The options of a build; a stage names those that decide its output.
+
+    Attributes:
+        sources: files and folders to read, in order.
+        out: the folder that gets one folder a stage.
+        seed: of everything random.
+        limit: at most so many records are read; None for all.
+        homes: names of the homes to sample in, or empty for every home of the catalog.
+        homes_folder: the user's own homes, laid over ours.
+        kb_folder: the user's own knowledge, laid over ours.
+        salt: hashed with worker ids; by default derived from the sources, so that it is never published.
+        probability: of perturbing each precondition (thesis 5.5.4).
+        variants: perturbed environments to make for each execution, at most.
+        tries: repairs of one program, at most.
+        pictures: how many executions to film.
+    """
+
+    sources: tuple[str, ...] = ()
+    out: str = "data_out"
+    seed: int = 0
+    limit: int | None = None
+    homes: tuple[str, ...] = ()
+    homes_folder: str | None = None
+    kb_folder: str | None = None
+    salt: str | None = None
+    probability: float = 0.7
+    variants: int = 3
+    tries: int = 20
+    pictures: int = 3
+
+    def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
+        """The named options, as they stand in a manifest."""
+        values = asdict(self)
+        return {name: values[name] for name in names}
+
+    def folder(self, stage: str) -> Path:
+        """Where a stage writes."""
+        return Path(self.out) / stage

@@ -1,0 +1,229 @@
+"""The loop that all stages share: read, process, count, reject, write, resume.
+
+A stage's author writes `process(record, context)`: one record in; rows out, or a `Reject` with code and place. The base
+owns the rest. Every record read ends in rows or in rejects, and an exception costs only its own record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from hearth.pipelines.files import code_digest, value_digest
+from hearth.pipelines.parts import Counts, PartWriter, Row, read_rows
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.settings import Settings
+
+Record = dict[str, Any]
+Plan = dict[str, Any]
+Output = Row | Reject | tuple[str, Row]
+
+BATCH = 64
+"""Records whose rows are turned into Arrow together."""
+
+_EVERY_STAGE = ("schemas", "version.py", "pipelines/stage.py", "pipelines/parts.py", "pipelines/rejects.py")
+
+
+@dataclass(frozen=True, slots=True)
+class Partition:
+    """A share of a stage's input that is processed and written as one.
+
+    Attributes:
+        number: its place, from 0.
+        digest: of its input's content.
+        payload: what `Stage.records` needs to read it; small and picklable.
+        size: how many records, if known.
+    """
+
+    number: int
+    digest: str
+    payload: Any
+    size: int | None = None
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of the pipeline, in the words of its author.
+
+    Attributes:
+        name: also the name of its folder and command.
+        tables: columns by table; a stage with one table calls it "".
+        process: one record to its rows (`(table, row)` where there are several tables) or its reject. Rejects among
+            rows refuse a part of a record.
+        reads: the stages whose rows are its records, in order.
+        uses: packages and modules whose code and data decide its output.
+        settings: names of the options that decide its output.
+        open: makes the context given to `process`, once a process.
+        prepare: looks at all of the input once, before any record; its result is part of what was asked.
+        partitions: shares of the input; by default the parts of the stages it reads.
+        records: the records of a partition; by default the rows of its part.
+        select: which rows of the input are records at all.
+        identify: the id of a record.
+        columns: columns of the input to read; None for all.
+        tally: a label under which a row is counted, or None.
+        finish: writes what needs all partitions, before the manifest.
+    """
+
+    name: str
+    tables: Mapping[str, pa.Schema]
+    process: Callable[[Record, Any], Iterable[Output] | Reject]
+    reads: tuple[str, ...] = ()
+    uses: tuple[str, ...] = ()
+    settings: tuple[str, ...] = ()
+    open: Callable[[Job], Any] = lambda job: job
+    prepare: Callable[[Settings], Plan] = lambda settings: {}
+    partitions: Callable[[Job], Iterator[Partition]] | None = None
+    records: Callable[[Job, Partition], Iterable[Record]] | None = None
+    select: Callable[[Record, Plan], bool] = lambda record, plan: True
+    identify: Callable[[Record], str] = lambda record: str(record["program_id"])
+    columns: tuple[str, ...] | None = None
+    tally: Callable[[Row], str | None] = lambda row: None
+    finish: Callable[[Job, Counts], None] | None = None
+
+
+@dataclass(frozen=True)
+class Job:
+    """A stage, what was asked of it, and its plan: all that a worker needs to know."""
+
+    stage: Stage
+    settings: Settings
+    plan: Plan = field(default_factory=dict)
+
+    @property
+    def folder(self) -> Path:
+        """Where the stage writes."""
+        return self.settings.folder(self.stage.name)
+
+    @cached_property
+    def context(self) -> Any:
+        """What the stage opened in this process."""
+        return self.stage.open(self)
+
+    @cached_property
+    def key(self) -> str:
+        """Digest of all that decides the output, the input aside."""
+        return value_digest(self.asked())
+
+    def asked(self) -> dict[str, Any]:
+        """Stage, code, options and plan, as they stand in the manifest."""
+        return {
+            "stage": self.stage.name,
+            "code": code_digest((*_EVERY_STAGE, *self.stage.uses)),
+            "settings": self.settings.chosen(self.stage.settings),
+            "plan": self.plan,
+        }
+
+    def part_key(self, partition: Partition) -> str:
+        """Digest of all that decides a partition's bytes."""
+        return value_digest([self.key, partition.number, partition.digest])
+
+
+def run_partition(job: Job, partition: Partition, seen: Callable[[int, int], None]) -> Counts:
+    """Process one partition and write it. `seen(records, rejects)` is told of progress."""
+    stage = job.stage
+    writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
+    try:
+        sink = _Sink(job, partition.number, writer)
+        for record in _records(job, partition):
+            before = sink.counts.rejected
+            sink.take(stage.identify(record), _attempt(stage, record, job.context))
+            seen(1, sink.counts.rejected - before)
+        sink.flush()
+        sink.counts.check(f"{stage.name}, partition {partition.number}")
+        writer.finish(sink.counts)
+    except BaseException:
+        writer.abandon()
+        raise
+    return sink.counts
+
+
+def _records(job: Job, partition: Partition) -> Iterable[Record]:
+    stage = job.stage
+    if stage.records is not None:
+        return stage.records(job, partition)
+    columns = list(stage.columns) if stage.columns is not None else None
+    return (row for row in read_rows(Path(partition.payload), columns) if stage.select(row, job.plan))
+
+
+def _attempt(stage: Stage, record: Record, context: Any) -> list[Output]:
+    """All that a record gives; an exception gives a reject and none of its rows."""
+    try:
+        outputs = stage.process(record, context)
+        return [outputs] if isinstance(outputs, Reject) else list(outputs)
+    except Exception as error:
+        return [Reject.caused(error, str(record.get("place") or ""))]
+
+
+class _Sink:
+    """Counts what records gave and writes it in batches."""
+
+    def __init__(self, job: Job, number: int, writer: PartWriter) -> None:
+        self.stage, self.number, self.writer = job.stage, number, writer
+        self.counts = Counts()
+        self._waiting: list[tuple[str, list[tuple[str, Row]], list[Reject]]] = []
+
+    def take(self, record_id: str, outputs: list[Output]) -> None:
+        """Take all that one record gave."""
+        self.counts.records_in += 1
+        rejects = [output for output in outputs if isinstance(output, Reject)]
+        rows = [
+            output if isinstance(output, tuple) else ("", output)
+            for output in outputs
+            if not isinstance(output, Reject)
+        ]
+        if not outputs:
+            rejects = [Reject.caused(AssertionError("neither rows nor a reject came of this record"))]
+        self._waiting.append((record_id, rows, rejects))
+        if len(self._waiting) >= BATCH:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits. Where a row does not fit its table, only its record is refused."""
+        try:
+            self._write(self._waiting)
+        except (pa.ArrowException, TypeError, ValueError, OverflowError):
+            for one in self._waiting:
+                try:
+                    self._write([one])
+                except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
+                    self._write([(one[0], [], [Reject.caused(error)])])
+        self._waiting.clear()
+
+    def _write(self, records: list[tuple[str, list[tuple[str, Row]], list[Reject]]]) -> None:
+        batches = [
+            (table, self._batch(schema, [row for _, rows, _ in records for to, row in rows if to == table]))
+            for table, schema in self.stage.tables.items()
+        ]
+        for table, batch in batches:
+            if len(batch):
+                self.writer.write(table, batch)
+                self.counts.rows[table] += len(batch)
+        for record_id, rows, rejects in records:
+            self._count(record_id, rows, rejects)
+
+    def _batch(self, schema: pa.Schema, rows: list[Row]) -> pa.RecordBatch:
+        names = frozenset(schema.names)
+        for row in rows:
+            if not row.keys() <= names:
+                raise TypeError(f"columns that the table lacks: {', '.join(sorted(row.keys() - names))}")
+        return pa.RecordBatch.from_pylist(rows, schema)
+
+    def _count(self, record_id: str, rows: list[tuple[str, Row]], rejects: list[Reject]) -> None:
+        counts, partial = self.counts, bool(rows)
+        counts.through += partial
+        counts.rejected += not partial
+        if partial:
+            counts.partial += len(rejects)
+        else:
+            counts.codes[rejects[0].code] += 1
+        for reject in rejects:
+            self.writer.reject(reject.rows(self.stage.name, record_id, self.number, partial))
+        for _, row in rows:
+            label = self.stage.tally(row)
+            if label is not None:
+                counts.tally[label] += 1
