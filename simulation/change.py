@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
 
 if TYPE_CHECKING:
+    from hearth.simulation.home import Home
     from hearth.simulation.world import World
 
 State = tuple[int, str]
@@ -31,20 +35,60 @@ class Change:
 
 
 def between(before: World, after: World) -> Change:
-    """What must be done to `before` to get `after`; both are worlds of one home."""
+    """What must be done to `before` to get `after`.
+
+    Both are worlds of one home, or of homes of which one has the other's nodes and more behind them (see
+    `edit.extended`): new nodes are not told, but their edges and states are. Cost follows what differs, except between
+    homes that do not know of each other.
+
+    Raises:
+        HearthError: BAD_GRAPH, when the homes have other nodes.
+    """
+    ids = before.home.ids
+    extra = 0
+    if before.home is not after.home:
+        ids = _common_ids(before.home, after.home)
+        extra = _home_differences(before.home, after.home)
     added: set[Edge] = set()
     removed: set[Edge] = set()
-    ids = before.home.ids
-    for i, relation, j, came in _edge_changes(before, after):
+    for i, relation, j, came in _edge_changes(before, after, extra):
         (added if came else removed).add(Edge(ids[i], relation, ids[j]))
-    came, went = _state_changes(before, after)
+    if before.home.others is not after.home.others:
+        past, now = before.home.others, after.home.others
+        added.update(Edge(*edge) for edge in now if edge not in past)
+        removed.update(Edge(*edge) for edge in past if edge not in now)
+    came, went = _state_changes(before, after, ids)
     return Change(tuple(sorted(added)), tuple(sorted(removed)), tuple(sorted(came)), tuple(sorted(went)))
 
 
-def _state_changes(before: World, after: World) -> tuple[list[State], list[State]]:
+def _common_ids(one: Home, other: Home) -> list[int]:
+    shorter, longer = sorted((one.ids, other.ids), key=len)
+    if longer[: len(shorter)] != shorter:
+        raise HearthError.of(Code.BAD_GRAPH, "worlds of homes with other nodes cannot be compared")
+    return longer
+
+
+def _home_differences(one: Home, other: Home) -> int:
+    """Nodes whose rows at the start may differ."""
+    for base, derived in ((one, other), (other, one)):
+        touched = 0
+        home = derived
+        while home is not base and home.base is not None:
+            home, more = home.base
+            touched |= more
+        if home is base:
+            return touched
+    differing = -1 << min(len(one), len(other)) & (1 << max(len(one), len(other))) - 1
+    for a, b in zip(one.rows, other.rows, strict=True):
+        for i, (row, now) in enumerate(zip(a, b, strict=False)):
+            if row != now:
+                differing |= 1 << i
+    return differing
+
+
+def _state_changes(before: World, after: World, ids: list[int]) -> tuple[list[State], list[State]]:
     came: list[State] = []
     went: list[State] = []
-    ids = before.home.ids
     for name, old, new in zip(STATES, before.states, after.states, strict=True):
         if old != new:
             came.extend((ids[i], name) for i in indices(new & ~old))
@@ -52,38 +96,51 @@ def _state_changes(before: World, after: World) -> tuple[list[State], list[State
     return came, went
 
 
-def _edge_changes(before: World, after: World) -> Iterator[tuple[int, str, int, bool]]:
-    for old, new in zip(before.agents, after.agents, strict=True):
+def _edge_changes(before: World, after: World, extra: int) -> Iterator[tuple[int, str, int, bool]]:
+    for old, new in zip_longest(before.agents, after.agents):
         if old is not new:
-            past = set(rows.agent_edges(old))
-            now = set(rows.agent_edges(new))
+            past = set(rows.agent_edges(old)) if old else set()
+            now = set(rows.agent_edges(new)) if new else set()
             yield from ((*edge, True) for edge in now - past)
             yield from ((*edge, False) for edge in past - now)
-    if before.moved is not after.moved:
-        for i in _touched(before, after):
+    if extra or before.moved is not after.moved:
+        for i in _touched(before, after) | set(indices(extra)):
             yield from _row_changes(before, after, i)
 
 
 def _touched(before: World, after: World) -> set[int]:
-    """Nodes of which some row may differ."""
+    """Nodes of which some row may differ because something moved."""
     old, new = before.moved, after.moved
     gone = (old.on ^ new.on) | (old.inside ^ new.inside) | (old.close ^ new.close) | (old.facing ^ new.facing)
     keys = {key for key, row in new.extra.items() if old.extra.get(key) != row} | (old.extra.keys() - new.extra.keys())
     return {key >> 3 for key in keys} | set(indices(gone))
 
 
+Reader = Callable[["World", int], int]
+
+_READERS: tuple[tuple[str, Reader, Reader], ...] = (
+    ("ON", rows.on, rows.bears),
+    ("INSIDE", rows.inside, rows.contents),
+    ("CLOSE", rows.close, rows.close),
+    ("FACING", rows.facing, rows.faced),
+)
+
+
 def _row_changes(before: World, after: World, i: int) -> Iterator[tuple[int, str, int, bool]]:
-    for relation, forward, backward in (
-        ("ON", rows.on, rows.bears),
-        ("INSIDE", rows.inside, rows.contents),
-        ("CLOSE", rows.close, rows.close),
-        ("FACING", rows.facing, rows.faced),
-    ):
-        old, new = forward(before, i), forward(after, i)
+    new_here, gone_here = i >= len(before.home), i >= len(after.home)
+    for relation, forward, backward in _READERS:
+        old = 0 if new_here else forward(before, i)
+        new = 0 if gone_here else forward(after, i)
         if old != new:
             yield from ((i, relation, j, True) for j in indices(new & ~old))
             yield from ((i, relation, j, False) for j in indices(old & ~new))
-        old, new = backward(before, i), backward(after, i)
+        old = 0 if new_here else backward(before, i)
+        new = 0 if gone_here else backward(after, i)
         if old != new:
             yield from ((j, relation, i, True) for j in indices(new & ~old))
             yield from ((j, relation, i, False) for j in indices(old & ~new))
+    if before.home is not after.home:
+        old = 0 if new_here else before.home.between[i]
+        new = 0 if gone_here else after.home.between[i]
+        yield from ((i, "BETWEEN", j, True) for j in indices(new & ~old))
+        yield from ((i, "BETWEEN", j, False) for j in indices(old & ~new))

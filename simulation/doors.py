@@ -26,7 +26,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     closed = home.doors & world.states[CLOSED_STATE]
     if start < 0 or start == room or not closed:
         return None
-    reached, frontier = _flood(world, start, home.doors & ~closed)
+    reached, _ = _flood(world, start, home.doors & ~closed)
     if reached >> room & 1:
         return None
     beyond, _ = _flood(world, start, home.doors)

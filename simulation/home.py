@@ -11,9 +11,16 @@ from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, ROOM_CATEGORY, STATE_ID, STATES
 from hearth.simulation.affordance import allowed
 from hearth.simulation.bits import indices
+from hearth.simulation.nodes import with_states
 
 Rows = list[int]
 Raw = tuple[int, str, int]
+
+AGENT_OUT = {"CLOSE": 0, "FACING": 1, "INSIDE": 3, "ON": 5, "HOLDS_RH": 7, "HOLDS_LH": 8}
+"""Where an edge from a character stands in its row of `Home.agent_rows`, which is that of `Agent` without its node."""
+
+AGENT_IN = {"CLOSE": 0, "FACING": 2, "INSIDE": 4, "ON": 6}
+"""Where an edge to a character stands in its row of `Home.agent_rows`."""
 
 
 class Memo(dict[int, int]):
@@ -46,7 +53,11 @@ class Home:
         between: the rooms a door is BETWEEN.
         states: the start's states, one set of nodes for each of `vocabulary.STATES`.
         agents: indices of the characters, in id order.
+        agent_rows: each character's own edges, in the order of `Agent`'s fields.
         others: edges that take no part in the simulation, kept for printing.
+        nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
+        restated: nodes whose states at the start are others than the node says.
+        base: the home this one was derived from, and the nodes whose rows differ from it; None of a home of its own.
     """
 
     def __init__(
@@ -57,7 +68,9 @@ class Home:
         knowledge: Knowledge | None = None,
     ) -> None:
         self.name = name
-        self._nodes = nodes
+        self.nodes: list[Any] = list(nodes)
+        self.restated = 0
+        self.base: tuple[Home, int] | None = None
         self.knowledge = knowledge or default()
         self.others: list[Raw] = []
         self._add_nodes()
@@ -92,7 +105,7 @@ class Home:
         states = [0] * len(STATES)
         agents: list[int] = []
         bit = 1
-        for node in self._nodes:
+        for node in self.nodes:
             node_id, class_name, category, properties, node_states = _fields(node)
             if class_name == CHARACTER_CLASS:
                 agents.append(len(self.ids))
@@ -144,9 +157,50 @@ class Home:
                 table[i] = 0
 
     def node(self, index: int) -> Node:
-        """The node as it was given."""
-        node = self._nodes[index]
-        return node if isinstance(node, Node) else _node(node)
+        """The node as it was given, in the states of the start."""
+        given = self.nodes[index]
+        node = given if isinstance(given, Node) else _node(given)
+        return with_states(node, index, self.states) if self.restated >> index & 1 else node
+
+    def copy(self) -> Home:
+        """A home of equal content whose rows may be written to until somebody else sees it."""
+        new: Home = object.__new__(Home)
+        new.name, new.knowledge, new.states, new.agents = self.name, self.knowledge, self.states, self.agents
+        new.rooms, new.restated, new.base = self.rooms, self.restated, self.base
+        new.others, new.nodes, new.ids, new.classes = self.others, self.nodes[:], self.ids[:], self.classes[:]
+        new.index, new.by_class, new.properties = self.index.copy(), self.by_class.copy(), self.properties.copy()
+        new.on, new.bears, new.inside, new.contents = self.on[:], self.bears[:], self.inside[:], self.contents[:]
+        new.close, new.facing, new.faced, new.between = self.close[:], self.facing[:], self.faced[:], self.between[:]
+        new.agent_rows = self.agent_rows[:]
+        new.reach = Memo(new._reach)
+        new.direct_room = Memo(new._direct_room)
+        return new
+
+    def derive(self, base: Home, touched: int) -> None:
+        """Note where this home comes from, so that what is known of `base` need not be found out again.
+
+        Args:
+            base: its nodes are the first of this home's.
+            touched: the nodes whose rows differ from the base's, new ones included.
+        """
+        self.base = (base, touched)
+
+    @property
+    def rows(self) -> tuple[Rows, ...]:
+        """All tables of rows between things."""
+        return (
+            self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced, self.between,
+        )  # fmt: skip
+
+    @property
+    def tables(self) -> dict[str, tuple[Rows, Rows]]:
+        """The rows of each simulated relation between things, and of its inverse."""
+        return {
+            "ON": (self.on, self.bears),
+            "INSIDE": (self.inside, self.contents),
+            "CLOSE": (self.close, self.close),
+            "FACING": (self.facing, self.faced),
+        }
 
     def able(self, action: str, position: int = 0) -> int:
         """The nodes that an action's argument may be, by the knowledge's requirement for it."""
@@ -244,8 +298,6 @@ def _transposed(rows: Rows) -> Rows:
     columns = [0] * len(rows)
     for i, row in enumerate(rows):
         bit = 1 << i
-        while row:
-            low = row & -row
-            columns[low.bit_length() - 1] |= bit
-            row ^= low
+        for j in indices(row):
+            columns[j] |= bit
     return columns

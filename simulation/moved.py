@@ -53,7 +53,7 @@ def unlink_all(extra: dict[int, int], i: int, kinds: tuple[int, ...]) -> None:
 
 
 def lift(moved: Moved, i: int, room: int) -> Moved:
-    """Take node i out of all it is ON, INSIDE and CLOSE to, in both directions, and put it INSIDE a room (or nowhere)."""
+    """Take node i out of all it is ON, INSIDE and CLOSE to, both ways, and put it INSIDE a room (or nowhere)."""
     bit = 1 << i
     extra = dict(moved.extra)
     unlink_all(extra, i, (ON, BEARS, INSIDE, CONTENTS, CLOSE))
