@@ -17,11 +17,22 @@ from hearth.schemas.failures import Code
 
 EXECUTED_FILES = ("actions.yaml",)
 WRITTEN_FILES = ("actions_written.yaml",)
-OBJECT_FILES = ("objects.csv",)
+OBJECT_FILES = (
+    "objects_clothes.csv",
+    "objects_devices.csv",
+    "objects_food.csv",
+    "objects_furniture.csv",
+    "objects_house.csv",
+    "objects_hygiene.csv",
+    "objects_kitchenware.csv",
+    "objects_paper.csv",
+    "objects_people.csv",
+    "objects_things.csv",
+)
 FILES = frozenset(
     {*EXECUTED_FILES, *WRITTEN_FILES, *OBJECT_FILES}
-    | {"affordances.yaml", "aliases.csv", "derived.yaml", "limits.yaml", "placements.csv", "rooms.yaml"}
-    | {"stand_ins.csv", "states.yaml", "tables.yaml"}
+    | {"affordances.yaml", "aliases.csv", "corrections.yaml", "derived.yaml", "kinds.csv", "limits.yaml"}
+    | {"placements.csv", "repairs.yaml", "rooms.yaml", "stand_ins.csv", "states.yaml", "tables.yaml"}
 )
 """Every file the knowledge is read from; another YAML or CSV file in a directory of it is a mistake."""
 
