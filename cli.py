@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 _ROOT = Path(__file__).resolve().parent
 
@@ -36,11 +36,6 @@ from typer.core import TyperGroup
 
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-
-if TYPE_CHECKING:
-    from click import Command, Context, HelpFormatter
-else:
-    Command = Context = HelpFormatter = Any
 
 
 class Entry(NamedTuple):
@@ -80,7 +75,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
 _ENTRIES = {name: entry for section in COMMANDS.values() for name, entry in section.items()}
 
 
-def load(name: str) -> Command:
+def load(name: str) -> Any:
     """The command of that name; imports its module."""
     import importlib
 
@@ -99,15 +94,15 @@ def load(name: str) -> Command:
 class Commands(TyperGroup):
     """The commands of `COMMANDS`, each loaded when it is called; turns bad input into messages and status 1."""
 
-    def list_commands(self, ctx: Context) -> list[str]:
+    def list_commands(self, ctx: Any) -> list[str]:
         """Every name, in the order of the table."""
         return list(_ENTRIES)
 
-    def get_command(self, ctx: Context, cmd_name: str) -> Command | None:
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of that name, or None."""
         return load(cmd_name) if cmd_name in _ENTRIES else None
 
-    def resolve_command(self, ctx: Context, args: list[str]) -> tuple[str | None, Command | None, list[str]]:
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Find the command, or say which name was probably meant."""
         if args and args[0] not in _ENTRIES and not args[0].startswith("-"):
             import difflib
@@ -116,18 +111,18 @@ class Commands(TyperGroup):
             ctx.fail(f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""))
         return super().resolve_command(ctx, args)
 
-    def format_commands(self, ctx: Context, formatter: HelpFormatter) -> None:
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
         """List the commands by what they are for, without importing any."""
         for title, entries in COMMANDS.items():
             with formatter.section(title):
                 formatter.write_dl([(name, entry.line) for name, entry in entries.items()])
 
-    def parse_args(self, ctx: Context, args: list[str]) -> list[str]:
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Note whether the command was asked for JSON, so that an error can be JSON too."""
         ctx.meta["hearth.json"] = "--json" in args
         return super().parse_args(ctx, args)
 
-    def invoke(self, ctx: Context) -> Any:
+    def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input is printed and ends with status 1."""
         try:
             return super().invoke(ctx)

@@ -1,0 +1,245 @@
+"""`doctor`: what is there, what is missing, and what its absence costs."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.metadata
+import importlib.util
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hearth.commands import output
+
+LIBRARIES = {
+    "libusb-1.0.so.0": "libusb-1.0-0",
+    "libGL.so.1": "libgl1",
+    "libEGL.so.1": "libegl1",
+    "libX11.so.6": "libx11-6",
+}
+"""What open3d links at load, and the Debian and Ubuntu packages that hold it."""
+
+CODECS = {"mp4v": ".mp4", "VP80": ".webm", "FFV1": ".mkv"}
+"""Video codecs that rendering writes: for players, for browsers, without loss."""
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+ROOMY = 2 * 2**30
+"""Bytes a full build takes with its pictures."""
+
+OK, MISSING, BROKEN = "ok", "missing", "broken"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing Hearth can use.
+
+    Attributes:
+        what: its name.
+        state: `ok`; `missing`, where something optional lacks; `broken`, where Hearth can't work without it.
+        found: its version, place or amount; or why it does not work.
+        cost: what does not work without it, and the remedy.
+    """
+
+    what: str
+    state: str
+    found: str
+    cost: str = ""
+
+
+def python() -> Finding:
+    """The interpreter."""
+    fits = (3, 11) <= sys.version_info[:2] < (3, 15)
+    found = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
+    return Finding("Python", OK if fits else BROKEN, found, "" if fits else "needs Python 3.11 to 3.14")
+
+
+def packages() -> Finding:
+    """The libraries Hearth always needs, by their metadata; nothing is imported."""
+    try:
+        wanted = importlib.metadata.requires("hearth") or []
+    except importlib.metadata.PackageNotFoundError:
+        return Finding("libraries", BROKEN, "Hearth itself is not installed", "run `make setup`")
+    names = [re.split(r"[^\w.-]", line)[0] for line in wanted if ";" not in line]
+    lacking = [name for name in names if not _installed(name)]
+    if lacking:
+        return Finding("libraries", BROKEN, f"without {', '.join(lacking)}", "run `make setup`")
+    return Finding("libraries", OK, f"all {len(names)} installed")
+
+
+def _installed(name: str) -> bool:
+    try:
+        importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    return True
+
+
+def missing_libraries() -> list[str]:
+    """The Debian packages that open3d needs and this machine lacks."""
+    return [package for library, package in LIBRARIES.items() if not _loads(library)]
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def rays() -> Finding:
+    """Whether a ray can be cast: open3d's scene, which stands on Embree."""
+    cost = "no pictures; all else works"
+    if importlib.util.find_spec("open3d") is None:
+        return Finding("rays (open3d)", MISSING, "not installed", f"{cost}; x86-64 Linux: pip install open3d-cpu")
+    lacking = missing_libraries()
+    if lacking:
+        return Finding("rays (open3d)", MISSING, "system libraries", f"{cost}; apt-get install {' '.join(lacking)}")
+    try:
+        return Finding("rays (open3d)", OK, f"open3d {_cast_one_ray()}")
+    except Exception as error:  # any of its many native libraries may fail in its own way
+        return Finding("rays (open3d)", MISSING, f"{type(error).__name__}: {error}"[:80], cost)
+
+
+def _cast_one_ray() -> str:
+    """Cast a ray at a box a metre away; the library's version when it hits."""
+    import numpy as np
+    import open3d
+
+    scene = open3d.t.geometry.RaycastingScene()
+    scene.add_triangles(open3d.t.geometry.TriangleMesh.create_box())
+    ray = open3d.core.Tensor.from_numpy(np.array([[0.5, 0.5, 2, 0, 0, -1]], np.float32))
+    hit = scene.cast_rays(ray)["t_hit"].item()
+    if abs(hit - 1) > 1e-4:
+        raise ValueError(f"a ray of 1 m came back as {hit} m")
+    return str(open3d.__version__)
+
+
+def codecs() -> Finding:
+    """The video codecs that can really be opened."""
+    if importlib.util.find_spec("cv2") is None:
+        return Finding("video (OpenCV)", BROKEN, "not installed", "no pictures, no video: run `make setup`")
+    import cv2
+
+    with tempfile.TemporaryDirectory() as folder, _quiet():
+        works = [name for name, ending in CODECS.items() if _opens(name, Path(folder, f"video{ending}"))]
+    lacking = sorted(set(CODECS) - set(works))
+    found = f"OpenCV {cv2.__version__}: {', '.join(works) or 'no codec'}"
+    return Finding("video (OpenCV)", MISSING if lacking else OK, found, f"no {', '.join(lacking)}" if lacking else "")
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep what C libraries write to standard error off the screen."""
+    kept = os.dup(2)
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
+def _opens(codec: str, path: Path) -> bool:
+    import cv2
+
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*codec), 10.0, (64, 64))
+    opened = writer.isOpened()
+    writer.release()
+    return bool(opened)
+
+
+def browser() -> Finding:
+    """A browser that can be driven without a display."""
+    place = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if place:
+        return Finding("browser", OK, place)
+    return Finding("browser", MISSING, "no Chromium", "reports are written but not tried; apt-get install chromium")
+
+
+def fonts() -> Finding:
+    """Fonts of the system; figures bring their own."""
+    folders = (Path("/usr/share/fonts"), Path("/usr/local/share/fonts"), Path.home() / ".local/share/fonts")
+    count = sum(1 for folder in folders if folder.is_dir() for file in folder.rglob("*") if file.suffix in _FONTS)
+    if count:
+        return Finding("fonts", OK, output.counted(count, "file"))
+    return Finding("fonts", MISSING, "none", "a browser draws boxes for letters; apt-get install fonts-dejavu-core")
+
+
+_FONTS = {".ttf", ".otf", ".ttc", ".pfb"}
+
+
+def disk() -> Finding:
+    """Room where datasets are written."""
+    free = shutil.disk_usage(Path.cwd()).free
+    cost = "" if free > ROOMY else f"a full build with pictures takes {ROOMY / 2**30:.0f} GB"
+    return Finding("disk", OK if free > ROOMY else MISSING, f"{free / 2**30:.1f} GB free here", cost)
+
+
+def cores() -> Finding:
+    """Processors this process may use, and memory."""
+    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    cost = "" if count > 1 else "stages run one record after another"
+    return Finding("cores", OK if count > 1 else MISSING, f"{output.counted(count, 'core')}, {memory:.0f} GB", cost)
+
+
+def real_data() -> Finding:
+    """The original release's sample, which some tests and benchmarks read when it is there."""
+    root = Path(__file__).resolve().parent.parent
+    folder = Path(os.environ.get("HEARTH_REAL_DATA") or root.parent / "shared/real")
+    if folder.is_dir():
+        return Finding("release sample", OK, str(folder))
+    cost = "tests against the release are skipped; set HEARTH_REAL_DATA to its folder"
+    return Finding("release sample", MISSING, "not found", cost)
+
+
+def uv() -> Finding:
+    """The fast installer."""
+    place = shutil.which("uv")
+    return Finding("uv", OK, place) if place else Finding("uv", MISSING, "not found", "set-up takes some 30 s longer")
+
+
+CHECKS: tuple[Callable[[], Finding], ...] = (
+    python, packages, rays, codecs, browser, fonts, disk, cores, real_data, uv,
+)  # fmt: skip
+"""Everything that is looked at, in the order it is printed."""
+
+Libraries = Annotated[
+    bool, typer.Option("--libraries", help="Only print the system packages that rendering lacks, one a line.")
+]
+
+
+def doctor(libraries: Libraries = False, as_json: output.Json = False) -> None:
+    """Say what is there, what is missing and what it costs.
+
+    The status is 1 only if something is missing that nothing works without.
+
+    \b
+    Example:
+      python cli.py doctor
+    """
+    if libraries:
+        lacking = missing_libraries() if importlib.util.find_spec("open3d") else []
+        output.emit(lacking) if as_json else print("\n".join(lacking), end="\n" if lacking else "")
+        return
+    findings = [look() for look in CHECKS]
+    broken = sum(finding.state == BROKEN for finding in findings)
+    if as_json:
+        output.emit({"findings": findings, "broken": broken})
+    else:
+        rows = [(each.what, each.state, each.found, each.cost) for each in findings]
+        output.table(("what", "", "found", "what it costs, and the remedy"), rows)
+    output.status(broken, strict=True)
