@@ -1,0 +1,136 @@
+"""Homes made ready for sampling: everything in its default state, and tables of what can be found and put where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+from itertools import accumulate
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.graph import Edge
+from hearth.schemas.vocabulary import STATES
+from hearth.simulation.bits import indices
+from hearth.simulation.edit import extended
+from hearth.simulation.home import Home
+from hearth.simulation.nodes import states_of
+from hearth.simulation.world import World
+
+
+class Spots(NamedTuple):
+    """Where things of a class belong in a home: (class, destination's index, ON or INSIDE), with cumulative weights."""
+
+    choices: tuple[tuple[str, int, str], ...]
+    weights: tuple[int, ...]
+
+
+class Base:
+    """A home in its default state, with what sampling asks of it again and again.
+
+    Attributes:
+        home: doors OPEN, lamps ON, everything else CLOSED, OFF, CLEAN and PLUGGED_IN; the character stands with empty
+            hands (thesis 5.5.2).
+        knowledge: what decides where things belong.
+        character: id of the character's node.
+        room: index of each node's room, or -1.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self.knowledge: Knowledge = home.knowledge
+        self.home = _at_rest(home)
+        self.character = self.home.ids[self.home.agents[0]]
+        self.room = [_room(self.home, i) for i in range(len(self.home))]
+        self._spots: dict[str, Spots] = {}
+        self._named: dict[str, tuple[int, ...]] = {}
+
+    def rooms(self, name: str) -> tuple[int, ...]:
+        """Indices of the rooms that serve as the named one: of that class, or of its nearest stand-in."""
+        seen: set[str] = set()
+        while name and name not in seen:
+            seen.add(name)
+            found = self.home.by_class.get(name, 0) & self.home.rooms
+            if found:
+                return tuple(indices(found))
+            name = self.knowledge.room_standins.get(name, "")
+        return tuple(indices(self.home.rooms))
+
+    def instances(self, name: str) -> tuple[int, ...]:
+        """Indices of what a program may mean by a class name: of the first of its names that the home knows."""
+        found = self._named.get(name)
+        if found is None:
+            masks = (self.home.by_class.get(other, 0) for other in self.knowledge.same_class(name))
+            found = self._named[name] = tuple(indices(next((mask for mask in masks if mask), 0)))
+        return found
+
+    def spots(self, name: str) -> Spots:
+        """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
+        found = self._spots.get(name)
+        if found is None:
+            found = self._spots[name] = _weighted(self._places(name))
+        return found
+
+    @cached_property
+    def fillers(self) -> Spots:
+        """Every loose thing at every place it belongs: what makes one environment differ from another."""
+        loose = (c.name for c in self.knowledge.objects.values() if "GRABBABLE" in c.properties and not c.same_as)
+        return _weighted(spot for name in loose for spot in self._places(name))
+
+    def _places(self, name: str) -> Iterable[tuple[tuple[str, int, str], int]]:
+        for placement in self.knowledge.placements(name):
+            if placement.relation == "NEARBY":
+                continue
+            for i in self.instances(placement.destination):
+                room = self.home.classes[self.room[i]] if self.room[i] >= 0 else ""
+                if placement.room in ("", room):
+                    yield (name, i, placement.edge), placement.weight
+
+
+_BASES: WeakKeyDictionary[Home, Base] = WeakKeyDictionary()
+
+
+def prepared(home: Home) -> Base:
+    """The home made ready, once for each home."""
+    base = _BASES.get(home)
+    if base is None:
+        base = _BASES[home] = Base(home)
+    return base
+
+
+def _weighted(spots: Iterable[tuple[tuple[str, int, str], int]]) -> Spots:
+    pairs = tuple(spots)
+    return Spots(tuple(spot for spot, _ in pairs), tuple(accumulate(weight for _, weight in pairs)))
+
+
+def _at_rest(home: Home) -> Home:
+    """The home with default states, its (first) character standing in the room it is in."""
+    states: dict[int, tuple[str, ...]] = {}
+    for i, node_id in enumerate(home.ids):
+        wanted = _default_states(home, i)
+        if wanted != states_of(i, home.states):
+            states[node_id] = wanted
+    agent = World.start(home).agents[0]
+    me = home.ids[agent.index]
+    gone = [edge for edge in World.start(home).edges() if me in (edge.source, edge.target)]
+    room = next(indices(agent.inside & home.rooms), next(indices(home.rooms)))
+    return extended(home, (), [Edge(me, "INSIDE", home.ids[room])], gone, states)
+
+
+_BY_PROPERTY = (("CAN_OPEN", "CLOSED"), ("HAS_SWITCH", "OFF"), ("HAS_PLUG", "PLUGGED_IN"))
+
+
+def _default_states(home: Home, i: int) -> tuple[str, ...]:
+    """By the node's own properties, which may be more than its class's; a class's own defaults go first."""
+    if (home.rooms | home.characters) >> i & 1:
+        return ()
+    known = home.knowledge.default_states(home.classes[i])
+    pairs = [{name, STATES[number ^ 1]} for number, name in enumerate(STATES)]
+    wanted = set(known)
+    for prop, state in _BY_PROPERTY:
+        if home.properties.get(prop, 0) >> i & 1 and not wanted & pairs[STATES.index(state)]:
+            wanted.add(state)
+    return tuple(name for name in STATES if name in wanted)
+
+
+def _room(home: Home, i: int) -> int:
+    return home.direct_room[i]

@@ -1,0 +1,161 @@
+"""Sampling environments in which a program runs: e ~ E_Phi(p) (thesis 5.5.2, eq. 5.10)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hearth.grounding.base import Base, prepared
+from hearth.grounding.conditions import CHARACTER, Preconditions
+from hearth.grounding.demands import Moment, conditions_for
+from hearth.grounding.draft import Draft
+from hearth.grounding.filling import fill
+from hearth.grounding.fulfilling import fulfil
+from hearth.grounding.placing import Wishes, bind
+from hearth.grounding.preconditions import infer
+from hearth.schemas.failures import Failure
+from hearth.schemas.graph import Edge, Node
+from hearth.schemas.program import Program
+from hearth.schemas.rng import rng
+from hearth.simulation.bits import indices
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.home import Home
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+TRIES = 12
+"""Environments drawn for one program before it is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Environment:
+    """A home prepared for a program.
+
+    Attributes:
+        base: the home in its default state, which the differences are from.
+        seed: the run's seed.
+        world: the start.
+        program: the program, bound to the world's nodes.
+        conditions: what was asked for, the conditions found while sampling included.
+        nodes, added, removed, states: what differs from the base; states are those of the nodes named, all of them.
+    """
+
+    base: Home
+    seed: int
+    world: World
+    program: Program
+    conditions: Preconditions
+    nodes: tuple[Node, ...]
+    added: tuple[Edge, ...]
+    removed: tuple[Edge, ...]
+    states: tuple[tuple[int, tuple[str, ...]], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How many nodes an environment should have, and how many random ones are added to a home that is larger."""
+
+    least: int = 280
+    most: int = 300
+    some: int = 12
+
+
+def sample(
+    program: Program,
+    home: Home,
+    seed: int,
+    record_id: str = "",
+    conditions: Preconditions | None = None,
+    size: Size = Size(),  # noqa: B008 - immutable
+    rules: Rules = DEFAULT,
+    must_run: bool = True,
+) -> tuple[Environment, Execution] | Failure:
+    """Draw an environment in which the conditions hold and the program runs.
+
+    Args:
+        program: with instances as counters; node ids are ignored.
+        home: any home; it is brought to its default state first.
+        seed, record_id: all the randomness there is.
+        conditions: what must hold; inferred from the program when None.
+        size: nodes wanted.
+        rules: for the run.
+        must_run: draw again, with what the failed run lacked as a further condition, until the program runs.
+
+    Returns:
+        The environment and the program's execution in it, or the failure of the last one drawn.
+    """
+    base = prepared(home)
+    found = infer(program, base.knowledge, rules) if conditions is None else conditions
+    if isinstance(found, Failure):
+        return found
+    failure: Failure | None = None
+    for attempt in range(TRIES):
+        environment = draw(program, base, found, seed, record_id, attempt, size)
+        execution = run(environment.world, environment.program, rules)
+        if execution.failure is None or not must_run:
+            return environment, execution
+        failure = execution.failure
+        if attempt % 2:
+            found = _with_demand(found, environment, execution, base)
+    assert failure is not None
+    return failure
+
+
+def draw(
+    program: Program, base: Base, conditions: Preconditions, seed: int, record_id: str, attempt: int, size: Size
+) -> Environment:
+    """One environment in which the conditions hold; whether the program runs in it remains to be seen."""
+    generator = rng(seed, "sample", base.home.name, record_id, attempt)
+    draft = Draft(base, generator)
+    bind(draft, Wishes(program, conditions, base.knowledge))
+    fulfil(draft, conditions)
+    _place_character(draft, program, conditions)
+    fill(draft, size.least, size.most, size.some)
+    return Environment(
+        base.home,
+        seed,
+        World.start(draft.home()),
+        program.bound(draft.binding),
+        conditions,
+        tuple(draft.nodes),
+        tuple(draft.added),
+        tuple(draft.removed),
+        tuple(sorted(draft.states.items())),
+    )
+
+
+def _place_character(draft: Draft, program: Program, conditions: Preconditions) -> None:
+    """Where its conditions want the character, else in another room than the program starts in."""
+    base = draft.base
+    home = base.home
+    me = base.character
+    rooms = [home.ids[i] for i in indices(home.rooms)]
+    near = [c.objects[0] for c in conditions if c.name in ("nearby", "holds") and c.objects[-1] == CHARACTER]
+    if me in draft.room:
+        room = draft.room[me]
+    elif near:
+        room = draft.room_of(draft.binding[near[0]])
+    else:
+        first = next((ref.key for step in program.steps for ref in step.objects), None)
+        begin = draft.binding.get(first, -1) if first else -1
+        begin = begin if begin in rooms else draft.room_of(begin)
+        room = draft.rng.choice([r for r in rooms if r != begin] or rooms)
+    now = home.ids[base.room[home.agents[0]]] if base.room[home.agents[0]] >= 0 else None
+    start = World.start(home).agents[0]
+    draft.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(start.inside))
+    if room != now or True:
+        draft.added.append(Edge(me, "INSIDE", room))
+
+
+def _with_demand(
+    conditions: Preconditions, environment: Environment, execution: Execution, base: Base
+) -> Preconditions:
+    """The conditions with what the failed run lacked."""
+    failure = execution.failure
+    assert failure is not None
+    keys = {ref.node: ref.key for ref in environment.program.objects() if ref.node is not None}
+    moment = Moment(
+        environment.program, failure.tick, failure, execution.final, environment.world, keys, base.knowledge
+    )
+    known = {c.fact for c in conditions}
+    new = next((c for c in conditions_for(moment) if c.fact not in known), None)
+    return conditions if new is None else conditions.plus(new)
