@@ -22,7 +22,7 @@ MOST = 60
 """Things one entry may count; more is taken for a slip of the pen."""
 
 
-class Wrong(ValueError):
+class WrongValueError(ValueError):
     """What a value should have been."""
 
 
@@ -30,14 +30,14 @@ def number(value: Any) -> float:
     """A length in metres."""
     if isinstance(value, located.Number) and abs(value) < 1000:
         return float(value)
-    raise Wrong("a number of metres")
+    raise WrongValueError("a number of metres")
 
 
 def length(value: Any) -> float:
     """A length greater than 0."""
     found = number(value)
     if found <= 0:
-        raise Wrong("a length greater than 0")
+        raise WrongValueError("a length greater than 0")
     return found
 
 
@@ -45,7 +45,7 @@ def whole(value: Any) -> int:
     """A whole number, not negative."""
     found = number(value)
     if found != int(found) or not 0 <= found <= MOST:
-        raise Wrong(f"a whole number from 0 to {MOST}")
+        raise WrongValueError(f"a whole number from 0 to {MOST}")
     return int(found)
 
 
@@ -53,14 +53,14 @@ def yes_or_no(value: Any) -> bool:
     """true or false."""
     if isinstance(value, bool):
         return value
-    raise Wrong("true or false")
+    raise WrongValueError("true or false")
 
 
 def word(value: Any) -> str:
     """A name."""
     if isinstance(value, str) and value:
         return str(value)
-    raise Wrong("a name")
+    raise WrongValueError("a name")
 
 
 def one_of(*words: str) -> Reader:
@@ -69,7 +69,7 @@ def one_of(*words: str) -> Reader:
     def read(value: Any) -> str:
         if value in words:
             return str(value)
-        raise Wrong(f"one of {', '.join(words)}")
+        raise WrongValueError(f"one of {', '.join(words)}")
 
     return read
 
@@ -78,14 +78,14 @@ def pair(value: Any) -> tuple[float, float]:
     """Two numbers: [x, z]."""
     if isinstance(value, list) and len(value) == 2:
         return number(value[0]), number(value[1])
-    raise Wrong("two numbers, [east, north]")
+    raise WrongValueError("two numbers, [east, north]")
 
 
 def extent(value: Any) -> tuple[float, float]:
     """Two lengths: [width, depth]."""
     x, z = pair(value)
     if min(x, z) <= 0:
-        raise Wrong("two lengths greater than 0")
+        raise WrongValueError("two lengths greater than 0")
     return x, z
 
 
@@ -104,12 +104,15 @@ direction = one_of(*DIRECTIONS)
 PLACE_KEYS: dict[str, Reader] = {
     "wall": direction, "at": along, "from_end": number, "corner": one_of(*CORNERS), "beside": word, "side": direction,
     "before": word, "opposite": word, "around": word, "above": word, "spot": spot, "facing": direction,
-    "gap": number, "up": number, "turn": yes_or_no,
+    "gap": number, "up": number,
 }  # fmt: skip
 """How a thing is placed."""
 
 ANCHORS = ("wall", "corner", "beside", "before", "opposite", "around", "above", "spot")
 """The keys of which a piece of furniture has one; `corner` may have a `wall` beside it."""
+
+ON_TOP = ("spot", "before", "beside")
+"""Those that also place what stands on something: `spot` is then [along its back, out from its back]."""
 
 SIZE_KEYS: dict[str, Reader] = {"width": length, "height": length, "depth": length}
 WINDOW_KEYS: dict[str, Reader] = {
@@ -184,11 +187,11 @@ class _Reader:
         try:
             if read is list:
                 if not isinstance(value, list) and value is not None:
-                    raise Wrong("a list")
+                    raise WrongValueError("a list")
                 found[key] = value or []
             else:
                 found[key] = read(value)
-        except Wrong as wrong:
+        except WrongValueError as wrong:
             self.faults.add(Code.SYNTAX, f"`{key}` is `{_shown(value)}`", line, f"write {wrong}")
 
     def room(self, entry: Any) -> Room | None:
@@ -232,7 +235,7 @@ class _Reader:
 
     def pieces(self, entries: Any, furniture: bool = False) -> tuple[Piece, ...]:
         """Entries of a list: `plate*4`, or `- couch: {wall: south}`."""
-        if not isinstance(entries, list):
+        if not isinstance(entries, (list, tuple)):
             self.faults.add(Code.SYNTAX, "things are a list", located.line_of(entries), "[cup, plate*4]")
             return ()
         return tuple(piece for entry in entries if (piece := self.piece(entry, furniture)) is not None)
@@ -265,9 +268,9 @@ class _Reader:
         if furniture and len(anchors) != 1 and set(anchors) != {"wall", "corner"}:
             message = f"`{class_name}` is placed by {' and '.join(anchors) or 'nothing'}"
             self.faults.add(Code.SYNTAX, message, line, f"give one of {', '.join(ANCHORS)}")
-        if not furniture and anchors:
-            message = f"`{class_name}` stands on or in something and is placed by `{anchors[0]}` too"
-            self.faults.add(Code.SYNTAX, message, line, "leave it out: what stands on or in things finds its own place")
+        if not furniture and (len(anchors) > 1 or not set(anchors) <= set(ON_TOP)):
+            message = f"`{class_name}` stands on or in something and is placed by {' and '.join(anchors)} too"
+            self.faults.add(Code.SYNTAX, message, line, f"leave it out, or give one of {', '.join(ON_TOP)}")
         return Piece(
             class_name,
             found.get("name", ""),

@@ -1,0 +1,104 @@
+"""The floor that can be walked: what furniture leaves free, as an occupancy grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hearth.simulation.homes.geometry import Rect, bottom, footprint
+from hearth.simulation.homes.plan import Plan
+from hearth.simulation.homes.shell import WALL, Shell, Thing, interior, strip
+
+if TYPE_CHECKING:
+    import numpy as np
+
+CELL = 0.1
+"""Metres a cell."""
+BODY = 0.2
+"""Half the width of someone walking."""
+HEAD = 1.8
+"""What hangs higher is walked under."""
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """An occupancy grid over a whole home.
+
+    Attributes:
+        origin: (x, z) of the grid's south-west corner, metres.
+        cell: metres a cell.
+        free: bool (columns, rows), x first: nothing stands there.
+        walkable: bool, same shape: free, and wide enough around for someone to stand there.
+        room: int16, same shape: number of the room in the plan, -1 outside rooms.
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    free: np.ndarray
+    walkable: np.ndarray
+    room: np.ndarray
+
+    def center(self, i: int, j: int) -> tuple[float, float]:
+        """The middle of a cell as (x, z)."""
+        return self.origin[0] + (i + 0.5) * self.cell, self.origin[1] + (j + 0.5) * self.cell
+
+    def index(self, x: float, z: float) -> tuple[int, int]:
+        """The cell a point lies in; may lie beyond the grid."""
+        return int((x - self.origin[0]) // self.cell), int((z - self.origin[1]) // self.cell)
+
+    def regions(self) -> np.ndarray:
+        """Int array: walkable cells that reach each other share a number from 1; others are 0."""
+        from scipy.ndimage import label
+
+        found: np.ndarray = label(self.walkable)[0]
+        return found
+
+
+def stands_on_floor(thing: Thing) -> bool:
+    """Whether a thing is in the way of someone walking."""
+    if thing.mount in ("shell", "flat", "door", "ceiling", "item", "sunk"):
+        return False
+    return bottom(thing.box) < HEAD and thing.class_name != "curtain" and (
+        thing.mount == "floor" or min(thing.box.size[0], thing.box.size[2]) > 0.1
+    )  # fmt: skip
+
+
+def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
+    """The floor of a furnished plan."""
+    import numpy as np
+    from scipy.ndimage import binary_erosion
+
+    x0, z0 = min(room.rect.x0 for room in plan.rooms), min(room.rect.z0 for room in plan.rooms)
+    x1, z1 = max(room.rect.x1 for room in plan.rooms), max(room.rect.z1 for room in plan.rooms)
+    shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))
+    free = np.zeros(shape, bool)
+    room_of = np.full(shape, -1, np.int16)
+    for number, room in enumerate(plan.rooms):
+        room_of[_cells(room.rect, (x0, z0), cell, shape)] = number
+        free[_cells(interior(room), (x0, z0), cell, shape)] = True
+    for opening in shell.openings:
+        if opening.door is not None:
+            inner = interior(plan.room(opening.room))
+            hole = strip(inner.inset(-0.001), opening.wall, opening.start, opening.end, -WALL - cell)
+            inside = room_of[_cells(hole, (x0, z0), cell, shape)] >= 0
+            free[_cells(hole, (x0, z0), cell, shape)] |= inside
+    for thing in things:
+        if stands_on_floor(thing):
+            free[_cells(footprint(thing.box), (x0, z0), cell, shape)] = False
+    reach = round(BODY / cell)
+    disc = np.hypot(*np.mgrid[-reach : reach + 1, -reach : reach + 1]) <= reach
+    return Floor((x0, z0), cell, free, free & binary_erosion(free, disc), room_of)
+
+
+def _cells(rect: Rect, origin: tuple[float, float], cell: float, shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """The cells whose middles lie in a rectangle."""
+
+    def part(low: float, high: float, size: int) -> slice:
+        first, last = int(low / cell + 0.5 - 1e-6), int(high / cell + 0.5 - 1e-6)
+        return slice(max(0, min(first, size)), max(0, min(last, size)))
+
+    return (
+        part(rect.x0 - origin[0], rect.x1 - origin[0], shape[0]),
+        part(rect.z0 - origin[1], rect.z1 - origin[1], shape[1]),
+    )
