@@ -143,7 +143,7 @@ def codecs() -> Finding:
 def _quiet() -> Iterator[None]:
     """Keep what C libraries write to standard error off the screen."""
     kept = os.dup(2)
-    with open(os.devnull, "w") as nowhere:
+    with Path(os.devnull).open("w") as nowhere:
         os.dup2(nowhere.fileno(), 2)
     try:
         yield

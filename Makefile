@@ -1,0 +1,94 @@
+# Hearth: `make` sets up .venv and builds a dataset from data_raw/ into data_out/; `make help` lists the rest.
+# Every stage is the file that says it is complete, so that a second `make` does nothing and a touched input
+# rebuilds only what follows from it.
+
+SHELL := /bin/bash
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := all
+
+OUT    ?= data_out
+SEED   ?= 0
+JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
+PYTHON ?= python3
+
+READY  := .venv/.ready
+PY     := .venv/bin/python
+HEARTH := $(PY) cli.py
+STAGES := ingest validate sample augment render publish
+
+# Code and data below some folders.
+tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.csv' -o -name '*.json' -o -name '*.sql' \) 2>/dev/null)
+manifest = $(OUT)/$(1)/manifest.json
+
+BASE     := version.py $(call tree,schemas) pipelines/stage.py pipelines/parts.py pipelines/rejects.py
+KNOWN    := $(BASE) $(call tree,kb)
+WORLD    := $(KNOWN) $(call tree,simulation data_raw/homes)
+GROUNDED := $(WORLD) $(call tree,grounding)
+
+.PHONY: all setup test test-all lint bench lock wheel clean distclean help $(STAGES)
+
+all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
+
+setup: $(READY)  ## make .venv with the locked versions (uv if there is one, else pip)
+
+$(READY): requirements.lock pyproject.toml setup.sh
+	@PYTHON=$(PYTHON) ./setup.sh
+
+$(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up to date
+
+$(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
+	@$(HEARTH) ingest --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+$(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)
+	@$(HEARTH) validate --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+$(call manifest,sample): $(call manifest,validate) $(GROUNDED) pipelines/sample.py | $(READY)
+	@$(HEARTH) sample --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+$(call manifest,augment): $(call manifest,sample) $(GROUNDED) $(call tree,pipelines/handlers) pipelines/augment.py | $(READY)
+	@$(HEARTH) augment --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+$(call manifest,render): $(call manifest,augment) $(WORLD) $(call tree,rendering) pipelines/render.py | $(READY)
+	@$(HEARTH) render --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+$(call manifest,publish): $(call manifest,render) $(GROUNDED) pipelines/publish.py | $(READY)
+	@$(HEARTH) publish --out $(OUT) --seed $(SEED) --workers $(JOBS)
+
+test: $(READY)  ## the tests, without the slow ones
+	@$(PY) -m pytest -q -n $(JOBS) -m "not slow"
+
+test-all: $(READY)  ## all tests
+	@$(PY) -m pytest -q -n $(JOBS)
+
+lint: $(READY)  ## ruff and mypy
+	@$(PY) -m ruff check .
+	@$(PY) -m ruff format --check .
+	@MYPYPATH=.types $(PY) -m mypy -p hearth
+
+bench: $(READY)  ## measure speed, with ratios to plain reference code
+	@$(PY) -m pytest -q -p no:xdist benchmarks
+
+lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock
+	@rm -rf build/lock && $(PYTHON) -m venv build/lock
+	@build/lock/bin/python -m pip install -q --upgrade pip
+	@build/lock/bin/python -m pip install -q -e '.[test]' setuptools
+	@{ echo '# Versions that are known to work together, for `make setup`. Made by `make lock`; not edited by hand.'; \
+	   build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth | \
+	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/"; } > requirements.lock
+	@rm -rf build/lock
+
+wheel: $(READY)  ## dist/: the package to install elsewhere
+	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
+
+clean:  ## remove what was built; .venv stays
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
+
+distclean: clean  ## remove .venv, too
+	@rm -rf .venv
+
+help:  ## this list
+	@echo "make [TARGET] [OUT=data_out] [SEED=0] [JOBS=$(JOBS)] [PYTHON=python3]"
+	@sed -n 's/^\([a-z][a-z-]*\):[^#]*## \(.*\)/  \1\t\2/p' Makefile | expand -t 14
+	@echo "  $(firstword $(STAGES)) ... $(lastword $(STAGES))" | expand -t 14
+	@echo "            one stage and those before it: $(STAGES)"

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# Sets up .venv with the locked versions: with uv if it is there, else with pip. Safe to run again.
+# PYTHON=python3.12 ./setup.sh chooses the interpreter.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+say() { printf '%s\n' "$*" >&2; }
+
+# Prints the first Python that fits: the one asked for, python3, or a versioned one.
+find_python() {
+    local candidate
+    for candidate in ${PYTHON:-} python3 python3.14 python3.13 python3.12 python3.11; do
+        if "$candidate" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 15))' 2>/dev/null; then
+            echo "$candidate"
+            return
+        fi
+    done
+    say "Hearth needs Python 3.11 to 3.14, and there is none. Debian, Ubuntu: apt-get install python3 python3-venv"
+    exit 1
+}
+
+can_install() { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; }
+
+# Installs system packages where that is allowed; otherwise fails, and the caller says what to do.
+apt_install() {
+    can_install || return 1
+    say "Installing $* with apt"
+    export DEBIAN_FRONTEND=noninteractive
+    timeout 180 apt-get update -qq >/dev/null && timeout 300 apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+make_venv() {
+    local python version
+    python=$(find_python)
+    if [ -x .venv/bin/python ] && .venv/bin/python -c '' 2>/dev/null; then return; fi
+    rm -rf .venv
+    if command -v uv >/dev/null && uv venv -q --seed --python "$(command -v "$python")" .venv; then return; fi
+    if "$python" -m venv .venv >/dev/null 2>&1; then return; fi
+    # Debian keeps venv's pip in a package of its own.
+    version=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
+    rm -rf .venv
+    if apt_install "$version" && "$python" -m venv .venv; then return; fi
+    rm -rf .venv
+    say "Python's venv module is not complete. Run: sudo apt-get install $version"
+    exit 1
+}
+
+with_uv() {
+    command -v uv >/dev/null &&
+        uv pip install -q --python .venv/bin/python "$@"
+}
+
+# Byte code is compiled when a module is first imported: most of these modules never are.
+with_pip() { .venv/bin/python -m pip install -q --no-compile --disable-pip-version-check "$@"; }
+
+install_packages() {
+    if with_uv --no-deps -r requirements.lock || with_pip --no-deps -r requirements.lock; then
+        with_uv --no-deps --no-build-isolation -e . || with_pip --no-deps --no-build-isolation -e .
+    else
+        say "The locked versions can't be had here; taking what fits pyproject.toml instead."
+        with_uv -e '.[test]' || with_pip -e '.[test]'
+    fi
+}
+
+# Only rendering needs these; all else works without.
+install_libraries() {
+    local lacking
+    lacking=$(.venv/bin/python cli.py doctor --libraries | tr '\n' ' ')
+    [ -n "$lacking" ] || return 0
+    # shellcheck disable=SC2086
+    if ! apt_install $lacking; then
+        say "Rendering needs system libraries that are not here; all else works. To add them:"
+        say "    sudo apt-get install $lacking"
+    fi
+}
+
+say "Setting up .venv (once; half a minute with uv, a minute or two with pip)"
+make_venv
+install_packages
+install_libraries
+touch .venv/.ready
