@@ -19,7 +19,7 @@ class Agent(NamedTuple):
         origins: where grabbed things came from: (thing, place, kind of relation), for PutObjBack.
     """
 
-    index: int
+    index: int  # type: ignore[assignment] # what tuples call index is of no use here
     bit: int
     close: int = 0
     facing: int = 0

@@ -57,8 +57,8 @@ def between(before: World, after: World) -> Change:
         past, now = before.home.others, after.home.others
         added.update(Edge(*edge) for edge in now if edge not in past)
         removed.update(Edge(*edge) for edge in past if edge not in now)
-    came, went = _state_changes(before, after, ids)
-    return Change(tuple(sorted(added)), tuple(sorted(removed)), tuple(sorted(came)), tuple(sorted(went)))
+    entered, left = _state_changes(before, after, ids)
+    return Change(tuple(sorted(added)), tuple(sorted(removed)), tuple(sorted(entered)), tuple(sorted(left)))
 
 
 def _common_ids(one: Home, other: Home) -> list[int]:

@@ -15,7 +15,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home
+from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home, agent_row
 
 _NO_STATES: Mapping[int, Iterable[str]] = MappingProxyType({})
 
@@ -165,8 +165,9 @@ def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, i
             continue
         part = True
         number = home.agents.index(me)
-        row = home.agent_rows[number]
-        home.agent_rows[number] = (*row[:field], change(row[field], 1 << other), *row[field + 1 :])
+        row = list(home.agent_rows[number])
+        row[field] = change(row[field], 1 << other)
+        home.agent_rows[number] = agent_row(row)
     if not part and relation == "BETWEEN":
         home.between[i] = change(home.between[i], 1 << j)
     elif not part:

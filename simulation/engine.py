@@ -89,7 +89,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         return _unbound(world, instruction)
     result = action(world, instruction.agent, o, s, rules)
     if result.__class__ is Failure:
-        return replace(result, agent=instruction.agent, action=instruction.action)  # type: ignore[type-var]
+        return replace(result, agent=instruction.agent, action=instruction.action)
     return result
 
 

@@ -15,6 +15,7 @@ from hearth.simulation.nodes import with_states
 
 Rows = list[int]
 Raw = tuple[int, str, int]
+AgentRow = tuple[int, int, int, int, int, int, int, int, int]
 
 AGENT_OUT = {"CLOSE": 0, "FACING": 1, "INSIDE": 3, "ON": 5, "HOLDS_RH": 7, "HOLDS_LH": 8}
 """Where an edge from a character stands in its row of `Home.agent_rows`, which is that of `Agent` without its node."""
@@ -148,7 +149,7 @@ class Home:
         """Move the characters' edges out of the things' rows into `agent_rows`."""
         tables = (self.close, self.facing, self.faced, self.inside, self.contents, self.on, self.bears)
         hands = (self.holding["HOLDS_RH"], self.holding["HOLDS_LH"])
-        self.agent_rows = [tuple(t[i] for t in tables + hands) for i in self.agents]
+        self.agent_rows: list[AgentRow] = [agent_row([table[i] for table in tables + hands]) for i in self.agents]
         inverse = (self.close, self.faced, self.facing, self.contents, self.inside, self.bears, self.on)
         for i in self.agents:
             for table, opposite in zip(tables, inverse, strict=True):
@@ -272,6 +273,12 @@ class Home:
             return o
         rooms = self.inside[o] & self.rooms
         return (rooms & -rooms).bit_length() - 1
+
+
+def agent_row(row: Iterable[int]) -> AgentRow:
+    """The nine rows of a character, from any iterable."""
+    close, facing, faced, inside, contents, on, worn, right, left = row
+    return close, facing, faced, inside, contents, on, worn, right, left
 
 
 def _fields(node: Mapping[str, Any] | Node) -> tuple[int, str, str, Iterable[str], Iterable[str]]:

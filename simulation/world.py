@@ -27,6 +27,7 @@ class World:
     """
 
     __slots__ = ("_key", "agents", "home", "moved", "states")
+    _key: tuple[object, ...]
 
     def __init__(self, home: Home, states: tuple[int, ...], agents: tuple[Agent, ...], moved: Moved) -> None:
         self.home = home

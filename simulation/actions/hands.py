@@ -62,7 +62,7 @@ def put_back(world: World, number: int, o: int, s: int, rules: Rules) -> World |
         return failure
     if world.home.characters >> s & 1 and s != agent.index:
         return _hand_over(world, number, o, s)
-    return _put(world, number, o, s, kinds.ON, agent.origins)
+    return _put(world, number, (o, kinds.ON, s), agent.origins)
 
 
 def put_in(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
@@ -71,7 +71,7 @@ def put_in(world: World, number: int, o: int, s: int, rules: Rules) -> World | F
     failure = need_holding(world, agent, o) or need_close(world, agent, s) or _need_open(world, s)
     if failure is not None:
         return failure
-    return _put(world, number, o, s, kinds.INSIDE, agent.origins)
+    return _put(world, number, (o, kinds.INSIDE, s), agent.origins)
 
 
 def put_obj_back(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
@@ -86,7 +86,7 @@ def put_obj_back(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         failure = _need_open(world, place)
     if failure is not None:
         return failure
-    return _put(world, number, o, place, kind, _forgotten(agent, o))
+    return _put(world, number, (o, kind, place), _forgotten(agent, o))
 
 
 def drop(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
@@ -102,15 +102,16 @@ def drop(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
 
 
 def _put(
-    world: World, number: int, o: int, s: int, kind: int, memory: tuple[tuple[int, int, int], ...]
+    world: World, number: int, edge: tuple[int, int, int], memory: tuple[tuple[int, int, int], ...]
 ) -> World | Failure:
+    o, kind, s = edge
     agent = world.agents[number]
     close = agent.close | 1 << s
     if s == agent.index:
         worn = agent.worn | 1 << o if kind == kinds.ON else agent.worn
         freed = _freed(agent, o, close | 1 << o, worn, memory)
         return world.with_agent(number, freed)
-    edges = ((o, kinds.CLOSE, s),) if kind == kinds.CLOSE else ((o, kinds.CLOSE, s), (o, kind, s))
+    edges = (edge,) if kind == kinds.CLOSE else ((o, kinds.CLOSE, s), edge)
     freed = _freed(agent, o, close, agent.worn, memory)
     agents = (freed,) if len(world.agents) == 1 else world.with_agent(number, freed).agents
     return World(world.home, world.states, agents, add(world.moved, *edges))

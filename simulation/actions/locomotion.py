@@ -38,14 +38,18 @@ def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
     failure = need_close(world, agent, o)
     if failure is not None:
         return failure
-    index, bit, close, _facing, faced, *rest = agent
-    return world.with_agent(number, Agent(index, bit, close | 1 << o, 0, faced, *rest))
+    return world.with_agent(number, _attending(agent, agent.close | 1 << o, 0))
 
 
 def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Face o alone."""
-    index, bit, close, _facing, faced, *rest = world.agents[number]
-    return world.with_agent(number, Agent(index, bit, close, 1 << o, faced, *rest))
+    agent = world.agents[number]
+    return world.with_agent(number, _attending(agent, agent.close, 1 << o))
+
+
+def _attending(agent: Agent, close: int, facing: int) -> Agent:
+    index, bit, _close, _facing, faced, inside, contents, on, worn, right, left, origins = agent
+    return Agent(index, bit, close, facing, faced, inside, contents, on, worn, right, left, origins)
 
 
 def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World:

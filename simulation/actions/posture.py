@@ -73,7 +73,7 @@ def _need_room_on(world: World, o: int, lying: bool) -> Failure | None:
 
 def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
     agent = world.agents[number]
-    index, bit, close, _facing, faced, inside, contents, on, *rest = agent
-    settled = Agent(index, bit, close, facing, faced, inside, contents, on | 1 << o, *rest)
+    index, bit, close, _facing, faced, inside, contents, on, worn, right, left, origins = agent
+    settled = Agent(index, bit, close, facing, faced, inside, contents, on | 1 << o, worn, right, left, origins)
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents
     return World(world.home, with_state(world.states, state, bit), agents, world.moved)
