@@ -209,9 +209,8 @@ class _Side:
         if node is None:
             return Counter()
         labels: dict[int, Label] = {node: "self"}
-        found: Counter[object] = Counter(self.states[node])
-        found.update((e.relation, self._label(e.source, labels), self._label(e.target, labels)) for e in self.edges[node])
-        return found
+        ends = ((e.relation, self._label(e.source, labels), self._label(e.target, labels)) for e in self.edges[node])
+        return Counter([*self.states[node], *ends])
 
     def _label(self, node: int, labels: Mapping[int, Label]) -> Label:
         found = labels.get(node)

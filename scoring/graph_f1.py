@@ -70,6 +70,7 @@ def score(
     reference: Final | View,
     named_predicted: Iterable[int],
     named_reference: Iterable[int],
+    *,
     match: MatchBy = "best",
     scope: Scope = "either",
 ) -> GraphScore:

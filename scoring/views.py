@@ -88,7 +88,7 @@ class WorldView:
     """A view of a world, equal to that of its graph, which reads only the rows of the nodes asked for."""
 
     def __init__(self, world: World) -> None:
-        self.nodes = _nodes_of(world.home)
+        self.nodes = nodes_of(world.home)
         self._world = world
 
     def states(self, nodes: Collection[int]) -> Iterator[StateTuple]:
@@ -125,7 +125,7 @@ def _is_room_or_door(node: Node) -> bool:
 
 
 @lru_cache(maxsize=4)
-def _nodes_of(home: Home) -> Nodes:
+def nodes_of(home: Home) -> Nodes:
     """The table of a home: a prediction and its reference end in worlds of the same one."""
     return Nodes.of(home.node(i) for i in range(len(home)))
 

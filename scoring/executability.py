@@ -1,0 +1,193 @@
+"""Executability: whether a program runs in its environment, and if not, where it first fails and why (A.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hearth.kb.grammar import affordances, check
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import Program, Step
+from hearth.scoring.binding import bind
+from hearth.scoring.parse import parsability
+from hearth.scoring.reading import Lines, steps_of
+from hearth.scoring.signature import signature
+from hearth.scoring.views import nodes_of
+from hearth.simulation import rows
+from hearth.simulation.engine import act, run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+SIGNATURE = signature("executable", level="program", empty="apart")
+
+
+class ErrorClass(StrEnum):
+    """Why a program first fails.
+
+    A `wrong order` is one that the program's own steps could mend: it would get past the failing step if that step
+    stood earlier, or if a later step stood before it. An `additional step` asks for what is already so. What is
+    neither is a `missing step`.
+    """
+
+    SYNTAX = "syntax"
+    UNKNOWN_NAME = "unknown name"
+    ARITY = "arity"
+    AFFORDANCE = "affordance"
+    NOT_SIMULATED = "not simulated"
+    ADDITIONAL_STEP = "additional step"
+    WRONG_ORDER = "wrong order"
+    MISSING_STEP = "missing step"
+
+
+STATIC: dict[Code, ErrorClass] = {
+    Code.SYNTAX: ErrorClass.SYNTAX,
+    Code.UNKNOWN_ACTION: ErrorClass.UNKNOWN_NAME,
+    Code.UNKNOWN_OBJECT: ErrorClass.UNKNOWN_NAME,
+    Code.UNKNOWN_AGENT: ErrorClass.UNKNOWN_NAME,
+    Code.UNBOUND: ErrorClass.UNKNOWN_NAME,
+    Code.WRONG_ARITY: ErrorClass.ARITY,
+    Code.NOT_AFFORDED: ErrorClass.AFFORDANCE,
+    Code.NOT_SIMULATED: ErrorClass.NOT_SIMULATED,
+}
+"""The class of a failure that does not depend on what was done before; UNBOUND names what the environment lacks."""
+
+ALREADY_SO: dict[Code, frozenset[str]] = {
+    Code.IS_OPEN: frozenset({"Open"}),
+    Code.IS_CLOSED: frozenset({"Close"}),
+    Code.IS_ON: frozenset({"SwitchOn"}),
+    Code.IS_OFF: frozenset({"SwitchOff"}),
+    Code.IS_PLUGGED: frozenset({"PlugIn"}),
+    Code.IS_UNPLUGGED: frozenset({"PlugOut"}),
+    Code.SITTING: frozenset({"Sit"}),
+    Code.LYING: frozenset({"Lie"}),
+    Code.NOT_SITTING_OR_LYING: frozenset({"StandUp"}),
+    Code.NOT_WORN: frozenset({"PutOff"}),
+    Code.NOT_HOLDING: frozenset({"Drop", "Release"}),
+}
+"""The failures, and the actions of which they say that what these would bring about holds already."""
+
+
+PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
+"""The actions that put one thing on or in another, and the row in which that is found; put again, they are additional."""
+
+First = tuple[int, ErrorClass, Code]
+
+
+@dataclass(frozen=True, slots=True)
+class Executability:
+    """What became of a predicted program.
+
+    Attributes:
+        program: what was run, canonical and bound; lines that are no steps left out.
+        empty: there was nothing to run. Such a program runs (thesis 4.5.2), and is counted apart.
+        afforded: every step fits its objects, by the grammar.
+        runs: every line is a step, and all of them can be done.
+        failed_line: the first line that does not fit or can't be done, from 0; None when there is none.
+        error: why.
+        code: the same, finer.
+        final: the world at its end; None unless it runs.
+    """
+
+    program: Program
+    empty: bool
+    afforded: bool
+    runs: bool
+    failed_line: int | None = None
+    error: ErrorClass | None = None
+    code: Code | None = None
+    final: World | None = None
+
+    @property
+    def executable(self) -> bool:
+        """As in A.3: every step fits its objects, and all of them run."""
+        return self.afforded and self.runs
+
+
+def executability(
+    lines: Lines,
+    world: World,
+    reference: Program | None = None,
+    rules: Rules = DEFAULT,
+) -> Executability:
+    """Run a predicted program in an environment.
+
+    Args:
+        lines: the prediction.
+        world: the environment at its start.
+        reference: the bound program it is compared with, by which its objects are bound (see `binding`).
+        rules: how actions are read.
+    """
+    knowledge = world.home.knowledge
+    faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
+    program, _ = check(Program(steps=steps_of(lines)), knowledge)
+    program = bind(program, nodes_of(world.home), knowledge, reference)
+    place = [number for number, line in enumerate(lines) if isinstance(line, Step)]
+    unfit = [line for line, step in zip(place, program.steps, strict=True) if not _fits(step, knowledge)]
+    sound = sum(line < min(faults, default=len(lines)) for line in place)
+    execution = run(world, program.with_steps(program.steps[:sound]), rules)
+    failures: list[First] = [(line, STATIC[code], code) for line, code in sorted(faults.items())]
+    failures += [(line, ErrorClass.AFFORDANCE, Code.NOT_AFFORDED) for line in unfit]
+    if execution.failure is not None:
+        failed = _failed_step(program.steps, execution.failure)
+        why = _classify(program.steps, failed, execution.worlds, execution.failure, rules)
+        failures.append((place[failed], why, execution.failure.code))
+    line, error, code = min(failures, key=lambda failure: failure[0]) if failures else (None, None, None)
+    runs = execution.executable and not faults
+    final = execution.final if runs else None
+    return Executability(program, not lines, not unfit and not faults, runs, line, error, code, final)
+
+
+def _fits(step: Step, knowledge: Knowledge) -> bool:
+    """Whether the grammar lets the step's objects be what they are to it; other faults are not asked about here."""
+    return step.action not in knowledge.actions or not affordances(Program(steps=(step,)), knowledge)
+
+
+def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
+    """Which step the failure is about: the agent's own, of the tick that could not be done."""
+    starts = [number for number, step in enumerate(steps) if not number or not step.joins]
+    start = starts[failure.tick]
+    end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)
+    return next((n for n in range(start, end) if steps[n].agent == failure.agent), start)
+
+
+def _classify(
+    steps: Sequence[Step], failed: int, worlds: Sequence[World], failure: Failure, rules: Rules
+) -> ErrorClass:
+    if failure.code in STATIC:
+        return STATIC[failure.code]
+    already = steps[failed].action in ALREADY_SO.get(failure.code, ())
+    if already or (failure.code is Code.NOT_HOLDING and _is_put(steps[failed], worlds[-1])):
+        return ErrorClass.ADDITIONAL_STEP
+    alone = len(worlds) == failed + 1  # with several agents a tick, worlds and steps do not go together
+    if alone and _mended_by_order(steps, failed, worlds, rules):
+        return ErrorClass.WRONG_ORDER
+    return ErrorClass.MISSING_STEP
+
+
+def _is_put(step: Step, world: World) -> bool:
+    """Whether what is to be put somewhere is there."""
+    read = PUTS.get(step.action)
+    if read is None:
+        return False
+    o, s = (world.home.index[ref.node] for ref in step.objects if ref.node is not None)
+    return bool(read(world, o) >> s & 1)
+
+
+def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
+    """Whether moving one step, this one forward or a later one before it, gets the program past this one."""
+    step = steps[failed]
+    later = dict.fromkeys(steps[failed + 1 :])
+    if any(_runs(worlds[failed], (other, step), rules) for other in later):
+        return True
+    return any(_runs(worlds[n], (step, *steps[n:failed]), rules) for n in range(failed - 1, -1, -1))
+
+
+def _runs(world: World, steps: Sequence[Step], rules: Rules) -> bool:
+    for step in steps:
+        result = act(world, step, rules)
+        if isinstance(result, Failure):
+            return False
+        world = result
+    return True
