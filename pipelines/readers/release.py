@@ -11,13 +11,14 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.files import walk
+from hearth.pipelines.files import file_digest, walk
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import change_row, difference, graph_row
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import edge_set, from_release
+from hearth.schemas.graph import from_release
 from hearth.schemas.text import decode
 
 NAME = "release"
@@ -89,15 +90,14 @@ def _item(path: Path, place: str, key: str, members: dict[str, Any], version: st
         have = " and ".join(sorted(members))
         fault = Diagnostic(Code.MISSING_FILE, f"{have} of a program that is in no other folder", where)
         return Item(f"{NAME}:{key}", "refused", where, refused(where, Reject((fault,))).value)
-    return Item(f"{NAME}:{key}", NAME, where, {"path": str(path), "label": place, "key": key, **members}, version)
+    return Item(f"{NAME}:{key}", NAME, where, {"label": place, "key": key, **members}, version, str(path))
 
 
 def _listing(path: Path) -> Iterable[tuple[str, str]]:
     """Names of files, and what tells versions of them apart."""
     if path.is_dir():
         for file in walk(path):
-            stat = file.stat()
-            yield f"{path.name}/{file.relative_to(path).as_posix()}", f"{stat.st_size}.{stat.st_mtime_ns}"
+            yield f"{path.name}/{file.relative_to(path).as_posix()}", file_digest(file)[:16]
     else:
         for info in archive(path).infolist():
             if not info.is_dir():
@@ -135,18 +135,18 @@ def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
             message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"
             return Diagnostic(Code.BAD_ARCHIVE, message, place)
         return archive(path).read(info)
-    except (OSError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError, ValueError) as error:
+    except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
-    except Exception as error:  # zlib, lzma and bz2 have errors of their own
-        return Diagnostic(Code.BAD_ARCHIVE, f"damaged: {error}", place, suggestion="download it again")
 
 
-def _text(value: dict[str, Any], name: str) -> str | Diagnostic:
+def text_of(value: dict[str, Any], name: str) -> str | Diagnostic:
+    """A member of the release as text, or why it can't be had; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
-def _json(value: dict[str, Any], name: str) -> Any:
+def json_of(value: dict[str, Any], name: str) -> Any:
+    """A member of the release as the JSON it holds, or a Diagnostic."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
         return data
@@ -158,7 +158,7 @@ def _json(value: dict[str, Any], name: str) -> Any:
 
 def read(item: Item) -> Iterator[dict[str, Any] | Reject]:
     """The record of a program with all its groundings. A grounding that can't be read is refused alone."""
-    value = item.value
+    value = {**item.value, "path": item.path}
     groundings: list[dict[str, Any]] = []
     faults: list[Diagnostic] = []
     for home in sorted({*value.get("grounded", {}), *value.get("graphs", {})}):
@@ -197,7 +197,7 @@ def _row(item: Item, text: str, groundings: list[dict[str, Any]], conditions: li
 def _collected(value: dict[str, Any], groundings: list[dict[str, Any]]) -> str | Diagnostic:
     """The text as collected, or failing that the first grounded one with its node ids left out."""
     if "collected" in value:
-        return _text(value, value["collected"])
+        return text_of(value, value["collected"])
     if groundings:
         return re.sub(r"\((\d+)\.\d+\)", r"(\1)", groundings[0]["text"])
     return Diagnostic(Code.MISSING_FILE, "no text of it can be read", f"{value['label']}/{value['key']}")
@@ -208,7 +208,7 @@ def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic 
     if name is None:
         place = f"{value['label']}/{value['graphs'][home]}"
         return Diagnostic(Code.MISSING_FILE, f"graphs for {home}, but no program grounded there", place)
-    text = _text(value, name)
+    text = text_of(value, name)
     if isinstance(text, Diagnostic):
         return text
     start, final = None, None
@@ -221,7 +221,7 @@ def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic 
 
 
 def _graphs(value: dict[str, Any], name: str) -> tuple[Any, Any] | Diagnostic:
-    data = _json(value, name)
+    data = json_of(value, name)
     place = f"{value['label']}/{name}"
     if isinstance(data, Diagnostic):
         return data
@@ -232,24 +232,13 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Any, Any] | Diagnostic:
         return error.diagnostics[0]
     except (KeyError, TypeError, AttributeError) as error:
         return Diagnostic(Code.BAD_GRAPH, f"no pair of graphs: {type(error).__name__} {error}", place)
-    return graph_row(start), final and change_row(start, final)
-
-
-def graph_row(graph: Any) -> dict[str, Any]:
-    """A graph as `tables.GRAPH`."""
-    edges = sorted(edge_set(graph.edges))
-    return {
-        "nodes": [node_row(node) for node in graph.nodes],
-        "sources": [source for source, _, _ in edges],
-        "relations": [relation for _, relation, _ in edges],
-        "targets": [target for _, _, target in edges],
-    }
+    return graph_row(start), final and change_row(difference(start, final))
 
 
 def _conditions(value: dict[str, Any]) -> list[dict[str, Any]] | Diagnostic:
     if "conditions" not in value:
         return []
-    data = _json(value, value["conditions"])
+    data = json_of(value, value["conditions"])
     if isinstance(data, Diagnostic):
         return data
     try:

@@ -1,0 +1,93 @@
+"""`replay`: does the engine do what the release's own simulator did?"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.pipelines.replay import Replayed
+
+Release = Annotated[Path, typer.Argument(metavar="RELEASE", help="The release, as its zip file or a folder.")]
+Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Stop after N programs.")]
+Strange = Annotated[
+    bool, typer.Option("--default-rules", help="Read actions as everywhere else, without the release's accidents.")
+]
+
+
+def replay(
+    release: Release,
+    limit: Limit = None,
+    default_rules: Strange = False,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Run a release's programs on their stored start graphs and compare with the stored end graphs.
+
+    Prints how many were executed and how many end graphs are reproduced exactly, in every state and relation, with
+    the edges of each mismatch. The release is read in place, one program at a time.
+
+    \b
+    Example:
+      python cli.py replay activityprograms.zip
+    """
+    from itertools import islice
+
+    from hearth.kb.knowledge import default
+    from hearth.pipelines.replay import replay as run_all
+    from hearth.simulation.rules import DEFAULT, REPLAY
+
+    results = list(islice(run_all(release, default(), DEFAULT if default_rules else REPLAY), limit))
+    summary = _summary(results)
+    inexact = [one for one in results if not one.exact]
+    if as_json:
+        output.emit({**summary, "mismatches": [_json(one) for one in inexact]})
+    else:
+        output.table(("figure", "value"), summary.items())
+        for one in inexact:
+            _explain(one)
+    output.status(len(inexact), strict=strict)
+
+
+def _summary(results: list[Replayed]) -> dict[str, Any]:
+    seconds = [sum(part) for part in zip(*(one.seconds for one in results), strict=True)] or [0.0, 0.0, 0.0]
+    steps = sum(one.steps for one in results)
+    return {
+        "programs": len(results),
+        "executed": sum(one.executed for one in results),
+        "exact": sum(one.exact for one in results),
+        "steps": steps,
+        "seconds reading": round(seconds[0], 3),
+        "seconds building worlds": round(seconds[1], 3),
+        "seconds executing": round(seconds[2], 3),
+        "steps a second executing": round(steps / seconds[2]) if seconds[2] else 0,
+    }
+
+
+def _json(one: Replayed) -> dict[str, Any]:
+    return {
+        "program_id": one.program_id,
+        "home": one.home,
+        "faults": [output.diagnostic_json(fault) for fault in one.faults],
+        "failure": None if one.failure is None else asdict(one.failure),
+        "difference": asdict(one.difference),
+    }
+
+
+def _explain(one: Replayed) -> None:
+    print(f"\n{one.program_id} in {one.home}:")
+    for fault in one.faults:
+        print(output.explain(fault))
+    if one.failure is not None:
+        print(f"  {one.failure.message()}")
+    for sign, edges in (("missing", one.difference.missing), ("surplus", one.difference.surplus)):
+        for edge in edges:
+            print(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
+    for sign, states in (("missing", one.difference.missing_states), ("surplus", one.difference.surplus_states)):
+        for node_id, name in states:
+            print(f"  {sign}: {node_id} {name}")
