@@ -1,0 +1,156 @@
+"""Binding a program whose instances are counters to the nodes of a home, so that all its steps can run (thesis 2.4.1).
+
+Depth-first over the steps: a step that names a new object tries the home's candidates for it, best first, and runs;
+what fails is undone by going back to the world before, which costs nothing because worlds are values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import product
+from operator import and_
+
+from hearth.grounding.conditions import Key
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation import rows
+from hearth.simulation.bits import indices
+from hearth.simulation.engine import act
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+MAX_ACTS = 20_000
+"""Steps tried before a binding is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """A program's objects as nodes, and how many steps were tried to find them."""
+
+    nodes: dict[Key, int]
+    tried: int
+
+    def apply(self, program: Program) -> Program:
+        """The program bound."""
+        return program.bound(self.nodes)
+
+
+def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
+    """Find nodes with which every step runs.
+
+    Objects that are bound already keep their node. Distinct instances get distinct nodes.
+
+    Returns:
+        The binding, or the failure that pruned the last candidate of the furthest step reached.
+    """
+    search = _Search(program, rules)
+    fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
+    if not program.steps:
+        return Binding({}, 0)
+    stack = [search.options(0, world, fixed)]
+    while stack and search.tried < MAX_ACTS:
+        option = next(stack[-1], None)
+        if option is None:
+            stack.pop()
+        elif len(stack) == len(program.steps):
+            return Binding(option[0], search.tried)
+        else:
+            stack.append(search.options(len(stack), option[1], option[0]))
+    return search.furthest
+
+
+class _Search:
+    """The candidates of each object, and the furthest failure so far."""
+
+    def __init__(self, program: Program, rules: Rules) -> None:
+        self.steps = program.steps
+        self.rules = rules
+        self.tried = 0
+        self.furthest = Failure(Code.UNBOUND, expected="a step", actual="none")
+        self.reached = -1
+        self.uses: dict[Key, set[tuple[str, int]]] = {}
+        for step in program.steps:
+            for position, ref in enumerate(step.objects):
+                self.uses.setdefault(ref.key, set()).add((step.action, position))
+        self.candidates: dict[Key, int] = {}
+
+    def options(self, number: int, world: World, nodes: dict[Key, int]) -> Iterator[tuple[dict[Key, int], World]]:
+        """Every way to do step `number` from a world: the binding with its new objects, and the world after."""
+        step = self.steps[number]
+        new = list(dict.fromkeys(ref.key for ref in step.objects if ref.key not in nodes))
+        choices = [self._ordered(key, world, step.agent, nodes) for key in new]
+        for key, found in zip(new, choices, strict=True):
+            if not found:
+                self._fail(number, self._nothing(step, key, world))
+        for chosen in product(*choices):
+            if len(set(chosen)) < len(chosen):
+                continue
+            bound = {**nodes, **dict(zip(new, chosen, strict=True))}
+            self.tried += 1
+            after = act(world, _bound(step, bound), self.rules)
+            if isinstance(after, Failure):
+                self._fail(number, after)
+            else:
+                yield bound, after
+
+    def _fail(self, number: int, failure: Failure) -> None:
+        if number >= self.reached:
+            self.reached = number
+            self.furthest = replace(failure, tick=number)
+
+    def _ordered(self, key: Key, world: World, agent_number: int, nodes: dict[Key, int]) -> list[int]:
+        """Ids of the candidates that are not taken: what is at hand first, then what is in the room, then by id."""
+        home = world.home
+        mask = self.candidates.get(key)
+        if mask is None:
+            mask = self.candidates[key] = self._candidates(key, world)
+        agent = world.agents[min(agent_number, len(world.agents) - 1)]
+        taken = {home.index[node] for node in nodes.values() if node in home.index}
+        room = rows.agent_room(world, agent)
+        rank = {
+            i: (not rows.is_close(world, agent, i), rows.room_of(world, i) != room, i)
+            for i in indices(mask)
+            if i not in taken
+        }
+        return [home.ids[i] for i in sorted(rank, key=rank.__getitem__)]
+
+    def _candidates(self, key: Key, world: World) -> int:
+        home = world.home
+        knowledge = home.knowledge
+        able = reduce(and_, (_able(world, action, position) for action, position in self.uses[key]))
+        names = knowledge.same_class(key[0])
+        if knowledge.is_room(key[0]):
+            room: str | None = key[0]
+            seen: list[str] = []
+            while room and room not in seen:
+                seen.append(room)
+                room = knowledge.room_standins.get(room)
+            names = (*names, *seen)
+        return next((mask for mask in (home.by_class.get(name, 0) & able for name in names) if mask), 0)
+
+    def _nothing(self, step: Step, key: Key, world: World) -> Failure:
+        names = world.home.knowledge.same_class(key[0])
+        present = any(world.home.by_class.get(name) for name in names)
+        actual = "it has some, but none affords what the program does with it, or all are taken"
+        return Failure(
+            Code.UNBOUND,
+            action=step.action,
+            agent=step.agent,
+            names=(key[0],),
+            expected=f"a {' or '.join(names[:3])} in the home",
+            actual=actual if present else "it has none",
+        )
+
+
+def _able(world: World, action: str, position: int) -> int:
+    known = world.home.knowledge.actions.get(action)
+    if known is None or not known.executed:
+        return world.home.everything
+    return world.home.able(action, position)
+
+
+def _bound(step: Step, nodes: dict[Key, int]) -> Step:
+    objects = tuple(ObjectRef(ref.name, ref.instance, nodes[ref.key]) for ref in step.objects)
+    return Step(step.action, objects, step.agent, step.joins, step.modifiers)
