@@ -49,7 +49,7 @@ class Reject:
 
     @classmethod
     def caused(cls, error: Exception, file: str = "") -> Reject:
-        """A reject for an exception: a `HearthError` keeps its faults; anything else is ours, and says where it arose."""
+        """A reject for an exception: a `HearthError` keeps its faults, another is ours and says where it arose."""
         if isinstance(error, HearthError):
             return cls.because(error.diagnostics, file)
         frames = traceback.extract_tb(error.__traceback__)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.pipelines.files import TEMPORARY, value_digest, write_json
@@ -173,7 +174,7 @@ def _gather_rejects(job: Job, numbers: list[int]) -> None:
         if path.exists():
             tables.append(pq.read_table(path))
         elif state and (state[1].rejected or state[1].partial):
-            tables.append(earlier.filter(pa.compute.equal(earlier["partition"], number)))
+            tables.append(earlier.filter(pc.equal(earlier["partition"], number)))
     write_table(whole, pa.concat_tables(tables) if tables else REJECTED.empty_table())
 
 

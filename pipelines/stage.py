@@ -6,6 +6,7 @@ owns the rest. Every record read ends in rows or in rejects, and an exception co
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -67,6 +68,8 @@ class Stage:
         columns: columns of the input to read; None for all.
         tally: a label under which a row is counted, or None.
         finish: writes what needs all partitions, before the manifest.
+
+    A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
     """
 
     name: str
@@ -84,6 +87,15 @@ class Stage:
     columns: tuple[str, ...] | None = None
     tally: Callable[[Row], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
+
+    def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
+        """Workers get a stage by the module that defines it, as its `STAGE`."""
+        return _stage_of, (self.process.__module__,)
+
+
+def _stage_of(module: str) -> Stage:
+    stage: Stage = importlib.import_module(module).STAGE
+    return stage
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ class _Told:
 
 
 def _start(job: Job, array: Any) -> None:
-    global _job, _seen  # noqa: PLW0603  a worker's whole state
+    global _job, _seen
     _job, _seen = job, array
 
 

@@ -32,7 +32,7 @@ PROGRAMS = (
 )
 
 LONGEST_RECORD = 2_000
-"""Lines that one answer may have. Beyond it a quote was never closed, and reading goes on after the line it stood in."""
+"""Lines that one answer may have. Beyond it a quote was never closed, and reading goes on after its line."""
 
 _ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
 _LOOK_AHEAD = 200

@@ -32,6 +32,7 @@ class Item:
         place: source, file inside it, and line.
         value: what the reader needs; JSON values only.
         version: changes when the content behind `value` does.
+        path: where the source is on this machine, for readers that go back to it; decides nothing.
     """
 
     record_id: str
@@ -39,6 +40,7 @@ class Item:
     place: str
     value: Any
     version: str = ""
+    path: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,9 @@ class Source:
 
 def refused(place: str, reject: Reject) -> Item:
     """An item of which only the fault is known."""
-    faults = [[str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics]
+    faults = [
+        [str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics
+    ]
     return Item(place, "refused", place, faults)
 
 

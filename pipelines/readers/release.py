@@ -6,6 +6,7 @@ import re
 import zipfile
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,10 @@ from hearth.pipelines.files import file_digest, walk
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import change_row, difference, graph_row
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import from_release
 from hearth.schemas.text import decode
+from hearth.schemas.vocabulary import STATE_ID
 
 NAME = "release"
 
@@ -35,6 +35,9 @@ FOLDERS: dict[str, str] = {
 
 _IN_HOMES = frozenset({"grounded", "graphs", "states"})
 _HOME = re.compile(r"(.*?)(_graph)?")
+_EDGE = itemgetter("from_id", "relation_type", "to_id")
+
+Row = dict[str, Any]
 
 
 def names_it(path: str) -> bool:
@@ -220,19 +223,64 @@ def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic 
     return {"home": home, "text": text, "start": start, "final": final}
 
 
-def _graphs(value: dict[str, Any], name: str) -> tuple[Any, Any] | Diagnostic:
+def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagnostic:
+    """The start graph, and what the final graph changes of it."""
     data = json_of(value, name)
     place = f"{value['label']}/{name}"
     if isinstance(data, Diagnostic):
         return data
     try:
-        start = from_release(data["init_graph"], place)
-        final = from_release(data["final_graph"], place) if data.get("final_graph") else None
-    except HearthError as error:
-        return error.diagnostics[0]
-    except (KeyError, TypeError, AttributeError) as error:
-        return Diagnostic(Code.BAD_GRAPH, f"no pair of graphs: {type(error).__name__} {error}", place)
-    return graph_row(start), final and change_row(difference(start, final))
+        start, final = data["init_graph"], data.get("final_graph")
+        edges = _edges(start)
+        ordered = sorted(edges)
+        row = {
+            "nodes": [_node(node) for node in start["nodes"]],
+            "sources": [edge[0] for edge in ordered],
+            "relations": [edge[1] for edge in ordered],
+            "targets": [edge[2] for edge in ordered],
+        }
+        return row, final and _changed(edges, start, final)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        message = f"not a pair of environment graphs: {type(error).__name__} {error}"
+        suggestion = "nodes need id and class_name; edges need from_id, relation_type and to_id"
+        return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
+
+
+def _edges(graph: dict[str, Any]) -> set[tuple[int, str, int]]:
+    edges = set(map(_EDGE, graph["edges"]))
+    if not all(type(a) is int and type(b) is int and type(r) is str for a, r, b in edges):
+        raise TypeError("an edge needs numbers for ids and a word for its relation")
+    return edges
+
+
+def _node(data: dict[str, Any]) -> Row:
+    box = data.get("bounding_box")
+    return {
+        "id": int(data["id"]),
+        "class_name": str(data["class_name"]),
+        "category": str(data.get("category") or ""),
+        "properties": list(map(str, data.get("properties") or ())),
+        "states": list(map(str, data.get("states") or ())),
+        "prefab": data.get("prefab_name"),
+        "box": box and {side: dict(zip("xyz", map(float, box[side]), strict=True)) for side in ("center", "size")},
+        "yaw": data.get("yaw"),
+    }
+
+
+def _changed(edges: set[tuple[int, str, int]], start: dict[str, Any], final: dict[str, Any]) -> Row:
+    """What a final graph changes, as `tables.CHANGE`: edges, and states that are simulated."""
+    new = _edges(final)
+    past, now = _states(start), _states(final)
+    return {
+        "added": sorted(new - edges),
+        "removed": sorted(edges - new),
+        "set_states": sorted(now - past),
+        "cleared_states": sorted(past - now),
+    }
+
+
+def _states(graph: dict[str, Any]) -> set[tuple[int, str]]:
+    return {(int(node["id"]), name) for node in graph["nodes"] for name in node.get("states") or () if name in STATE_ID}
 
 
 def _conditions(value: dict[str, Any]) -> list[dict[str, Any]] | Diagnostic:

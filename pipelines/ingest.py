@@ -1,0 +1,139 @@
+"""Stage 1: reads whatever descriptions and programs arrived in, one row each, and leaves their words as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from hearth.pipelines.files import value_digest
+from hearth.pipelines.parts import Row
+from hearth.pipelines.readers import crowd, release, text
+from hearth.pipelines.readers.item import Item, Source, read_refused, refused
+from hearth.pipelines.readers.recognise import recognise
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.sources import labelled, salt
+from hearth.pipelines.stage import Job, Partition, Record, Stage
+from hearth.schemas.failures import Code
+from hearth.schemas.tables import INGESTED
+
+SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
+    release.NAME: release.scan,
+    crowd.NAME: crowd.scan,
+    text.NAME: text.scan,
+}
+"""What finds the records of a file or folder, by reader."""
+
+READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]] = {
+    release.NAME: lambda item, salt: release.read(item),
+    crowd.NAME: crowd.read,
+    text.NAME: lambda item, salt: text.read(item),
+    "refused": lambda item, salt: read_refused(item),
+}
+"""What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
+
+WEIGHTS = {release.NAME: 16}
+"""What a record counts towards filling a partition, where it brings more than words."""
+
+_FULL = 512
+
+
+def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
+    """Every record of the sources with its source's label; one that was there before is refused as a duplicate."""
+    seen: set[bytes] = set()
+    for source in sources:
+        for entry in recognise(source.path, source.label):
+            if entry.refusal:
+                yield source.label, refused(entry.inside, entry.refusal)
+                continue
+            for item in SCANNERS[entry.reader](entry.path, entry.inside):
+                yield source.label, _first(item, seen)
+
+
+def _first(item: Item, seen: set[bytes]) -> Item:
+    if item.reader == "refused":
+        return item
+    for twin, what in ((item.record_id, "this id"), (_answer(item), "this answer of the same worker")):
+        digest = twin and _short(twin)
+        if digest and digest in seen:
+            reject = Reject.of(Code.DUPLICATE, f"{what} was read before", file=item.place, found=item.record_id)
+            return Item(item.record_id, "refused", item.place, refused(item.place, reject).value)
+        if digest:
+            seen.add(digest)
+    return item
+
+
+def _answer(item: Item) -> Any:
+    """What a crowd worker's answer says, its own id left out; None for other records."""
+    if item.reader != crowd.NAME:
+        return None
+    return {name: cell for name, cell in item.value["cells"].items() if name != "HITId"}
+
+
+def _short(value: Any) -> bytes:
+    return bytes.fromhex(value_digest(value)[:24])
+
+
+def partitions(job: Job) -> Iterator[Partition]:
+    """Shares of the sources, each of one source."""
+    share: list[tuple[str, Item]] = []
+    weight = 0
+    number = 0
+    for found in _limited(items(labelled(job.settings.sources)), job.settings.limit):
+        if share and (weight >= _FULL or share[0][0] != found[0]):
+            yield _partition(number, share)
+            number += 1
+            share, weight = [], 0
+        share.append(found)
+        weight += WEIGHTS.get(found[1].reader, 1)
+    if share:
+        yield _partition(number, share)
+
+
+def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[tuple[str, Item]]:
+    for number, one in enumerate(found):
+        if limit is not None and number >= limit:
+            return
+        yield one
+
+
+def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:
+    told = [[source, item.record_id, item.reader, item.place, item.value, item.version] for source, item in share]
+    return Partition(number, value_digest(told), share, len(share))
+
+
+def records(job: Job, partition: Partition) -> Iterator[Record]:
+    """The items of a share, as records."""
+    return ({"program_id": item.record_id, "source": source, "item": item} for source, item in partition.payload)
+
+
+def process(record: Record, salt: str) -> Iterable[Row | Reject] | Reject:
+    """Read one record."""
+    item: Item = record["item"]
+    read = READERS[item.reader](item, salt)
+    if isinstance(read, Reject):
+        return read
+    outputs = [read] if isinstance(read, dict) else list(read)
+    for output in outputs:
+        if not isinstance(output, Reject):
+            output["source"] = record["source"]
+    return outputs
+
+
+def prepare(settings: Settings) -> dict[str, Any]:
+    """Name the salt without telling it."""
+    return {"salt": value_digest(salt(settings))[:16]}
+
+
+STAGE = Stage(
+    name="ingest",
+    tables={"": INGESTED},
+    process=process,
+    uses=("pipelines/ingest.py", "pipelines/readers", "pipelines/rows.py"),
+    settings=("limit",),
+    open=lambda job: salt(job.settings),
+    prepare=prepare,
+    partitions=partitions,
+    records=records,
+    tally=lambda row: row["kind"],
+)

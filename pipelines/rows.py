@@ -1,0 +1,221 @@
+"""Between values (programs, graphs, changes, failures) and the rows of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.vocabulary import STATE_ID
+from hearth.simulation.change import Change
+from hearth.simulation.engine import Execution
+
+Row = dict[str, Any]
+Bindings = dict[tuple[str, int], int]
+
+
+def node_row(node: Node) -> Row:
+    """A node as `tables.NODE`."""
+    box = node.box and {
+        "center": dict(zip("xyz", node.box.center, strict=True)),
+        "size": dict(zip("xyz", node.box.size, strict=True)),
+    }
+    return {
+        "id": node.id,
+        "class_name": node.class_name,
+        "category": node.category,
+        "properties": list(node.properties),
+        "states": list(node.states),
+        "prefab": node.prefab,
+        "box": box,
+        "yaw": node.yaw,
+    }
+
+
+def node_of(row: Mapping[str, Any]) -> Node:
+    """The inverse of `node_row`."""
+    box = row["box"]
+    return Node(
+        row["id"],
+        row["class_name"],
+        row["category"],
+        tuple(row["properties"]),
+        tuple(row["states"]),
+        row["prefab"],
+        box and Box(tuple(box["center"][axis] for axis in "xyz"), tuple(box["size"][axis] for axis in "xyz")),
+        row["yaw"],
+    )
+
+
+def graph_row(graph: EnvironmentGraph) -> Row:
+    """A graph as `tables.GRAPH`, edges sorted, each once."""
+    edges = sorted(edge_set(graph.edges))
+    return {
+        "nodes": [node_row(node) for node in graph.nodes],
+        "sources": [source for source, _, _ in edges],
+        "relations": [relation for _, relation, _ in edges],
+        "targets": [target for _, _, target in edges],
+    }
+
+
+def graph_of(row: Mapping[str, Any]) -> EnvironmentGraph:
+    """The inverse of `graph_row`."""
+    edges = map(Edge, row["sources"], row["relations"], row["targets"])
+    return EnvironmentGraph(tuple(map(node_of, row["nodes"])), tuple(edges))
+
+
+def change_row(change: Change) -> Row:
+    """A change as `tables.CHANGE`."""
+    return {
+        "added": list(change.added),
+        "removed": list(change.removed),
+        "set_states": list(change.set_states),
+        "cleared_states": list(change.cleared_states),
+    }
+
+
+def change_of(row: Mapping[str, Any]) -> Change:
+    """The inverse of `change_row`."""
+    return Change(
+        tuple(edge_of(edge) for edge in row["added"]),
+        tuple(edge_of(edge) for edge in row["removed"]),
+        tuple((state["node"], state["state"]) for state in row["set_states"]),
+        tuple((state["node"], state["state"]) for state in row["cleared_states"]),
+    )
+
+
+def edge_of(row: Mapping[str, Any]) -> Edge:
+    """An edge of a row read back."""
+    return Edge(row["source"], row["relation"], row["target"])
+
+
+def difference(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
+    """What differs between two graphs over the same nodes: edges, and simulated states."""
+    old, new = edge_set(before.edges), edge_set(after.edges)
+    past, now = _states(before), _states(after)
+    return Change(
+        tuple(Edge(*edge) for edge in sorted(new - old)),
+        tuple(Edge(*edge) for edge in sorted(old - new)),
+        tuple(sorted(now - past)),
+        tuple(sorted(past - now)),
+    )
+
+
+def _states(graph: EnvironmentGraph) -> set[tuple[int, str]]:
+    return {(node.id, state) for node in graph.nodes for state in node.states if state in STATE_ID}
+
+
+def step_rows(program: Program) -> list[Row]:
+    """A program's steps as `tables.STEP`, node ids left out."""
+    return [
+        {
+            "agent": step.agent,
+            "action": step.action,
+            "objects": [{"name": ref.name, "instance": ref.instance} for ref in step.objects],
+            "joins": step.joins,
+            "modifiers": [{"name": name, "value": value} for name, value in step.modifiers],
+            "line": program.line(number),
+        }
+        for number, step in enumerate(program.steps)
+    ]
+
+
+def steps_of(rows: Iterable[Mapping[str, Any]], bindings: Bindings | None = None) -> tuple[Step, ...]:
+    """The inverse of `step_rows`, bound where `bindings` says to what."""
+    bound: Bindings = bindings or {}
+    return tuple(
+        Step(
+            row["action"],
+            tuple(
+                ObjectRef(ref["name"], ref["instance"], bound.get((ref["name"], ref["instance"])))
+                for ref in row["objects"]
+            ),
+            row["agent"],
+            row["joins"],
+            tuple((pair["name"], pair["value"]) for pair in row["modifiers"]),
+        )
+        for row in rows
+    )
+
+
+def program_of(row: Mapping[str, Any], bindings: Bindings | None = None) -> Program:
+    """The program of a row with `title`, `description` and `steps`."""
+    lines = tuple(step["line"] for step in row["steps"])
+    return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
+
+
+def binding_rows(program: Program) -> list[Row]:
+    """Which node each object of a bound program is, as `tables.BINDING`."""
+    return [
+        {"name": ref.name, "instance": ref.instance, "node": ref.node}
+        for ref in program.objects()
+        if ref.node is not None
+    ]
+
+
+def bindings_of(rows: Iterable[Mapping[str, Any]]) -> Bindings:
+    """The inverse of `binding_rows`."""
+    return {(row["name"], row["instance"]): row["node"] for row in rows}
+
+
+def failure_row(failure: Failure | None) -> Row | None:
+    """A failure as `tables.FAILURE`."""
+    if failure is None:
+        return None
+    return {
+        "code": str(failure.code),
+        "tick": failure.tick,
+        "agent": failure.agent,
+        "action": failure.action,
+        "objects": list(failure.objects),
+        "names": list(failure.names),
+        "expected": failure.expected,
+        "actual": failure.actual,
+    }
+
+
+def failure_of(row: Mapping[str, Any] | None) -> Failure | None:
+    """The inverse of `failure_row`."""
+    if row is None:
+        return None
+    places = (tuple(row["objects"]), tuple(row["names"]))
+    return Failure(Code(row["code"]), row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
+
+
+def tick_rows(execution: Execution) -> list[Row]:
+    """What was done and changed, tick by tick, as `tables.TICK`; only the ticks that were done."""
+    rows: list[Row] = []
+    number = 0
+    for steps, change in zip(execution.program.ticks(), execution.changes(), strict=False):
+        instructions = [{"agent": step.agent, "step": number + place} for place, step in enumerate(steps)]
+        rows.append({"instructions": instructions, **change_row(change)})
+        number += len(steps)
+    return rows
+
+
+def condition_rows(conditions: Iterable[tuple[str, Sequence[tuple[str, int]]]]) -> list[Row]:
+    """Preconditions as `tables.CONDITION`."""
+    return [
+        {"name": name, "objects": [{"name": object_name, "instance": instance} for object_name, instance in objects]}
+        for name, objects in conditions
+    ]
+
+
+def conditions_of(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, tuple[tuple[str, int], ...]]]:
+    """The inverse of `condition_rows`."""
+    return [(row["name"], tuple((ref["name"], ref["instance"]) for ref in row["objects"])) for row in rows]
+
+
+def warning_row(fault: Diagnostic) -> Row:
+    """A diagnostic that does not stop a program, as `tables.WARNING`."""
+    return {
+        "code": str(fault.code),
+        "line": fault.line,
+        "column": fault.column,
+        "found": fault.found,
+        "message": fault.message,
+        "suggestion": fault.suggestion,
+    }

@@ -1,0 +1,45 @@
+"""Sources: the files and folders a build is given, under labels that do not tell where on a machine they were."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+
+from hearth.pipelines.files import tree_digest, value_digest
+from hearth.pipelines.readers.item import Source
+from hearth.pipelines.settings import Settings
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+
+def labelled(paths: Iterable[str]) -> list[Source]:
+    """The sources with a label each: their name, numbered where several share one.
+
+    Raises:
+        HearthError: MISSING_FILE, naming every path that is not there; EMPTY, when none were given.
+    """
+    sources: list[Source] = []
+    used: Counter[str] = Counter()
+    for text in paths:
+        path = Path(text)
+        name = path.name or path.resolve().name
+        used[name] += 1
+        sources.append(Source(name if used[name] == 1 else f"{name}~{used[name]}", path))
+    missing = [source.path for source in sources if not source.path.exists()]
+    if missing:
+        errors = [HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path)) for path in missing]
+        raise HearthError(fault for error in errors for fault in error.diagnostics)
+    if not sources:
+        raise HearthError.of(Code.EMPTY, "no sources to read", suggestion="name a file or folder to read")
+    return sources
+
+
+def source_digests(paths: Iterable[str]) -> dict[str, str]:
+    """SHA-256 of every source by its label."""
+    return {source.label: tree_digest(source.path) for source in labelled(paths)}
+
+
+def salt(settings: Settings) -> str:
+    """What is hashed with worker ids: as given, or else derived from the sources' bytes, which are not published."""
+    return settings.salt or value_digest(["workers", sorted(source_digests(settings.sources).values())])
