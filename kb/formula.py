@@ -223,7 +223,7 @@ class _Parser:
                 self.take()
                 variables.append(self.name())
             self.take(":")
-        condition = TRUE
+        condition: Formula = TRUE
         if "->" in self.tokens[self.next :]:
             condition = self.alternatives()
             self.take("->")

@@ -6,35 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
 
-from hearth.kb import loading
 from hearth.kb.formula import Atom, Effect, Formula
-from hearth.kb.reading import Entry, Faults
-from hearth.kb.records import Action, ObjectClass, Placement, StateGroup
-from hearth.schemas.errors import HearthError
+from hearth.kb.records import Action, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.schemas.failures import Code
-
-EXECUTED_FILES = ("actions.yaml",)
-WRITTEN_FILES = ("actions_written.yaml",)
-OBJECT_FILES = (
-    "objects_clothes.csv",
-    "objects_devices.csv",
-    "objects_food.csv",
-    "objects_furniture.csv",
-    "objects_house.csv",
-    "objects_hygiene.csv",
-    "objects_kitchenware.csv",
-    "objects_paper.csv",
-    "objects_people.csv",
-    "objects_things.csv",
-)
-FILES = frozenset(
-    {*EXECUTED_FILES, *WRITTEN_FILES, *OBJECT_FILES}
-    | {"affordances.yaml", "aliases.csv", "corrections.yaml", "derived.yaml", "kinds.csv", "limits.yaml"}
-    | {"placements.csv", "repairs.yaml", "rooms.yaml", "stand_ins.csv", "states.yaml", "tables.yaml"}
-)
-"""Every file the knowledge is read from; another YAML or CSV file in a directory of it is a mistake."""
 
 _DROPPED = {ord(letter): None for letter in " _-"}
 
@@ -57,6 +32,8 @@ class Knowledge:
         table_like: classes on which rule 9 of the preconditions expects things (semantics).
         defaults: class or property -> the states a home is prepared with (thesis 5.5.2).
         derived: definitions of derived predicates.
+        kinds: the kinds above the classes.
+        repairs: what to do about a failure, by name; the first that fits is the one to try.
     """
 
     actions: Mapping[str, Action]
@@ -67,6 +44,8 @@ class Knowledge:
     table_like: frozenset[str]
     defaults: Mapping[str, Mapping[str, tuple[str, ...]]]
     derived: Mapping[str, tuple[Atom, Formula]]
+    kinds: Mapping[str, Kind]
+    repairs: Mapping[str, Repair]
     _action_names: Mapping[str, Action] = field(repr=False)
     _object_names: Mapping[str, ObjectClass] = field(repr=False)
     _aliases: Mapping[str, tuple[str, ...]] = field(repr=False)
@@ -105,6 +84,17 @@ class Knowledge:
                     name = atom.terms[1].name if atom.name == "state" else atom.name
                     found.setdefault(name, []).append((action, effect))
         return {name: tuple(pairs) for name, pairs in found.items()}
+
+    def repairs_for(self, code: Code, action: str) -> tuple[Repair, ...]:
+        """What may be done when the action fails with that code, the first choice first."""
+        return tuple(r for r in self._repairs.get(code, ()) if not r.actions or action in r.actions)
+
+    @cached_property
+    def _repairs(self) -> Mapping[Code, tuple[Repair, ...]]:
+        found: dict[Code, list[Repair]] = {}
+        for repair in self.repairs.values():
+            found.setdefault(repair.code, []).append(repair)
+        return {code: tuple(repairs) for code, repairs in found.items()}
 
     # Objects
 
@@ -146,6 +136,17 @@ class Knowledge:
         root = thing.same_as or name
         family = dict.fromkeys((name, root, *self._twins.get(root, ())))
         return (*family, *(alias for one in family for alias in self._aliases.get(one, ())))
+
+    def ancestors(self, name: str) -> tuple[str, ...]:
+        """What it is a kind of, nearest first: `fridge` -> appliance, device, artefact, thing."""
+        thing = self.object_class(name)
+        above: list[str] = []
+        step = thing.hypernym if thing else ""
+        while step and step not in above:
+            above.append(step)
+            kind = self.kinds.get(step)
+            step = kind.parent if kind else self.objects[step].hypernym if step in self.objects else ""
+        return tuple(above)
 
     def is_room(self, name: str) -> bool:
         """Whether that is a kind of room."""
@@ -251,126 +252,12 @@ def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledg
         HearthError: every duplicate key, unknown property, unknown object, circle of synonyms and other fault of all
             files, each with file and line.
     """
-    layers = [directory or Path(__file__).parent, *([overlay] if overlay else [])]
-    faults = Faults()
-    for layer in layers:
-        _check_layer(layer, faults)
-    knowledge = None if faults else _assembled(layers, faults)
-    if faults or knowledge is None:
-        raise HearthError(faults)
-    return knowledge
+    from hearth.kb.loading import assemble
+
+    return assemble([directory or Path(__file__).parent, *([overlay] if overlay else [])])
 
 
 @lru_cache(maxsize=1)
 def default() -> Knowledge:
     """Our own knowledge, loaded once."""
     return load()
-
-
-def _check_layer(layer: Path, faults: Faults) -> None:
-    if not layer.is_dir():
-        faults.add(str(layer), 0, "is not a directory of knowledge files", code=Code.MISSING_FILE)
-        return
-    for path in sorted(layer.iterdir()):
-        if path.suffix in (".yaml", ".yml", ".csv") and path.name not in FILES:
-            faults.add(str(path), 0, "is not one of the knowledge's files", f"they are {', '.join(sorted(FILES))}")
-
-
-def _assembled(layers: list[Path], faults: Faults) -> Knowledge | None:
-    groups = loading.state_groups(loading.yaml_entries(layers, ("states.yaml",), faults), faults)
-    objects = loading.objects(
-        loading.csv_rows(layers, OBJECT_FILES, loading.OBJECT_COLUMNS, (1,), faults), groups, faults
-    )
-    aliases = loading.aliases(
-        loading.csv_rows(layers, ("aliases.csv",), loading.ALIAS_COLUMNS, (0,), faults), objects, faults
-    )
-    stand_ins = loading.stand_ins(
-        loading.csv_rows(layers, ("stand_ins.csv",), loading.STAND_IN_COLUMNS, (0, 2), faults),
-        {**objects, **aliases},
-        faults,
-    )
-    placements = loading.placements(
-        loading.csv_rows(layers, ("placements.csv",), loading.PLACEMENT_COLUMNS, (0, 1, 2, 3), faults), objects, faults
-    )
-    actions = _actions(layers, faults)
-    derived = loading.derived(loading.yaml_entries(layers, ("derived.yaml",), faults), faults)
-    rooms = loading.yaml_entries(layers, ("rooms.yaml",), faults)
-    limits = loading.yaml_entries(layers, ("limits.yaml",), faults)
-    tables = loading.yaml_entries(layers, ("tables.yaml",), faults)
-    object_names = _object_names(objects, aliases, faults)
-    if faults:
-        return None
-    by_class: dict[str, list[str]] = {}
-    for alias, name in aliases.items():
-        by_class.setdefault(name, []).append(alias)
-    return Knowledge(
-        actions=actions,
-        objects={name: _with_synonyms(thing, by_class) for name, thing in objects.items()},
-        rooms=tuple(sorted(rooms)),
-        room_standins={name: entry.value["stand_in"] for name, entry in rooms.items() if entry.value},
-        state_groups=groups,
-        table_like=frozenset(tables["table_like"].value),
-        defaults=_default_states(tables["default_states"]),
-        derived=derived,
-        _action_names=_action_names(actions),
-        _object_names={key: _with_synonyms(thing, by_class) for key, thing in object_names.items()},
-        _aliases={name: tuple(names) for name, names in by_class.items()},
-        _stand_ins=stand_ins,
-        _placements=_grouped(placements, 0),
-        _held=_grouped(placements, 2),
-        _limits={kind: entry.value for kind, entry in limits.items()},
-    )
-
-
-def _actions(layers: list[Path], faults: Faults) -> dict[str, Action]:
-    executed = loading.yaml_entries(layers, EXECUTED_FILES, faults)
-    written = loading.yaml_entries(layers, WRITTEN_FILES, faults)
-    for name in executed.keys() & written.keys():
-        faults.add(written[name].file, written[name].line, f"`{name}` is executed; it stands in actions.yaml too")
-    grammar = loading.yaml_entries(layers, ("affordances.yaml",), faults)
-    return loading.actions({**written, **executed}, frozenset(executed), grammar, faults)
-
-
-def _action_names(actions: Mapping[str, Action]) -> dict[str, Action]:
-    names = {key_of(alias): action for action in actions.values() for alias in action.aliases}
-    names.update({key_of(name): action for name, action in actions.items()})
-    return {**names, **actions, **{name.upper(): action for name, action in actions.items()}}
-
-
-def _object_names(
-    objects: Mapping[str, ObjectClass], aliases: Mapping[str, str], faults: Faults
-) -> dict[str, ObjectClass]:
-    """Every spelling without its separators -> class; two classes that cannot be told apart are a fault."""
-    names: dict[str, ObjectClass] = {}
-    for name, thing in objects.items():
-        other = names.setdefault(key_of(name), thing)
-        if other is not thing:
-            faults.add("", 0, f"`{name}` and `{other.name}` differ in case and separators only")
-    for alias, target in aliases.items():
-        thing = objects[target]
-        other = names.setdefault(key_of(alias), thing)
-        if (other.same_as or other.name) != (thing.same_as or thing.name):
-            faults.add("", 0, f"`{alias}` may mean `{other.name}` or `{target}`", "let each name mean one class")
-    return names
-
-
-def _with_synonyms(thing: ObjectClass, aliases: Mapping[str, list[str]]) -> ObjectClass:
-    from dataclasses import replace
-
-    own = aliases.get(thing.name)
-    return replace(thing, synonyms=tuple(own)) if own else thing
-
-
-def _grouped(placements: list[Placement], column: int) -> dict[str, tuple[Placement, ...]]:
-    found: dict[str, list[Placement]] = {}
-    for placement in placements:
-        found.setdefault(str(placement[column]), []).append(placement)
-    return {name: tuple(sorted(rows, key=lambda row: -row.weight)) for name, rows in found.items()}
-
-
-def _default_states(entry: Entry) -> dict[str, dict[str, tuple[str, ...]]]:
-    return {part: _state_lists(value) for part, value in entry.value.items()}
-
-
-def _state_lists(value: Any) -> dict[str, tuple[str, ...]]:
-    return {name: tuple(states) for name, states in value.items()}

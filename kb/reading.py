@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,9 +29,13 @@ class Entry(NamedTuple):
 class Faults(list[Diagnostic]):
     """The faults found so far, in the order of discovery."""
 
-    def add(self, file: str, line: int, message: str, suggestion: str = "", code: Code = Code.BAD_TABLE) -> None:
+    def add(self, file: str, line: int, message: str, suggestion: str = "", code: Code = Code.BAD_TABLE) -> None:  # noqa: PLR0917 - a fault is a place and words
         """Note one fault."""
         self.append(Diagnostic(code, message, file, line, suggestion=suggestion))
+
+    def at(self, entry: Entry, message: str, suggestion: str = "", code: Code = Code.BAD_TABLE) -> None:
+        """Note one fault at the place of an entry."""
+        self.add(entry.file, entry.line, message, suggestion, code)
 
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -162,11 +166,3 @@ def strings(value: Any) -> tuple[str, ...]:
     if isinstance(value, str):
         return (value,)
     return tuple(map(str, value)) if isinstance(value, list) else (str(value),)
-
-
-def merged(layers: list[Mapping[str, Entry]]) -> dict[str, Entry]:
-    """Entries of several files laid over each other: a later one replaces an earlier one of its name."""
-    result: dict[str, Entry] = {}
-    for layer in layers:
-        result.update(layer)
-    return result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from hearth.kb.formula import Effect, Formula
@@ -184,24 +184,47 @@ class StateGroup:
     given_by: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class Repair:
-    """One row of table A.4: on failure `code` of `actions` (all when empty), when `when` holds, do `steps`.
+class Kind(NamedTuple):
+    """A kind above the classes: `appliance`, a kind of `device`; the topmost has no parent."""
+
+    name: str
+    parent: str
+    gloss: str
+
+
+class RepairStep(NamedTuple):
+    """One edit of a program at the step that failed.
 
     Attributes:
-        name: of the handler that carries it out.
+        kind: `remove` the step, or insert an action `before` or `after` it.
+        action: what is inserted.
+        objects: what it is done to: `object` or `second` of the step, the closed `container` around the object, the
+            closed `door` on the way, a thing `held`, a `seat`, or `each` thing on the object in turn.
+    """
+
+    kind: str
+    action: str = ""
+    objects: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """A row of thesis table A.4, or one of ours: what to do about a failure.
+
+    Attributes:
+        name: of the repair; stages name their handler by it.
         code: the failure.
-        actions: the actions it is for.
-        when: a formula about the world at the failure, or None.
-        steps: what is removed, inserted before, or inserted after.
-        source: thesis or ours.
+        actions: the actions it is for; all when empty.
+        when: the case in which the failure is raised.
+        steps: the edits, in order.
         say: the repair in words.
+        source: `A.4` or `ours`.
     """
 
     name: str
     code: Code
     actions: tuple[str, ...] = ()
-    when: Formula | None = None
-    steps: tuple[str, ...] = ()
+    when: str = ""
+    steps: tuple[RepairStep, ...] = ()
+    say: str = ""
     source: str = ""
-    say: str = field(default="", compare=False)
