@@ -1,0 +1,184 @@
+"""`run`: what happens when this program is run in that home?"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.grounding.trial import Trial
+    from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.failures import Failure
+    from hearth.schemas.program import Program
+    from hearth.simulation.change import Change
+    from hearth.simulation.home import Home
+    from hearth.simulation.rules import Rules
+    from hearth.simulation.world import World
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file; `-` reads standard input.")]
+HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
+Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
+Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
+Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="For what has to be added to the home.")]
+AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and leave its states as they are.")]
+Explain = Annotated[bool, typer.Option("--explain", help="Say for each step which checks held, and by what.")]
+
+_SHOWN = 6
+
+
+def run(
+    file: File,
+    home: HomeName = "maple",
+    graph: Graph = None,
+    homes: Homes = None,
+    kb: Kb = None,
+    seed: Seed = 0,
+    as_is: AsIs = False,
+    explain: Explain = False,
+    as_json: output.Json = False,
+) -> None:
+    """Run a program in a home and print what happens.
+
+    Its objects are bound to the home's own things if all steps can then run; else an environment is sampled, with
+    what is missing added. Prints the binding and, for each step, what it changed. The status is 1 if a step fails.
+
+    \b
+    Example:
+      python cli.py run watch_tv.txt --home maple --explain
+    """
+    from hearth.grounding.trial import attempt
+    from hearth.kb import knowledge
+    from hearth.schemas.failures import Failure
+    from hearth.simulation.rules import DEFAULT
+
+    known = knowledge.load(overlay=kb) if kb else knowledge.default()
+    program = _program(file, known)
+    place = _home(home, graph, homes, known)
+    trial = attempt(program, place, seed, DEFAULT, at_rest=not as_is, add=not as_is)
+    failure = trial if isinstance(trial, Failure) else trial.execution.failure
+    if as_json:
+        output.emit(_json(trial, place))
+    else:
+        _print(program, trial, place, explain, DEFAULT)
+    if failure is not None:
+        raise typer.Exit(output.BAD_INPUT)
+
+
+def _program(file: Path, known: Knowledge) -> Program:
+    from hearth.kb import grammar
+    from hearth.schemas.errors import Diagnostic, HearthError
+    from hearth.schemas.syntax import parse_program
+    from hearth.schemas.text import decode
+
+    data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
+    text = decode(data, str(file))
+    if isinstance(text, Diagnostic):
+        raise HearthError(text)
+    written, faults = parse_program(text, str(file))
+    program, wrong = grammar.check(written, known, str(file), text.splitlines())
+    if faults or wrong:
+        raise HearthError((*faults, *wrong))
+    return program
+
+
+def _home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
+    from hearth.simulation.home import Home
+    from hearth.simulation.homes import catalog
+
+    if graph is not None:
+        return Home.from_graph(catalog.graph_of(graph), graph.stem, known)
+    return Home.from_graph(catalog.load_graph(name, homes), name, known)
+
+
+def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, rules: Rules) -> None:
+    from hearth.schemas.failures import Failure
+
+    print(f"{program.title or 'A program'}, in {place.name}")
+    if isinstance(trial, Failure):
+        print(f"  can't be placed there. {trial.message()}")
+        return
+    _print_binding(trial)
+    execution = trial.execution
+    for number, tick in enumerate(execution.program.ticks()):
+        before = execution.worlds[number]
+        if number + 1 == len(execution.worlds):
+            assert execution.failure is not None
+            print(f"{number + 1:3}  {_tick(tick)}\n     FAILED  {execution.failure.message()}")
+            return
+        change = execution.worlds[number + 1].changes(before)
+        print(f"{number + 1:3}  {_tick(tick)}\n     {_summary(change, before)}")
+        if explain:
+            _print_checks(before, tick, rules)
+    print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
+
+
+def _tick(tick: tuple[Any, ...]) -> str:
+    from hearth.schemas.syntax import print_step
+
+    return " | ".join(print_step(step, show_agent=len(tick) > 1) for step in tick)
+
+
+def _print_binding(trial: Trial) -> None:
+    world = trial.execution.worlds[0]
+    if trial.environment is not None:
+        assert trial.refused is not None
+        added = {node.id for node in trial.environment.nodes}
+        print(f"  sampled, because the home alone won't do: {trial.refused.message()}")
+    else:
+        added = set()
+    for ref in trial.execution.program.objects():
+        index = world.home.index[ref.node] if ref.node in world.home.index else -1
+        what = f"{world.home.classes[index]} ({ref.node})" if index >= 0 else "nothing"
+        print(f"  <{ref.name}> ({ref.instance}) is {what}{', added' if ref.node in added else ''}")
+
+
+def _summary(change: Change, world: World) -> str:
+    def name(node: int) -> str:
+        return f"{world.home.classes[world.home.index[node]]} ({node})"
+
+    parts = [f"{name(node)} is {state}" for node, state in change.set_states]
+    loud = [edge for edge in change.added if edge.relation not in ("CLOSE", "FACING")]
+    parts += [f"{name(e.source)} {e.relation} {name(e.target)}" for e in loud]
+    quiet = {edge.relation: 0 for edge in change.added if edge not in loud}
+    for edge in change.added:
+        if edge.relation in quiet:
+            quiet[edge.relation] += 1
+    parts += [f"{count} more {relation}" for relation, count in quiet.items()]
+    if change.removed:
+        parts.append(f"{len(change.removed)} edges less")
+    return "; ".join(parts) or "changes nothing"
+
+
+def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
+    from hearth.simulation.explain import checks
+
+    for step in tick:
+        for check in checks(world, step, rules):
+            print(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
+
+
+def _json(trial: Trial | Failure, place: Home) -> dict[str, Any]:
+    from hearth.schemas.failures import Failure
+    from hearth.schemas.syntax import print_step
+
+    if isinstance(trial, Failure):
+        return {"home": place.name, "executable": False, "failure": asdict(trial)}
+    execution = trial.execution
+    changes = [asdict(change) for change in execution.changes()]
+    return {
+        "home": place.name,
+        "executable": execution.executable,
+        "failure": asdict(execution.failure) if execution.failure else None,
+        "sampled": trial.environment is not None,
+        "added_nodes": [asdict(node) for node in trial.environment.nodes] if trial.environment else [],
+        "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
+        "steps": [print_step(step) for step in execution.program.steps],
+        "changes": changes,
+    }

@@ -1,0 +1,62 @@
+"""Trying a program in a home: bound to what the home has if that can run, else in an environment sampled for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hearth.grounding.base import prepared
+from hearth.grounding.binding import Binding, bind
+from hearth.grounding.sampling import Environment, sample
+from hearth.schemas.failures import Failure
+from hearth.schemas.program import Program
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.home import Home
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A program's execution, and how it was grounded.
+
+    Attributes:
+        execution: what happened, as far as it went.
+        environment: what was sampled, when the home alone would not do.
+        refused: why the home alone would not do, when an environment was sampled.
+    """
+
+    execution: Execution
+    environment: Environment | None = None
+    refused: Failure | None = None
+
+
+def attempt(
+    program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT, at_rest: bool = True, add: bool = True
+) -> Trial | Failure:
+    """Ground and run a program.
+
+    Args:
+        program: instances that carry node ids keep them.
+        home: where.
+        seed: of the sampling.
+        rules: how actions are read.
+        at_rest: begin with the home in its default state; else as it is given.
+        add: sample an environment when the home alone has no binding that runs.
+
+    Returns:
+        The trial, or why the program can be grounded neither way.
+    """
+    world = World.start(prepared(home).home if at_rest else home)
+    found = bind(program, world, rules)
+    if isinstance(found, Binding):
+        return Trial(run(world, found.apply(program), rules))
+    fixed = any(ref.node is not None for ref in program.objects())
+    if fixed:
+        return Trial(run(world, program, rules))
+    if not add:
+        return found
+    sampled = sample(program, home, seed, program.title, rules=rules)
+    if isinstance(sampled, Failure):
+        return sampled
+    environment, execution = sampled
+    return Trial(execution, environment, found)
