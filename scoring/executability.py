@@ -70,7 +70,7 @@ ALREADY_SO: dict[Code, frozenset[str]] = {
 
 
 PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
-"""The actions that put one thing on or in another, and the row in which that is found; put again, they are additional."""
+"""The actions that put one thing on or in another, and the row that then says so; done again, they are additional."""
 
 First = tuple[int, ErrorClass, Code]
 

@@ -95,8 +95,8 @@ def _subjects(predicate: Predicate, view: View) -> set[int]:
         return {node for node, state in view.states(subjects) if state == predicate.name}
     targets = _nodes(predicate.target, view)
     relations = HANDS if predicate.name == HOLDS else (predicate.name,)
-    found = (e for e in view.edges(subjects) if e.relation in relations and e.source in subjects and e.target in targets)
-    return {_counted(edge) for edge in found}
+    edges = (edge for edge in view.edges(subjects) if edge.relation in relations)
+    return {_counted(edge) for edge in edges if edge.source in subjects and edge.target in targets}
 
 
 def _nodes(term: str | int, view: View) -> frozenset[int]:

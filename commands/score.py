@@ -1,0 +1,286 @@
+"""`score`: how near are predicted programs to their references?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.scoring.bootstrap import Interval
+    from hearth.scoring.evaluate import Options, Scored, Summary
+    from hearth.scoring.graph_f1 import GraphScore
+    from hearth.scoring.lcs import LcsScore
+    from hearth.scoring.predictions import Pair
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="Score predicted programs against references.",
+)
+
+
+class MatchName(StrEnum):
+    """How instances of a class may stand for each other."""
+
+    NONE = "none"
+    SWAP1 = "swap1"
+    BEST = "best"
+
+
+class ScopeName(StrEnum):
+    """Whose objects are compared."""
+
+    EITHER = "either"
+    OWN = "own"
+
+
+class RulesName(StrEnum):
+    """How actions are read."""
+
+    DEFAULT = "default"
+    REPLAY = "replay"
+
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="Predictions: JSON Lines or Parquet, one row an id.")]
+References = Annotated[
+    Path | None, typer.Option("--references", metavar="FILE", help="Rows of id and reference, if FILE has none.")
+]
+Instances = Annotated[bool, typer.Option("--instances", help="Tell the instances of a class apart.")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of the 95% confidence intervals.")]
+By = Annotated[str | None, typer.Option("--by", metavar="FIELD", help="Also the means by a field of the rows.")]
+Match = Annotated[MatchName, typer.Option("--match", help="How instances of a class may stand for each other.")]
+Scope = Annotated[ScopeName, typer.Option("--scope", help="Tuples about the objects of either program, or its own.")]
+
+
+@app.command("lcs")
+def lcs(
+    file: File,
+    *,
+    references: References = None,
+    instances: Instances = False,
+    seed: Seed = 0,
+    as_json: output.Json = False,
+) -> None:
+    """Longest common subsequence over the longer program's length, by step, by action and by object, and their mean.
+
+    Each row of FILE is {"id": ..., "predicted": PROGRAM, "reference": PROGRAM}, each program a text or a list of steps.
+    A prediction that is null, or whose id only the references have, is missing and scores 0.
+
+    \b
+    Example:
+      echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
+      python cli.py score lcs mine.jsonl
+    """
+    from hearth.scoring.bootstrap import interval
+    from hearth.scoring.evaluate import lcs_of
+    from hearth.scoring.lcs import LEVELS, lcs_signature
+    from hearth.scoring.predictions import read_pairs
+
+    pairs = read_pairs(file, references)
+    scores = lcs_of(pairs, instances)
+    columns = {name: [getattr(score, name) for score in scores] for name in (*LEVELS, "mean")}
+    means = {name: interval(values, seed, f"lcs_{name}") for name, values in columns.items()}
+    signature = lcs_signature("+".join(LEVELS), instances)
+    if as_json:
+        output.emit(_lcs_json(pairs, scores, means, signature))
+    else:
+        _print_lcs(pairs, scores, means, signature)
+
+
+def _lcs_json(
+    pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str
+) -> dict[str, Any]:
+    rows = [
+        {"id": pair.id, **score._asdict(), "mean": score.mean, "missing": pair.predicted is None}
+        for pair, score in zip(pairs, scores, strict=True)
+    ]
+    return {"signature": signature, **_counts(pairs), "mean": _intervals_json(means), "scores": rows}
+
+
+def _print_lcs(
+    pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str
+) -> None:
+    named = zip(pairs, scores, strict=True)
+    rows: list[list[Any]] = [[pair.id, *score, score.mean, _note(pair)] for pair, score in named]
+    rows.append(["mean", *(found.mean for found in means.values()), ""])
+    rows.append(["95% from", *(found.low for found in means.values()), ""])
+    rows.append(["to", *(found.high for found in means.values()), ""])
+    output.table(["id", *means, ""], rows)
+    counts = _counts(pairs)
+    found = f"{output.counted(counts['count'], 'prediction')}, {counts['missing']} missing, {counts['empty']} empty"
+    print(f"\n{found}; {signature}")
+
+
+def _note(pair: Pair) -> str:
+    if pair.predicted is None:
+        return "missing"
+    return "" if pair.predicted else "empty"
+
+
+def _counts(pairs: Sequence[Pair]) -> dict[str, int]:
+    missing = sum(pair.predicted is None for pair in pairs)
+    return {"count": len(pairs), "missing": missing, "empty": sum(pair.predicted == () for pair in pairs)}
+
+
+def _intervals_json(means: dict[str, Interval]) -> dict[str, dict[str, float]]:
+    return {name: found._asdict() for name, found in means.items()}
+
+
+@app.command("program")
+def program(
+    file: File,
+    *,
+    references: References = None,
+    graph: Annotated[
+        Path | None, typer.Option("--graph", metavar="FILE", help="The environment of rows that name none.")
+    ] = None,
+    homes: Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of your own homes.")] = None,
+    rules: Annotated[RulesName, typer.Option("--rules", help="`replay` reads actions as the release did.")] = (
+        RulesName.DEFAULT
+    ),
+    match: Match = MatchName.BEST,
+    scope: Scope = ScopeName.EITHER,
+    instances: Instances = False,
+    seed: Seed = 0,
+    by: By = None,
+    as_json: output.Json = False,
+) -> None:
+    """Every score: LCS and parsability; where rows name an environment also executability, final-graph F1 and goal.
+
+    Rows are those of `score lcs`. An environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
+    or `home` (a name), or else --graph. The goal is what the reference program achieves there.
+
+    \b
+    Example:
+      python cli.py score program predictions.jsonl --graph home.json --by activity
+    """
+    from hearth.kb import knowledge
+    from hearth.scoring import environments
+    from hearth.scoring.evaluate import Options, evaluate
+    from hearth.scoring.predictions import read_pairs
+    from hearth.simulation.rules import DEFAULT, REPLAY
+
+    chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
+    options = Options(chosen, match.value, scope.value, instances, seed)
+    pairs = read_pairs(file, references)
+    scored = evaluate(pairs, knowledge.default(), environments.by_row(file, graph, homes), options)
+    if as_json:
+        output.emit(_program_json(scored, options, by))
+    else:
+        _print_program(scored, options, by)
+
+
+def _program_json(scored: Sequence[Scored], options: Options, by: str | None) -> dict[str, Any]:
+    from hearth.scoring.evaluate import METRICS, by_field, signatures, summarise
+
+    rows = [
+        {
+            "id": each.pair.id,
+            **{name: value for name, metric in METRICS.items() if (value := metric(each)) is not None},
+            "missing": each.missing,
+            "error": each.execution and each.execution.error,
+            "code": each.execution and each.execution.code,
+            "failed_line": each.execution and each.execution.failed_line,
+        }
+        for each in scored
+    ]
+    groups = by_field(scored, by, options.seed) if by else {}
+    return {
+        "signatures": signatures(options),
+        **_summary_json(summarise(scored, options.seed)),
+        **({"by": {name: _summary_json(group) for name, group in groups.items()}} if by else {}),
+        "scores": rows,
+    }
+
+
+def _summary_json(summary: Summary) -> dict[str, Any]:
+    return {
+        "count": summary.count,
+        "missing": summary.missing,
+        "empty": summary.empty,
+        "incomparable": summary.incomparable,
+        "inexact": summary.inexact,
+        "mean": _intervals_json(dict(summary.means)),
+        "errors": dict(summary.errors),
+        "failed_at": dict(summary.failed_at),
+    }
+
+
+def _print_program(scored: Sequence[Scored], options: Options, by: str | None) -> None:
+    from hearth.scoring.evaluate import by_field, signatures, summarise
+
+    summary = summarise(scored, options.seed)
+    output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
+    if by:
+        groups = by_field(scored, by, options.seed)
+        print()
+        columns = list(summary.means)
+        rows = [[name, group.count, *_means(group, columns)] for name, group in groups.items()]
+        output.table([by, "rows", *columns], rows)
+    if summary.errors:
+        print()
+        output.table(["first failure", "programs"], summary.errors.items())
+    print(f"\n{_said(summary)}")
+    for signature in signatures(options).values():
+        print(signature)
+
+
+def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
+    return [group.means[name].mean if name in group.means else None for name in columns]
+
+
+def _said(summary: Summary) -> str:
+    text = f"{output.counted(summary.count, 'prediction')}, {summary.missing} missing, {summary.empty} empty"
+    if summary.incomparable:
+        text += f"; {summary.incomparable} without F1 and goal, because the reference does not run"
+    if summary.inexact:
+        text += f"; the F1 of {summary.inexact} is a lower bound, because instances could be assigned in too many ways"
+    return text
+
+
+@app.command("graphs")
+def graphs(
+    predicted: Annotated[Path, typer.Argument(metavar="PREDICTED", help="The final graph after the prediction.")],
+    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="The final graph after the reference.")],
+    *,
+    nodes: Annotated[
+        str, typer.Option("--nodes", metavar="IDS", help="The nodes both programs name: 41,65. Or mine/theirs: 41,65/41.")
+    ],
+    match: Match = MatchName.BEST,
+    scope: Scope = ScopeName.EITHER,
+    as_json: output.Json = False,
+) -> None:
+    """Compare two final graphs, whoever made them: precision, recall and F1 over states, relations and both.
+
+    A file is a scene graph, or a pair as the release stores it, of which the final graph is taken.
+
+    \b
+    Example:
+      python cli.py score graphs mine.json theirs.json --nodes 41,65
+    """
+    from hearth.scoring.files import final_graph, node_ids
+    from hearth.scoring.graph_f1 import f1_signature, score
+
+    ours, theirs = node_ids(nodes)
+    found = score(
+        final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value
+    )
+    signature = f1_signature(match.value, scope.value)
+    if as_json:
+        output.emit({"signature": signature, **_graph_json(found)})
+        return
+    rows = [["states", *found.states], ["relations", *found.relations], ["both", *found.both]]
+    output.table(["", "precision", "recall", "f1"], rows)
+    print(f"\n{signature}{'' if found.exact else '; a lower bound'}")
+
+
+def _graph_json(found: GraphScore) -> dict[str, Any]:
+    parts = {name: getattr(found, name)._asdict() for name in ("states", "relations", "both")}
+    return {**parts, "exact": found.exact, "assigned": found.assigned}

@@ -1,0 +1,60 @@
+"""The environments that predictions are run in, as a prediction's row names them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.scoring.predictions import Pair
+from hearth.simulation.home import Home
+from hearth.simulation.homes.catalog import graph_of, load_graph
+from hearth.simulation.world import World
+
+Environments = Callable[[Pair], World | None]
+"""Gives the world a pair's programs start in, or None when none is known."""
+
+GRAPH = "graph"
+HOME = "home"
+
+
+def by_row(file: Path, graph: Path | None = None, homes: Path | None = None) -> Environments:
+    """Environments by what each row says: `graph`, a scene graph's file beside the predictions', or `home`, a name.
+
+    Args:
+        file: the predictions; a row's path is relative to its folder.
+        graph: the environment of rows that say neither.
+        homes: a folder of the user's own homes.
+
+    The result raises HearthError for a file or home that is not there, naming the row.
+    """
+
+    def environment(pair: Pair) -> World | None:
+        named, home = pair.more.get(GRAPH), pair.more.get(HOME)
+        try:
+            if named is not None:
+                return _from_file(file.parent / str(named))
+            if home is not None:
+                return _from_home(str(home), homes)
+            return _from_file(graph) if graph else None
+        except HearthError as error:
+            raise HearthError(_at(fault, pair, file) for fault in error.diagnostics) from None
+
+    return environment
+
+
+def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
+    """The fault, and which row asked for the file that has it."""
+    message = f"the environment of `{pair.id}` ({file}:{pair.line}): {fault.message}"
+    return Diagnostic(fault.code, message, fault.file, suggestion=fault.suggestion)
+
+
+@lru_cache(maxsize=32)
+def _from_file(path: Path) -> World:
+    return World.start(Home.from_graph(graph_of(path), path.stem))
+
+
+@lru_cache(maxsize=32)
+def _from_home(name: str, homes: Path | None) -> World:
+    return World.start(Home.from_graph(load_graph(name, homes), name))

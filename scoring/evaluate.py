@@ -1,0 +1,221 @@
+"""Every score of every prediction, and what they come to: means, intervals, errors, parts by a field."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from hearth.kb.knowledge import Knowledge
+from hearth.scoring import executability as running
+from hearth.scoring import goals, parse
+from hearth.scoring.bootstrap import Interval, interval
+from hearth.scoring.environments import Environments
+from hearth.scoring.executability import ErrorClass, Executability, executability
+from hearth.scoring.goals import Satisfaction, goal_of, satisfaction
+from hearth.scoring.graph_f1 import FAILED, GraphScore, MatchBy, Scope, f1_signature, named
+from hearth.scoring.graph_f1 import score as graph_score
+from hearth.scoring.lcs import LcsScore, lcs_signature, score_pairs
+from hearth.scoring.parse import Parsability, parsability
+from hearth.scoring.predictions import Pair
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+NO_LCS = LcsScore(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How predictions are scored.
+
+    Attributes:
+        rules: how actions are read when programs run.
+        match: how instances may stand for each other in final graphs.
+        scope: whose objects final graphs are compared about.
+        instances: whether LCS tells instances apart.
+        seed: of the intervals.
+    """
+
+    rules: Rules = DEFAULT
+    match: MatchBy = "best"
+    scope: Scope = "either"
+    instances: bool = False
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Scored:
+    """One prediction's scores. What could not be asked is None; a missing prediction fails in all that could be.
+
+    Attributes:
+        pair: the prediction and its reference.
+        lcs: similarity of the programs.
+        parse: None for a missing prediction.
+        execution: None without an environment, and for a missing prediction.
+        graph: None without an environment, or when the reference itself does not run.
+        goal: how much of what the reference achieves holds; None as of `graph`, or when the prediction does not run.
+        comparable: whether the reference runs; None without an environment.
+    """
+
+    pair: Pair
+    lcs: LcsScore
+    parse: Parsability | None = None
+    execution: Executability | None = None
+    graph: GraphScore | None = None
+    goal: Satisfaction | None = None
+    comparable: bool | None = None
+
+    @property
+    def missing(self) -> bool:
+        """There is no prediction."""
+        return self.pair.predicted is None
+
+    @property
+    def empty(self) -> bool:
+        """The prediction has no lines."""
+        return self.pair.predicted == ()
+
+
+def _goal(scored: Scored, value: Callable[[Satisfaction], float]) -> float | None:
+    if not scored.comparable:
+        return None
+    return value(scored.goal) if scored.goal else 0.0
+
+
+def _executable(scored: Scored) -> float | None:
+    if scored.comparable is None:
+        return None
+    return float(scored.execution is not None and scored.execution.executable)
+
+
+METRICS: dict[str, Callable[[Scored], float | None]] = {
+    "lcs_step": lambda s: s.lcs.step,
+    "lcs_action": lambda s: s.lcs.action,
+    "lcs_object": lambda s: s.lcs.object,
+    "lcs_mean": lambda s: s.lcs.mean,
+    "parsable": lambda s: float(s.parse is not None and s.parse.parsable),
+    "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
+    "executable": _executable,
+    "executable_filled": lambda s: None if s.empty else _executable(s),
+    "f1_state": lambda s: s.graph.states.f1 if s.graph else None,
+    "f1_relation": lambda s: s.graph.relations.f1 if s.graph else None,
+    "f1": lambda s: s.graph.both.f1 if s.graph else None,
+    "goal": lambda s: _goal(s, lambda found: float(found.satisfied)),
+    "goal_fraction": lambda s: _goal(s, lambda found: found.fraction),
+}
+"""Every score by name, from 0 to 1; None where it can't be asked. To add a scorer: a module, a row here, a test."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What many scores come to.
+
+    Attributes:
+        count: predictions, the missing ones included.
+        missing: of them, those that are missing and score 0.
+        empty: of them, those without a line, which parse and run; `executable_filled` leaves them out.
+        incomparable: those whose reference does not run in its environment; left out of the F1 and goal scores.
+        inexact: those whose F1 is a lower bound.
+        means: each score's mean and interval.
+        errors: first failures by class.
+        failed_at: how many first fail at each line, from 0.
+    """
+
+    count: int
+    missing: int
+    empty: int
+    incomparable: int
+    inexact: int
+    means: Mapping[str, Interval]
+    errors: Mapping[ErrorClass, int]
+    failed_at: Mapping[int, int]
+
+
+def signatures(options: Options) -> dict[str, str]:
+    """What each family of scores is, exactly."""
+    return {
+        **{f"lcs_{level}": lcs_signature(level, options.instances) for level in ("step", "action", "object")},
+        "parsable": parse.SIGNATURE,
+        "executable": running.SIGNATURE,
+        "f1": f1_signature(options.match, options.scope),
+        "goal": goals.SIGNATURE,
+    }
+
+
+def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[LcsScore]:
+    """The similarity of each prediction to its reference; 0 for a missing one."""
+    found = score_pairs(((pair.predicted or (), pair.reference) for pair in pairs), instances)
+    return [NO_LCS if pair.predicted is None else score for pair, score in zip(pairs, found, strict=True)]
+
+
+def evaluate(
+    pairs: Sequence[Pair],
+    knowledge: Knowledge,
+    environments: Environments | None = None,
+    options: Options = Options(),
+) -> list[Scored]:
+    """Score every prediction, in order.
+
+    Args:
+        pairs: predictions with their references.
+        knowledge: the grammar.
+        environments: where programs run; without it only LCS and parsability are scored.
+        options: how.
+    """
+    return [
+        _scored(pair, lcs, knowledge, environments(pair) if environments else None, options)
+        for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True)
+    ]
+
+
+def summarise(scored: Sequence[Scored], seed: int = 0) -> Summary:
+    """The means of every score that could be asked of at least one prediction, and counts of the rest."""
+    means: dict[str, Interval] = {}
+    for name, metric in METRICS.items():
+        values = [value for each in scored if (value := metric(each)) is not None]
+        if values:
+            means[name] = interval(values, seed, name)
+    failures = [each.execution for each in scored if each.execution and each.execution.error]
+    return Summary(
+        count=len(scored),
+        missing=sum(each.missing for each in scored),
+        empty=sum(each.empty for each in scored),
+        incomparable=sum(each.comparable is False for each in scored),
+        inexact=sum(each.graph is not None and not each.graph.exact for each in scored),
+        means=means,
+        errors=dict(sorted(Counter(each.error for each in failures if each.error).items())),
+        failed_at=dict(sorted(Counter(each.failed_line for each in failures if each.failed_line is not None).items())),
+    )
+
+
+def by_field(scored: Iterable[Scored], name: str, seed: int = 0) -> dict[str, Summary]:
+    """Summaries by a field of the predictions' rows (`activity`), sorted by it; rows without it under ''."""
+    groups: dict[str, list[Scored]] = {}
+    for each in scored:
+        value = each.pair.more.get(name)
+        groups.setdefault("" if value is None else str(value), []).append(each)
+    return {value: summarise(group, seed) for value, group in sorted(groups.items())}
+
+
+def _scored(pair: Pair, lcs: LcsScore, knowledge: Knowledge, world: World | None, options: Options) -> Scored:
+    parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
+    if world is None:
+        return Scored(pair, lcs, parsed)
+    reference = executability(pair.reference, world, rules=options.rules)
+    ran = None
+    if pair.predicted is not None:
+        ran = executability(pair.predicted, world, reference.program, options.rules)
+    if reference.final is None:
+        return Scored(pair, lcs, parsed, ran, comparable=False)
+    if ran is None or ran.final is None:
+        return Scored(pair, lcs, parsed, ran, FAILED, comparable=True)
+    graph = graph_score(
+        ran.final,
+        reference.final,
+        named(ran.program),
+        named(reference.program),
+        match=options.match,
+        scope=options.scope,
+    )
+    goal = satisfaction(goal_of(world, reference.final), ran.final)
+    return Scored(pair, lcs, parsed, ran, graph, goal, comparable=True)

@@ -1,0 +1,137 @@
+"""Prediction files: one row an id, with the predicted program and, unless they come apart, the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.syntax import parse_steps
+from hearth.scoring.reading import Lines, Reader, Source, read
+from hearth.scoring.rows import Row, rows_of, source_of
+
+SHOWN = 20
+"""Faults of one kind that are listed; the rest are counted."""
+
+EXAMPLE = '{"id": "p1", "predicted": "[Walk] <kitchen> (1)", "reference": ["[Walk] <kitchen> (1)"]}'
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """One id's prediction and reference.
+
+    Attributes:
+        id: what the file calls it.
+        predicted: the lines of the prediction; None when it is missing.
+        reference: the lines of the reference.
+        line: where the prediction stands in its file (a row of a Parquet file), from 1; 0 when it is missing.
+        more: the other fields of the prediction's row.
+    """
+
+    id: str
+    predicted: Lines | None
+    reference: Lines
+    line: int = 0
+    more: Mapping[str, Any] = field(default_factory=dict, compare=False)
+
+
+def read_pairs(
+    path: Path, references: Path | Mapping[str, Source] | None = None, reader: Reader = parse_steps
+) -> list[Pair]:
+    """Read predictions with their references.
+
+    A file is JSON Lines or Parquet with the columns `id` (text or number), `predicted` and `reference`; each program is
+    a text or a list of steps. `predicted` may be null: that prediction is missing, and scores 0.
+
+    Args:
+        path: the predictions.
+        references: a file of `id` and `reference`, or programs by id, when the predictions' file has none. Ids that
+            only the references have are missing predictions; pairs come in the references' order.
+        reader: reads one line of a program; give another for steps in words.
+
+    Raises:
+        HearthError: what is not such a file, missing columns, rows that are no objects, duplicate and unknown ids; each
+            with the file and its line.
+    """
+    faults: list[Diagnostic] = []
+    if references is None:
+        rows = _rows(path, ("id", "predicted", "reference"), faults)
+        pairs = [_pair(row, _program(row, "reference", path, reader, faults), path, reader, faults) for row in rows]
+    else:
+        known = _references(references, reader, faults)
+        rows = _rows(path, ("id", "predicted"), faults)
+        faults.extend(_unknown_ids(rows, known, path))
+        by_id = {row.id: row for row in rows}
+        pairs = [
+            _pair(by_id[name], lines, path, reader, faults) if name in by_id else Pair(name, None, lines)
+            for name, lines in known.items()
+        ]
+    if faults:
+        raise HearthError(_shortened(faults))
+    return pairs
+
+
+def _references(
+    references: Path | Mapping[str, Source], reader: Reader, faults: list[Diagnostic]
+) -> dict[str, Lines]:
+    if isinstance(references, Path):
+        rows = _rows(references, ("id", "reference"), faults)
+        return {row.id: _program(row, "reference", references, reader, faults) for row in rows}
+    return {name: read(source, reader) for name, source in references.items()}
+
+
+def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic]) -> list[Row]:
+    """The rows of a file that have an id of their own; what is wrong with the others is added to the faults."""
+    rows: dict[str, Row] = {}
+    for row in rows_of(path, columns, faults):
+        first = rows.setdefault(row.id, row)
+        if first is not row:
+            message = f"a second row of id `{row.id}`; the first is line {first.line}"
+            faults.append(Diagnostic(Code.DUPLICATE, message, str(path), row.line, suggestion="keep one row an id"))
+    if not rows and not faults:
+        raise HearthError.of(Code.EMPTY, "no predictions", file=str(path), suggestion=f"write rows like {EXAMPLE}")
+    return list(rows.values())
+
+
+def _pair(row: Row, reference: Lines, path: Path, reader: Reader, faults: list[Diagnostic]) -> Pair:
+    more = {key: value for key, value in row.values.items() if key not in ("id", "predicted", "reference")}
+    predicted = None if row.values["predicted"] is None else _program(row, "predicted", path, reader, faults)
+    return Pair(row.id, predicted, reference, row.line, more)
+
+
+def _program(row: Row, column: str, path: Path, reader: Reader, faults: list[Diagnostic]) -> Lines:
+    source = source_of(row.values[column])
+    if source is not None:
+        return read(source, reader)
+    found = type(row.values[column]).__name__
+    message = f"`{column}` of id `{row.id}` is {found}, not a program"
+    faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), row.line, suggestion="a text, or a list of steps"))
+    return ()
+
+
+def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) -> Iterator[Diagnostic]:
+    from difflib import get_close_matches
+
+    for row in rows:
+        if row.id not in known:
+            near = get_close_matches(row.id, known, n=1)
+            suggestion = f"did you mean `{near[0]}`?" if near else "ids are those of the references"
+            yield Diagnostic(
+                Code.UNKNOWN_ID, f"no reference has the id `{row.id}`", str(path), row.line, suggestion=suggestion
+            )
+
+
+def _shortened(faults: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
+    """The first faults of each kind, and how many more there are."""
+    counts: dict[Code, int] = {}
+    for fault in faults:
+        counts[fault.code] = counts.get(fault.code, 0) + 1
+        if counts[fault.code] <= SHOWN:
+            yield fault
+    for code, count in counts.items():
+        if count > SHOWN:
+            yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", faults[0].file)
+
