@@ -16,6 +16,12 @@ PY     := .venv/bin/python
 HEARTH := $(PY) cli.py
 STAGES := ingest validate sample augment render publish
 
+# What open3d pulls in for notebooks. It is never imported here, and it holds a third of all files.
+NOTEBOOK := asttokens attrs configargparse executing fastjsonschema ipython ipython-pygments-lexers ipywidgets jedi \
+  jsonschema jsonschema-specifications jupyter-core jupyterlab-widgets matplotlib-inline nbformat parso pexpect \
+  platformdirs prompt-toolkit psutil ptyprocess pure-eval referencing rpds-py stack-data traitlets wcwidth \
+  widgetsnbextension
+
 # Code and data below some folders.
 tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.csv' -o -name '*.json' -o -name '*.sql' \) 2>/dev/null)
 manifest = $(OUT)/$(1)/manifest.json
@@ -72,10 +78,10 @@ lock: ## choose the newest versions that fit pyproject.toml and pin them in requ
 	@rm -rf build/lock && $(PYTHON) -m venv build/lock
 	@build/lock/bin/python -m pip install -q --upgrade pip
 	@build/lock/bin/python -m pip install -q -e '.[test]' setuptools
-	@{ echo '# Versions that are known to work together, for `make setup`. Made by `make lock`; not edited by hand.'; \
-	   build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth | \
-	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/"; } > requirements.lock
-	@rm -rf build/lock
+	@build/lock/bin/python -m pip uninstall -q -y $(NOTEBOOK)
+	@{ sed '/^#/!d' requirements.lock; build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth | \
+	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/"; } > build/requirements.lock
+	@mv build/requirements.lock requirements.lock && rm -rf build/lock
 
 wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
