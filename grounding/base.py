@@ -25,6 +25,14 @@ class Spots(NamedTuple):
     weights: tuple[int, ...]
 
 
+class Kind(NamedTuple):
+    """What a new node of a class is like: category, sorted properties, default states."""
+
+    category: str
+    properties: tuple[str, ...]
+    states: tuple[str, ...]
+
+
 class Base:
     """A home in its default state, with what sampling asks of it again and again.
 
@@ -32,6 +40,7 @@ class Base:
         home: doors OPEN, lamps ON, everything else CLOSED, OFF, CLEAN and PLUGGED_IN; the character stands with empty
             hands (thesis 5.5.2).
         knowledge: what decides where things belong.
+        start: the home as a world.
         character: id of the character's node.
         room: index of each node's room, or -1.
     """
@@ -39,9 +48,11 @@ class Base:
     def __init__(self, home: Home) -> None:
         self.knowledge: Knowledge = home.knowledge
         self.home = _at_rest(home)
+        self.start = World.start(self.home)
         self.character = self.home.ids[self.home.agents[0]]
         self.room = [_room(self.home, i) for i in range(len(self.home))]
         self._spots: dict[str, Spots] = {}
+        self._kinds: dict[str, Kind] = {}
         self._named: dict[str, tuple[int, ...]] = {}
 
     def rooms(self, name: str) -> tuple[int, ...]:
@@ -61,6 +72,16 @@ class Base:
         if found is None:
             masks = (self.home.by_class.get(other, 0) for other in self.knowledge.same_class(name))
             found = self._named[name] = tuple(indices(next((mask for mask in masks if mask), 0)))
+        return found
+
+    def kind(self, name: str) -> Kind:
+        """What a new node of a class is like."""
+        found = self._kinds.get(name)
+        if found is None:
+            thing = self.knowledge.object_class(name)
+            properties = tuple(sorted(thing.properties)) if thing else ()
+            category = thing.category if thing else "placable_objects"
+            found = self._kinds[name] = Kind(category, properties, self.knowledge.default_states(name))
         return found
 
     def spots(self, name: str) -> Spots:

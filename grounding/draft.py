@@ -58,10 +58,7 @@ class Draft:
     def add(self, name: str, room: int, first_id: int = FIRST_ADDED_ID) -> int:
         """A new node of a class in a room, in its default states; gives its id."""
         node_id = first_id + len(self.nodes)
-        thing = self.base.knowledge.object_class(name)
-        properties = tuple(sorted(thing.properties)) if thing else ()
-        category = thing.category if thing else "placable_objects"
-        states = self.base.knowledge.default_states(name)
+        category, properties, states = self.base.kind(name)
         node = Node(node_id, name, category, properties, states)
         self.nodes.append(node)
         self.new[node_id] = node

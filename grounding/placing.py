@@ -40,11 +40,15 @@ class Wishes:
                 self.links.setdefault(_follower(condition), []).append(condition)
         self.keys = self._ordered()
 
+    def _holders(self, key: Key) -> list[Key]:
+        """What an object must be in or on: that has to be placed before it."""
+        return [_leader(c) for c in self.links.get(key, ()) if c.name in ("in", "inside")]
+
     def _ordered(self) -> tuple[Key, ...]:
         order: dict[Key, None] = {}
 
         def visit(key: Key, path: tuple[Key, ...]) -> None:
-            if key in order or key in path:
+            if key in order or key in path or any(leader in path for leader in self._holders(key)):
                 return
             for condition in self.links.get(key, ()):
                 visit(_leader(condition), (*path, key))
@@ -79,11 +83,11 @@ def bind(draft: Draft, wishes: Wishes) -> None:
 def _chosen(draft: Draft, wishes: Wishes, key: Key) -> int:
     links = [c for c in wishes.links.get(key, ()) if _leader(c) in draft.binding]
     room = _wanted_room(draft, wishes, key, links)
-    candidates = _candidates(draft, wishes, key, room)
+    placing = next((c for c in links if c.name in ("in", "inside")), None)
+    candidates = _candidates(draft, wishes, key, room, in_sight=placing is None)
     fitting = [i for i in candidates if all(_linked(draft, i, c) for c in links)]
     home = draft.base.home
-    placing = next((c for c in links if c.name in ("in", "inside")), None)
-    if fitting and not (placing is None and links and draft.rng.random() < 0.0):
+    if fitting:
         return home.ids[draft.rng.choice(fitting)]
     if candidates and placing is None:
         # Being at reach, facing or in one room can be arranged without moving anything.
@@ -100,7 +104,8 @@ def _chosen(draft: Draft, wishes: Wishes, key: Key) -> int:
     if placing is not None:
         draft.put(node_id, _LINKS[placing.name], draft.binding[_leader(placing)])
     elif node_id in draft.new:
-        _put_where_it_belongs(draft, key[0], node_id, room)
+        put_back = any(action == "PutObjBack" for action, _ in wishes.uses[key])
+        _put_where_it_belongs(draft, key[0], node_id, room, must=put_back)
     return node_id
 
 
@@ -119,12 +124,11 @@ def _wanted_room(draft: Draft, wishes: Wishes, key: Key, links: Sequence[Conditi
     return -1
 
 
-def _candidates(draft: Draft, wishes: Wishes, key: Key, room: int) -> list[int]:
-    """Indices of the home's own things that could be the object: unused, affording its uses, in sight, in the room."""
+def _candidates(draft: Draft, wishes: Wishes, key: Key, room: int, in_sight: bool) -> list[int]:
+    """Indices of the home's own things that could be the object: unused, affording its uses, in the room."""
     home = draft.base.home
     able = reduce(and_, (home.able(action, position) for action, position in wishes.uses[key]), home.everything)
     ids, rooms = home.ids, draft.base.room
-    inside = any(c.name == "inside" for c in wishes.links.get(key, ()))
     closed = home.states[0] & ~home.rooms
     return [
         i
@@ -132,7 +136,7 @@ def _candidates(draft: Draft, wishes: Wishes, key: Key, room: int) -> list[int]:
         if able >> i & 1
         and ids[i] not in draft.taken
         and (room < 0 or (rooms[i] >= 0 and ids[rooms[i]] == room))
-        and (inside or not home.inside[i] & closed)
+        and not (in_sight and home.inside[i] & closed)
     ]
 
 
@@ -161,8 +165,10 @@ def _any_room(draft: Draft, key: Key) -> int:
     return home.ids[draft.rng.choice(usual or list(indices(home.rooms)))]
 
 
-def _put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int) -> None:
-    """On or in something open, in the room if one is wanted; on the floor of its room where nothing suits."""
+def _put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int, must: bool) -> None:
+    """On or in something open, in the room if one is wanted. Where nothing suits it stays in its room, or, if it must
+    stand somewhere, on any piece of furniture there.
+    """
     home, base = draft.base.home, draft.base
     spots = base.spots(name)
     closed = home.states[0]
@@ -174,6 +180,11 @@ def _put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int) -> N
         and not (relation == "INSIDE" and closed >> i & 1)
         and not home.properties["SITTABLE"] >> i & 1
     ]
+    if not good and must:
+        surfaces = home.properties["SURFACES"] & home.furniture
+        good = [
+            (i, "ON") for i in indices(surfaces) if room < 0 or (base.room[i] >= 0 and home.ids[base.room[i]] == room)
+        ]
     if good:
         i, relation = draft.rng.choice(good)
         if room < 0 and base.room[i] >= 0:

@@ -139,11 +139,8 @@ def _place_character(draft: Draft, program: Program, conditions: Preconditions) 
         begin = draft.binding.get(first, -1) if first else -1
         begin = begin if begin in rooms else draft.room_of(begin)
         room = draft.rng.choice([r for r in rooms if r != begin] or rooms)
-    now = home.ids[base.room[home.agents[0]]] if base.room[home.agents[0]] >= 0 else None
-    start = World.start(home).agents[0]
-    draft.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(start.inside))
-    if room != now or True:
-        draft.added.append(Edge(me, "INSIDE", room))
+    draft.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(base.start.agents[0].inside))
+    draft.added.append(Edge(me, "INSIDE", room))
 
 
 def _with_demand(

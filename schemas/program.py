@@ -99,8 +99,12 @@ class Program:
     def bound(self, nodes: dict[tuple[str, int], int]) -> Program:
         """The program with each object bound to the node given for its (name, instance), or to none."""
 
-        def bind(ref: ObjectRef) -> ObjectRef:
-            return replace(ref, node=nodes.get(ref.key))
+        refs = {ref: ObjectRef(ref.name, ref.instance, nodes.get(ref.key)) for ref in _refs(self.steps)}
+        steps = tuple(
+            Step(s.action, tuple([refs[ref] for ref in s.objects]), s.agent, s.joins, s.modifiers) for s in self.steps
+        )
+        return Program(self.title, self.description, steps, self.lines)
 
-        steps = tuple(replace(step, objects=tuple(map(bind, step.objects))) for step in self.steps)
-        return replace(self, steps=steps)
+
+def _refs(steps: Iterable[Step]) -> set[ObjectRef]:
+    return {ref for step in steps for ref in step.objects}

@@ -1,0 +1,146 @@
+"""Post-conditions: what a program achieves, said of its own objects, so that it can be asked of any environment.
+
+What the original brings about in its own, unperturbed environment has to be reached by every repair of it (thesis A.2,
+eq. A.1: the function Omega).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from hearth.grounding.conditions import CHARACTER, Key
+from hearth.schemas.program import Program
+from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
+from hearth.simulation import rows
+from hearth.simulation.bits import indices
+from hearth.simulation.engine import Execution
+from hearth.simulation.world import World
+
+GOING = frozenset({"Walk", "Run", "Find"})
+"""Actions that take the character somewhere."""
+
+
+class Fact(NamedTuple):
+    """A state or relation of a program's objects.
+
+    Attributes:
+        name: a state (`OPEN`), or `ON`, `INSIDE` or `HOLDS`. With a target, `ON` is the relation, else the state.
+        subject: the object; what HOLDS, and what sits, is `("character", 1)`, the second agent `("character", 2)`.
+        target: the other object of a relation; what is worn is ON the character.
+    """
+
+    name: str
+    subject: Key
+    target: Key | None = None
+
+    def __str__(self) -> str:
+        objects = (self.subject,) if self.target is None else (self.subject, self.target)
+        return f"{self.name}({', '.join(f'{name} ({number})' for name, number in objects)})"
+
+
+Postconditions = tuple[Fact, ...]
+"""Sorted facts, each once."""
+
+
+def achieved(execution: Execution) -> Postconditions:
+    """What holds at the end of a run and did not at its start, of the program's objects and the characters.
+
+    A room counts where it is the point: for a character, when the last walk was to that room itself; for a thing, when
+    it lies in a room that the program walked to and on or in none of its objects.
+    """
+    program = execution.program
+    nodes = nodes_of(program, execution.worlds[0])
+    before = frozenset(_facts(execution.worlds[0], nodes))
+    new = [fact for fact in _facts(execution.final, nodes) if fact not in before]
+    meant = _rooms_meant(program)
+    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in meant}
+    return tuple(sorted((fact for fact in new if _is_meant(fact, meant, placed, execution.final, nodes)), key=_order))
+
+
+def missing(facts: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
+    """The facts that do not hold in a world; `nodes` says which node each object is."""
+    return tuple(fact for fact in facts if not holds(fact, nodes, world))
+
+
+def reached(facts: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
+    """Whether every fact holds in a world."""
+    return all(holds(fact, nodes, world) for fact in facts)
+
+
+def holds(fact: Fact, nodes: Mapping[Key, int], world: World) -> bool:
+    """Whether one fact holds; one about an object that is bound to no node does not."""
+    index = world.home.index
+    i = index.get(nodes.get(fact.subject, -1), -1)
+    if i < 0:
+        return False
+    if fact.target is None:
+        return bool(world.states[STATE_ID[fact.name]] >> i & 1)
+    j = index.get(nodes.get(fact.target, -1), -1)
+    return j >= 0 and bool(_row(world, fact.name, i) >> j & 1)
+
+
+def nodes_of(program: Program, world: World) -> dict[Key, int]:
+    """The node of each object of a bound program, and of each character."""
+    home = world.home
+    nodes = {ref.key: ref.node for ref in program.objects() if ref.node is not None and ref.node in home.index}
+    for number, agent in enumerate(world.agents, 1):
+        nodes[CHARACTER_CLASS, number] = home.ids[agent.index]
+    return nodes
+
+
+def _order(fact: Fact) -> tuple[str, Key, Key]:
+    return (fact.name, fact.subject, fact.target or ("", 0))
+
+
+def _row(world: World, relation: str, i: int) -> int:
+    """What node i is ON or INSIDE, or HOLDS."""
+    agent = next((agent for agent in world.agents if agent.index == i), None)
+    if agent is not None:
+        return {"ON": agent.on, "INSIDE": agent.inside}.get(relation, agent.held)
+    if relation == "HOLDS":
+        return 0
+    bit = 1 << i
+    row = rows.on(world, i) if relation == "ON" else rows.inside(world, i)
+    for other in world.agents:
+        if (other.worn if relation == "ON" else other.contents) & bit:
+            row |= other.bit
+    return row
+
+
+def _facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
+    index = world.home.index
+    keys: dict[int, list[Key]] = {}
+    for key, node in nodes.items():
+        keys.setdefault(index[node], []).append(key)
+    named = sum(1 << i for i in keys)
+    for i, subjects in keys.items():
+        found: list[tuple[str, Key | None]] = [(s, None) for s, row in zip(STATES, world.states, strict=True) if row >> i & 1]
+        for relation in ("ON", "INSIDE", "HOLDS"):
+            found.extend((relation, key) for j in indices(_row(world, relation, i) & named) for key in keys[j])
+        for subject in subjects:
+            yield from (Fact(name, subject, target) for name, target in found)
+
+
+def _rooms_meant(program: Program) -> dict[Key, bool]:
+    """The objects that are walked to, and whether the last walk was to them."""
+    walked = [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
+    return {key: key == walked[-1] for key in walked}
+
+
+def _is_meant(
+    fact: Fact, walked: Mapping[Key, bool], placed: set[Key], world: World, nodes: Mapping[Key, int]
+) -> bool:
+    if fact.name != "INSIDE" or fact.target is None:
+        return True
+    room = world.home.index[nodes[fact.target]]
+    if not world.home.rooms >> room & 1:
+        return True
+    if fact.subject[0] == CHARACTER_CLASS:
+        return walked.get(fact.target, False)
+    i = world.home.index[nodes[fact.subject]]
+    held = any(agent.held >> i & 1 for agent in world.agents)
+    return not held and fact.target in walked and fact.subject not in placed
+
+
+__all__ = ["CHARACTER", "Fact", "Postconditions", "achieved", "holds", "missing", "nodes_of", "reached"]
