@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from hearth.kb.formula import And, Atom, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import And, Atom, Count, Effect, Formula, Not, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action, Condition
 from hearth.schemas.vocabulary import RELATIONS
@@ -20,6 +20,9 @@ Binding = Mapping[str, int]
 
 Memory = tuple[str, int]
 """Where a thing was grabbed from: relation and node."""
+
+Fact = tuple[str, int, int | str]
+"""`(relation, source, target)` or `("state", node, name)`."""
 
 
 class View(Protocol):
@@ -47,7 +50,7 @@ class View(Protocol):
         """Whether the node is a room."""
 
     def room(self, node: int) -> int | None:
-        """The room itself, or the room reached along INSIDE, directly or through containers; None when there is none."""
+        """The room itself, or the room reached along INSIDE, directly or through containers; None without one."""
 
     def origin(self, node: int) -> Memory | None:
         """Where the thing was grabbed from, if that is remembered."""
@@ -60,12 +63,11 @@ class View(Protocol):
 class Changes:
     """What an action changes: first `removed` stops holding, then `added` holds.
 
-    Both hold tuples: `(relation, source, target)` (CLOSE both ways) and `("state", node, name)`. `remembered` says
-    where things were grabbed from now, None for what is forgotten.
+    CLOSE is among them both ways. `remembered` says where things were grabbed from now, None for what is forgotten.
     """
 
-    removed: frozenset[tuple[str, int, int | str]]
-    added: frozenset[tuple[str, int, int | str]]
+    removed: frozenset[Fact]
+    added: frozenset[Fact]
     remembered: Mapping[int, Memory | None] = field(default_factory=dict)
 
 
@@ -88,13 +90,11 @@ def first_failure(
 def changes(knowledge: Knowledge, view: View, action: Action, binding: Binding) -> Changes:
     """What the action changes in this world, whether or not its preconditions hold."""
     reading = _Reading(knowledge, view, action)
-    removed: set[tuple[str, int, int | str]] = set()
-    added: set[tuple[str, int, int | str]] = set()
-    remembered: dict[int, Memory | None] = {}
+    draft = _Draft(reading)
     for effect in action.effects:
         for bound in reading.solutions(effect, dict(binding)):
-            _note(reading, effect, bound, removed, added, remembered)
-    return Changes(frozenset(removed - added), frozenset(added), remembered)
+            draft.note(effect, bound)
+    return Changes(frozenset(draft.removed - draft.added), frozenset(draft.added), draft.remembered)
 
 
 def holds(knowledge: Knowledge, view: View, formula: Formula, binding: Binding, action: Action | None = None) -> bool:
@@ -102,34 +102,40 @@ def holds(knowledge: Knowledge, view: View, formula: Formula, binding: Binding, 
     return _Reading(knowledge, view, action).holds(formula, dict(binding))
 
 
-def _note(
-    reading: _Reading,
-    effect: Effect,
-    bound: dict[str, int],
-    removed: set[tuple[str, int, int | str]],
-    added: set[tuple[str, int, int | str]],
-    remembered: dict[int, Memory | None],
-) -> None:
-    """Add one change to the sets; one about a thing that does not exist is left out."""
-    atom = effect.atom
-    first = reading.thing(atom.terms[0], bound)
-    if first is None:
-        return
-    if atom.name == "REMEMBERS":
-        remembered[first] = None if effect.delete else reading.view.place(first)
-        return
-    into = removed if effect.delete else added
-    if atom.name == "state":
-        name = atom.terms[1].name
-        into.add(("state", first, name))
-        if not effect.delete:
-            removed.update(("state", first, other) for other in reading.knowledge.excludes(name))
-        return
-    second = reading.thing(atom.terms[1], bound)
-    if second is not None:
-        into.add((atom.name, first, second))
-        if atom.name == "CLOSE":
-            into.add((atom.name, second, first))
+class _Draft:
+    """Changes being gathered; one about a thing that does not exist is left out."""
+
+    def __init__(self, reading: _Reading) -> None:
+        self.reading = reading
+        self.removed: set[Fact] = set()
+        self.added: set[Fact] = set()
+        self.remembered: dict[int, Memory | None] = {}
+
+    def note(self, effect: Effect, bound: Mapping[str, int]) -> None:
+        """Add what one effect changes under one binding."""
+        atom = effect.atom
+        first = self.reading.thing(atom.terms[0], bound)
+        if first is None:
+            return
+        if atom.name == "REMEMBERS":
+            self.remembered[first] = None if effect.delete else self.reading.view.place(first)
+        elif atom.name == "state":
+            self._state(first, atom.terms[1].name, effect.delete)
+        else:
+            second = self.reading.thing(atom.terms[1], bound)
+            if second is not None:
+                self._edge(atom.name, first, second, effect.delete)
+
+    def _state(self, node: int, name: str, delete: bool) -> None:
+        (self.removed if delete else self.added).add(("state", node, name))
+        if not delete:
+            self.removed.update(("state", node, other) for other in self.reading.knowledge.excludes(name))
+
+    def _edge(self, relation: str, first: int, second: int, delete: bool) -> None:
+        into = self.removed if delete else self.added
+        into.add((relation, first, second))
+        if relation == "CLOSE":
+            into.add((relation, second, first))
 
 
 class _Reading:
@@ -293,25 +299,6 @@ _BUILT_IN: dict[str, Callable[[_Reading, Atom, Mapping[str, int]], bool]] = {
     "same": _same,
     "state": _state,
 }
-
-BUILT_IN = frozenset(_BUILT_IN)
-"""Predicates that are neither relations nor derived."""
-
-
-def free(formula: Formula) -> set[str]:
-    """The variables a formula mentions and does not bind itself; names (of states, classes) are none."""
-    if isinstance(formula, Atom):
-        terms = formula.terms[:1] if formula.name in _NAMED else formula.terms
-        return {term.name for term in terms}
-    if isinstance(formula, Not):
-        return free(formula.part)
-    if isinstance(formula, And | Or):
-        return {name for part in formula.parts for name in free(part)}
-    limit = {formula.limit.name} if isinstance(formula, Count) else set()
-    return (free(formula.part) | limit) - {formula.variable}
-
-
-_NAMED = frozenset({"state", "property", "class", "class_contains", "came_from"})
 
 
 def _flat(parts: Iterable[Formula]) -> Iterator[Formula]:

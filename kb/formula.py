@@ -30,6 +30,11 @@ from hearth.schemas.failures import Code
 FUNCTIONS = frozenset({"room", "origin", "place"})
 """Terms that find a thing from a thing; they may find nothing."""
 
+BUILT_IN = frozenset(
+    {"affords", "came_from", "class", "class_contains", "is_room", "property", "REMEMBERS", "same", "state"}
+)
+"""Predicates that are neither relations nor derived."""
+
 NAMED = frozenset({"state", "property", "class", "class_contains", "came_from"})
 """Predicates whose second argument is a name, not a thing."""
 
@@ -128,6 +133,27 @@ class Effect:
         if self.condition != TRUE:
             text = f"{self.condition} -> {text}"
         return f"for {', '.join(self.variables)}: {text}" if self.variables else text
+
+
+def free(formula: Formula) -> set[str]:
+    """The variables a formula mentions and does not bind itself; names (of states, classes) are none."""
+    if isinstance(formula, Atom):
+        terms = formula.terms[:1] if formula.name in NAMED else formula.terms
+        return {term.name for term in terms}
+    if isinstance(formula, Not):
+        return free(formula.part)
+    if isinstance(formula, And | Or):
+        return {name for part in formula.parts for name in free(part)}
+    limit = {formula.limit.name} if isinstance(formula, Count) else set()
+    return (free(formula.part) | limit) - {formula.variable}
+
+
+def predicates(formula: Formula) -> set[str]:
+    """The names of the predicates it uses."""
+    if isinstance(formula, Atom):
+        return {formula.name}
+    parts = formula.parts if isinstance(formula, And | Or) else (formula.part,)
+    return {name for part in parts for name in predicates(part)}
 
 
 def _grouped(part: Formula) -> str:

@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from hearth.kb.formula import (
+    BUILT_IN,
     TRUE,
     And,
     Atom,
     Effect,
     Formula,
+    free,
     parse_atom,
     parse_effect,
     parse_formula,
+    predicates,
 )
 from hearth.kb.layers import Layers, check_ids, check_properties, parsed, yaml_entries
 from hearth.kb.reading import Entry, Faults, strings
 from hearth.kb.records import Action, Condition, Repair, RepairStep, Requirement
 from hearth.schemas.failures import Code
+from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "source"})
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "do", "say", "source"})
 
 
-def load_actions(layers: Layers, faults: Faults) -> dict[str, Action]:
+def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict[str, Action]:
     """Every action by name, in the order of the ids."""
     executed = yaml_entries(layers, "actions.yaml", faults)
     written = yaml_entries(layers, "actions_written.yaml", faults)
@@ -42,15 +47,11 @@ def load_actions(layers: Layers, faults: Faults) -> dict[str, Action]:
         else:
             faults.at(entry, f"`{name}` is not a mapping", "id, roles, needs, say, ...")
     check_ids({name: (action.id, entries[name]) for name, action in result.items()}, faults)
+    known = {*RELATIONS, *BUILT_IN, *derived}
     for name in executed.keys() & result.keys():
-        result[name] = _executed(result[name])
+        _check_literals(result[name], known, entries[name], faults)
+        result[name] = replace(result[name], executed=True)
     return dict(sorted(result.items(), key=lambda item: item[1].id))
-
-
-def _executed(action: Action) -> Action:
-    from dataclasses import replace
-
-    return replace(action, executed=True)
 
 
 def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str, Entry], faults: Faults) -> Action:
@@ -142,6 +143,18 @@ def load_derived(layers: Layers, faults: Faults) -> dict[str, tuple[Atom, Formul
         if atom is not None and body is not None:
             result[atom.name] = (atom, body)
     return result
+
+
+def _check_literals(action: Action, known: set[str], at: Entry, faults: Faults) -> None:
+    """Note predicates that nothing defines and variables that nothing binds."""
+    bound = {"a", *"os"[: action.arity]}
+    parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
+    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.atom)]
+    for part, variables in parts:
+        for unknown in sorted(predicates(part) - known):
+            faults.at(at, f"in `{part}`: nothing says what `{unknown}` is", "see derived.yaml")
+        for unbound in sorted(free(part) - variables):
+            faults.at(at, f"in `{part}`: `{unbound}` is no argument of {action.name} and is not bound")
 
 
 def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) -> dict[str, Repair]:

@@ -76,8 +76,8 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     aliases = load_aliases(layers, objects, faults)
     stand_ins = load_stand_ins(layers, objects.keys() | aliases.keys(), faults)
     placements = load_placements(layers, objects, faults)
-    actions = load_actions(layers, faults)
     derived = load_derived(layers, faults)
+    actions = load_actions(layers, derived, faults)
     repairs = load_repairs(layers, actions, faults)
     rooms, limits, tables = (yaml_entries(layers, f"{name}.yaml", faults) for name in ("rooms", "limits", "tables"))
     if faults:

@@ -29,7 +29,7 @@ class Entry(NamedTuple):
 class Faults(list[Diagnostic]):
     """The faults found so far, in the order of discovery."""
 
-    def add(self, file: str, line: int, message: str, suggestion: str = "", code: Code = Code.BAD_TABLE) -> None:  # noqa: PLR0917 - a fault is a place and words
+    def add(self, file: str, line: int, message: str, suggestion: str = "", code: Code = Code.BAD_TABLE) -> None:
         """Note one fault."""
         self.append(Diagnostic(code, message, file, line, suggestion=suggestion))
 
