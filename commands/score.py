@@ -78,7 +78,7 @@ def lcs(
       echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
       python cli.py score lcs mine.jsonl
     """
-    from hearth.scoring.bootstrap import interval
+    from hearth.scoring.bootstrap import intervals
     from hearth.scoring.evaluate import lcs_of
     from hearth.scoring.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
@@ -86,7 +86,7 @@ def lcs(
     pairs = read_pairs(file, references)
     scores = lcs_of(pairs, instances)
     columns = {name: [getattr(score, name) for score in scores] for name in (*LEVELS, "mean")}
-    means = {name: interval(values, seed, f"lcs_{name}") for name, values in columns.items()}
+    means = intervals(columns, seed)
     signature = lcs_signature("+".join(LEVELS), instances)
     if as_json:
         output.emit(_lcs_json(pairs, scores, means, signature))
@@ -104,9 +104,7 @@ def _lcs_json(
     return {"signature": signature, **_counts(pairs), "mean": _intervals_json(means), "scores": rows}
 
 
-def _print_lcs(
-    pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str
-) -> None:
+def _print_lcs(pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str) -> None:
     named = zip(pairs, scores, strict=True)
     rows: list[list[Any]] = [[pair.id, *score, score.mean, _note(pair)] for pair, score in named]
     rows.append(["mean", *(found.mean for found in means.values()), ""])
@@ -251,7 +249,7 @@ def graphs(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="The final graph after the reference.")],
     *,
     nodes: Annotated[
-        str, typer.Option("--nodes", metavar="IDS", help="The nodes both programs name: 41,65. Or mine/theirs: 41,65/41.")
+        str, typer.Option("--nodes", metavar="IDS", help="The nodes the programs name: 41,65 or 41,65/41.")
     ],
     match: Match = MatchName.BEST,
     scope: Scope = ScopeName.EITHER,
@@ -269,9 +267,7 @@ def graphs(
     from hearth.scoring.graph_f1 import f1_signature, score
 
     ours, theirs = node_ids(nodes)
-    found = score(
-        final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value
-    )
+    found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value)
     signature = f1_signature(match.value, scope.value)
     if as_json:
         output.emit({"signature": signature, **_graph_json(found)})

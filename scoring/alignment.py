@@ -8,13 +8,12 @@ class only, so that no score depends on the ids instances happen to have.
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from hearth.schemas.graph import Edge
-from hearth.scoring.counts import Match, Matches
+from hearth.scoring.counts import Matches, matched
+from hearth.scoring.side import Label, Side
 from hearth.scoring.views import View
 
 LIMIT = 1_000
@@ -26,7 +25,8 @@ ROUNDS = 20
 Pair = tuple[int | None, int | None]
 """A reference node and its counterpart; None where the other graph has no instance left."""
 
-Label = int | str | tuple[str, int]
+PERFECT = (1.0, 2.0)
+"""The rank of a match that leaves nothing over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +56,16 @@ class Problem:
     def __init__(
         self, predicted: View, reference: View, named_predicted: Set[int], named_reference: Set[int], either: bool
     ) -> None:
-        self.either = either
         self.groups = _groups(predicted, reference, named_predicted, named_reference)
-        self.predicted = _Side(predicted, named_predicted, {i for group in self.groups for i in group.predicted})
-        self.reference = _Side(reference, named_reference, {i for group in self.groups for i in group.reference})
+        ours = {node for group in self.groups for node in group.predicted}
+        theirs = {node for group in self.groups for node in group.reference}
+        self.predicted = Side(predicted, named_predicted, ours, either)
+        self.reference = Side(reference, named_reference, theirs, either)
+        self._pairs: dict[Pair, Matches] = {}
+        self._still = Matches(
+            matched(self.predicted.still_states, self.reference.still_states),
+            matched(self.predicted.still_relations, self.reference.still_relations),
+        )
 
     def best(self, limit: int = LIMIT) -> Best:
         """The best alignment, of all where there are at most `limit`."""
@@ -67,26 +73,40 @@ class Problem:
         exact = count <= limit
         found = max(self._scored(self._all() if exact else self._searched()), key=lambda scored: scored[0].rank())
         pairs = tuple(sorted((pair for pair in found[1] if pair[0] != pair[1]), key=str))
-        return Best(found[0], pairs, exact or found[0].rank() == (1.0, 2.0))
+        return Best(found[0], pairs, exact or found[0].rank() == PERFECT)
 
     def _scored(self, alignments: Iterator[tuple[Pair, ...]]) -> Iterator[tuple[Matches, tuple[Pair, ...]]]:
         for pairs in alignments:
             matches = self.matches(pairs)
             yield matches, pairs
-            if matches.rank() == (1.0, 2.0):
+            if matches.rank() == PERFECT:
                 return
 
     def matches(self, pairs: Sequence[Pair]) -> Matches:
-        """Count what two graphs share under an alignment."""
-        to_label: dict[int, Label] = {}
-        for reference, predicted in pairs:
+        """Count what two graphs share under an alignment.
+
+        A tuple with one movable end matches, if at all, one about its counterpart: such counts are kept from alignment
+        to alignment, and only edges between movable nodes are looked at again.
+        """
+        states, relations = self._still
+        ours: dict[int, Label] = {}
+        theirs: dict[int, Label] = {}
+        for pair in pairs:
+            reference, predicted = pair
+            counted = self._pairs.get(pair)
+            if counted is None:
+                counted = self._pairs[pair] = self._matches_of(reference, predicted)
+            states += counted.states
+            relations += counted.relations
+            if predicted is not None:
+                ours[predicted] = predicted
             if reference is not None:
-                to_label[reference] = predicted if predicted is not None else ("reference", reference)
-        kept = {predicted: predicted for _, predicted in pairs if predicted is not None}
-        ours, theirs = self.predicted, self.reference
-        a = ours.tuples(kept, kept.keys() if self.either else ours.named)
-        b = theirs.tuples(to_label, to_label.keys() if self.either else theirs.named)
-        return Matches(_match(a[0], b[0]), _match(a[1], b[1]))
+                theirs[reference] = predicted if predicted is not None else ("reference", reference)
+        return Matches(states, relations + matched(self.predicted.moving(ours), self.reference.moving(theirs)))
+
+    def _matches_of(self, reference: int | None, predicted: int | None) -> Matches:
+        ours, theirs = self.predicted.about(predicted), self.reference.about(reference)
+        return Matches(matched(ours[0], theirs[0]), matched(ours[1], theirs[1]))
 
     def _all(self) -> Iterator[tuple[Pair, ...]]:
         yield self._derived([group.identity() for group in self.groups])
@@ -125,14 +145,13 @@ class Problem:
                 yield [*bijections[:number], swapped, *bijections[number + 1 :]]
 
     def _guess(self, group: _Group) -> list[Pair]:
-        """The bijection of a class by which most tuples match when all others are told apart by class only."""
+        """The bijection of a class by which most tuples match, those between movable nodes left aside."""
         import numpy as np
         from scipy.optimize import linear_sum_assignment
 
         pairs = group.identity()
-        ours = [self.predicted.profile(node) for _, node in pairs]
-        theirs = [self.reference.profile(node) for node, _ in pairs]
-        weights = np.array([[(a & b).total() for b in ours] for a in theirs])
+        counts = [[self._matches_of(reference, predicted) for _, predicted in pairs] for reference, _ in pairs]
+        weights = np.array([[found.states.both + found.relations.both for found in row] for row in counts])
         rows, columns = linear_sum_assignment(weights, maximize=True)
         return [(pairs[i][0], pairs[j][1]) for i, j in zip(rows.tolist(), columns.tolist(), strict=True)]
 
@@ -174,51 +193,6 @@ class _Group:
                 yield (*first, *zip(origins, rest, strict=True))
 
 
-class _Side:
-    """One graph: the states and edges of all nodes that an alignment may concern, read once."""
-
-    def __init__(self, view: View, named: Set[int], candidates: Set[int]) -> None:
-        nodes = view.nodes
-        self.named = named
-        self.characters = nodes.characters
-        self.fixed = nodes.characters | nodes.left_out
-        self.classes = nodes.classes
-        every = candidates | nodes.characters
-        self.states: dict[int, list[str]] = {node: [] for node in every}
-        for node, state in view.states(every):
-            self.states[node].append(state)
-        self.edges: dict[int, list[Edge]] = {node: [] for node in every}
-        for edge in view.edges(every):
-            for end in {edge.source, edge.target} & every:
-                self.edges[end].append(edge)
-
-    def tuples(self, labels: Mapping[int, Label], about: Set[int]) -> tuple[Counter[object], Counter[object]]:
-        """State and relation tuples about some nodes and the characters, ends written as their labels."""
-        about = about | self.characters
-        states: Counter[object] = Counter(
-            (labels.get(node, node), state) for node in about for state in self.states.get(node, ())
-        )
-        edges = {edge for node in about for edge in self.edges.get(node, ())}
-        relations: Counter[object] = Counter(
-            (edge.relation, self._label(edge.source, labels), self._label(edge.target, labels)) for edge in edges
-        )
-        return states, relations
-
-    def profile(self, node: int | None) -> Counter[object]:
-        """The tuples about one node, every other end that is not fixed written as its class."""
-        if node is None:
-            return Counter()
-        labels: dict[int, Label] = {node: "self"}
-        ends = ((e.relation, self._label(e.source, labels), self._label(e.target, labels)) for e in self.edges[node])
-        return Counter([*self.states[node], *ends])
-
-    def _label(self, node: int, labels: Mapping[int, Label]) -> Label:
-        found = labels.get(node)
-        if found is not None:
-            return found
-        return node if node in self.fixed else self.classes.get(node, "?")
-
-
 def _groups(predicted: View, reference: View, ours: Set[int], theirs: Set[int]) -> list[_Group]:
     classes = {predicted.nodes.classes[i] for i in ours} | {reference.nodes.classes[i] for i in theirs}
     return [
@@ -236,8 +210,3 @@ def _choices(candidates: Sequence[int], number: int) -> Iterator[tuple[int | Non
     """Every way to choose so many, in order; None stands in where there are too few."""
     padded: list[int | None] = [*candidates, *[None] * (number - len(candidates))]
     return permutations(padded, number)
-
-
-def _match(ours: Counter[object], theirs: Counter[object]) -> Match:
-    both = sum(min(count, theirs[item]) for item, count in ours.items() if item in theirs)
-    return Match(both, ours.total(), theirs.total())

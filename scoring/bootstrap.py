@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from hearth.schemas.rng import derive
 
 RESAMPLES = 1_000
 LEVEL = 0.95
+DIGITS = 9
+"""Decimals kept, so that no machine's order of adding shows."""
+
 _CHUNK = 2_000_000
 """Draws held in memory at a time."""
 
@@ -21,36 +25,44 @@ class Interval(NamedTuple):
     high: float
 
 
-def interval(
-    values: Sequence[float], seed: int, name: str = "", *, resamples: int = RESAMPLES, level: float = LEVEL
-) -> Interval:
-    """The mean of values and its percentile bootstrap interval.
+def intervals(
+    columns: Mapping[str, Sequence[float | None]], seed: int, *, resamples: int = RESAMPLES, level: float = LEVEL
+) -> dict[str, Interval]:
+    """The means of several scores of the same rows, with percentile bootstrap intervals.
 
-    Equal values in equal order give equal bytes, whatever else was drawn before.
+    Rows are drawn with replacement, the same for every column. Equal input gives equal output on every machine.
 
     Args:
-        values: at least one.
+        columns: values by name, one a row; None where a row has no such score. A column of only None is left out.
         seed: of the run.
-        name: what the values are, so that two scores of one run are resampled independently.
-        resamples: how many means are drawn.
-        level: how many of them lie inside.
+        resamples: how many times the rows are drawn.
+        level: how many of the resampled means lie inside.
 
     Raises:
-        ValueError: there are no values.
+        ValueError: the columns differ in length.
     """
     import numpy as np
 
-    if not values:
-        raise ValueError("no values to resample")
-    data = np.asarray(values, dtype=np.float64)
-    generator = np.random.Generator(np.random.PCG64(derive(seed, "bootstrap", name)))
-    rows = max(1, _CHUNK // len(data))
-    means = np.concatenate(
-        [
-            data[generator.integers(len(data), size=(min(rows, resamples - done), len(data)))].mean(axis=1)
-            for done in range(0, resamples, rows)
-        ]
-    )
+    columns = {name: values for name, values in columns.items() if any(value is not None for value in values)}
+    if not columns:
+        return {}
+    data = np.array([[math.nan if v is None else v for v in values] for values in columns.values()], dtype=np.float64).T
+    given = (~np.isnan(data)).astype(np.float64)
+    data = np.nan_to_num(data)
+    rows = len(data)
+    generator = np.random.Generator(np.random.PCG64(derive(seed, "bootstrap")))
+    size = max(1, _CHUNK // rows)
+    means = []
+    for done in range(0, resamples, size):
+        drawn = generator.integers(rows, size=(min(size, resamples - done), rows), dtype=np.int64)
+        times = np.stack([np.bincount(draw, minlength=rows) for draw in drawn]).astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            means.append((times @ data) / (times @ given))
     tail = (1 - level) / 2
-    low, high = np.quantile(means, [tail, 1 - tail]).tolist()
-    return Interval(float(data.mean()), low, high)
+    low, high = np.nanquantile(np.concatenate(means), [tail, 1 - tail], axis=0).round(DIGITS).tolist()
+    return {name: Interval(_mean(values), low[n], high[n]) for n, (name, values) in enumerate(columns.items())}
+
+
+def _mean(values: Sequence[float | None]) -> float:
+    given = [value for value in values if value is not None]
+    return round(math.fsum(given) / len(given), DIGITS)

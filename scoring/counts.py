@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import NamedTuple
 
 
@@ -51,3 +52,9 @@ class Matches(NamedTuple):
     def published_rank(self) -> float:
         """By this the published scorer chooses: the sum of the three F1."""
         return sum(self.rank())
+
+
+def matched(predicted: Counter[object], reference: Counter[object]) -> Match:
+    """What two multisets of tuples share."""
+    both = sum(min(count, reference[item]) for item, count in predicted.items() if item in reference)
+    return Match(both, predicted.total(), reference.total())

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from hearth.kb.knowledge import Knowledge
 from hearth.scoring import executability as running
 from hearth.scoring import goals, parse
-from hearth.scoring.bootstrap import Interval, interval
+from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
 from hearth.scoring.executability import ErrorClass, Executability, executability
 from hearth.scoring.goals import Satisfaction, goal_of, satisfaction
@@ -170,11 +170,7 @@ def evaluate(
 
 def summarise(scored: Sequence[Scored], seed: int = 0) -> Summary:
     """The means of every score that could be asked of at least one prediction, and counts of the rest."""
-    means: dict[str, Interval] = {}
-    for name, metric in METRICS.items():
-        values = [value for each in scored if (value := metric(each)) is not None]
-        if values:
-            means[name] = interval(values, seed, name)
+    columns = {name: [metric(each) for each in scored] for name, metric in METRICS.items()}
     failures = [each.execution for each in scored if each.execution and each.execution.error]
     return Summary(
         count=len(scored),
@@ -182,7 +178,7 @@ def summarise(scored: Sequence[Scored], seed: int = 0) -> Summary:
         empty=sum(each.empty for each in scored),
         incomparable=sum(each.comparable is False for each in scored),
         inexact=sum(each.graph is not None and not each.graph.exact for each in scored),
-        means=means,
+        means=intervals(columns, seed),
         errors=dict(sorted(Counter(each.error for each in failures if each.error).items())),
         failed_at=dict(sorted(Counter(each.failed_line for each in failures if each.failed_line is not None).items())),
     )

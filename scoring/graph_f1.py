@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
-from hearth.scoring.alignment import LIMIT, Pair, Problem
+from hearth.scoring.alignment import LIMIT, PERFECT, Pair, Problem
 from hearth.scoring.counts import NOTHING, Match, Matches, Prf
 from hearth.scoring.signature import signature
 from hearth.scoring.views import View, view_of
@@ -97,13 +97,14 @@ def score(
     """
     a, b = _view(predicted), _view(reference)
     ours, theirs = _scored(a, named_predicted), _scored(b, named_reference)
-    if match == "best":
-        best = Problem(a, b, ours, theirs, either=scope == "either").best(LIMIT)
-        return GraphScore.of(best.matches, best.exact, best.pairs)
     if match == "swap1":
         return _swap1(a, b, ours, theirs, scope)
     about = (ours | theirs, ours | theirs) if scope == "either" else (ours, theirs)
-    return GraphScore.of(_compare(_tuples(a, about[0]), _tuples(b, about[1])))
+    by_id = _compare(_tuples(a, about[0]), _tuples(b, about[1]))
+    if match == "none" or by_id.rank() == PERFECT:
+        return GraphScore.of(by_id)
+    best = Problem(a, b, ours, theirs, either=scope == "either").best(LIMIT)
+    return GraphScore.of(best.matches, best.exact, best.pairs)
 
 
 def _swap1(a: View, b: View, ours: Set[int], theirs: Set[int], scope: Scope) -> GraphScore:

@@ -121,9 +121,7 @@ def _pairwise(pairs: Sequence[tuple[Lines, Lines]], level: Level, instances: boo
 
     a, b = _encode(*([items(pair[side], level, instances) for pair in pairs] for side in (0, 1)))
     lengths = (max(len(x), len(y)) for x, y in zip(a, b, strict=True))
-    return [
-        LCSseq.similarity(x, y) / longest if longest else 1.0 for x, y, longest in zip(a, b, lengths, strict=True)
-    ]
+    return [LCSseq.similarity(x, y) / longest if longest else 1.0 for x, y, longest in zip(a, b, lengths, strict=True)]
 
 
 def _encode(*sides: Sequence[Sequence[Hashable]]) -> tuple[Sequences, ...]:

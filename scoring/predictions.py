@@ -74,9 +74,7 @@ def read_pairs(
     return pairs
 
 
-def _references(
-    references: Path | Mapping[str, Source], reader: Reader, faults: list[Diagnostic]
-) -> dict[str, Lines]:
+def _references(references: Path | Mapping[str, Source], reader: Reader, faults: list[Diagnostic]) -> dict[str, Lines]:
     if isinstance(references, Path):
         rows = _rows(references, ("id", "reference"), faults)
         return {row.id: _program(row, "reference", references, reader, faults) for row in rows}
@@ -134,4 +132,3 @@ def _shortened(faults: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
     for code, count in counts.items():
         if count > SHOWN:
             yield Diagnostic(code, f"and {count - SHOWN:,} more of this kind", faults[0].file)
-

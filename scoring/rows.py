@@ -92,9 +92,7 @@ def _json_lines(data: bytes, path: Path, faults: list[Diagnostic]) -> Iterator[t
             values = orjson.loads(words)
         except orjson.JSONDecodeError as error:
             faults.append(
-                Diagnostic(
-                    Code.BAD_JSON, error.msg, str(path), line, error.colno, suggestion="one JSON object a line"
-                )
+                Diagnostic(Code.BAD_JSON, error.msg, str(path), line, error.colno, suggestion="one JSON object a line")
             )
             continue
         if isinstance(values, dict):
