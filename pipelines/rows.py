@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
@@ -196,17 +197,32 @@ def tick_rows(execution: Execution) -> list[Row]:
     return rows
 
 
-def condition_rows(conditions: Iterable[tuple[str, Sequence[tuple[str, int]]]]) -> list[Row]:
+def condition_rows(conditions: Iterable[Condition]) -> list[Row]:
     """Preconditions as `tables.CONDITION`."""
     return [
-        {"name": name, "objects": [{"name": object_name, "instance": instance} for object_name, instance in objects]}
-        for name, objects in conditions
+        {
+            "name": condition.name,
+            "objects": [{"name": name, "instance": instance} for name, instance in condition.objects],
+            "step": condition.step,
+            "hard": condition.hard,
+        }
+        for condition in conditions
     ]
 
 
-def conditions_of(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, tuple[tuple[str, int], ...]]]:
-    """The inverse of `condition_rows`."""
-    return [(row["name"], tuple((ref["name"], ref["instance"]) for ref in row["objects"])) for row in rows]
+def conditions_of(rows: Iterable[Mapping[str, Any]]) -> Preconditions:
+    """The inverse of `condition_rows`; conditions that came with a program are soft."""
+    return Preconditions(
+        tuple(
+            Condition(
+                row["name"],
+                tuple((ref["name"], ref["instance"]) for ref in row["objects"]),
+                row["step"] or 0,
+                bool(row["hard"]),
+            )
+            for row in rows
+        )
+    )
 
 
 def warning_row(fault: Diagnostic) -> Row:

@@ -68,6 +68,8 @@ def _run(stage: Stage, settings: Settings, workers: int, progress: Progress) -> 
     began = time.monotonic()
     _clear(folder)
     progress.start(stage.name, _total(stage, settings))
+    if stage.begin:
+        stage.begin(job)
     numbers, counts = _partitions(job, workers, progress)
     _gather_rejects(job, numbers)
     _drop_stale(job, numbers)

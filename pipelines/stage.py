@@ -61,6 +61,7 @@ class Stage:
         settings: names of the options that decide its output.
         open: makes the context given to `process`, once a process.
         prepare: looks at all of the input once, before any record; its result is part of what was asked.
+        begin: does what all partitions rely on, before the first of them.
         partitions: shares of the input; by default the parts of the stages it reads.
         records: the records of a partition; by default the rows of its part.
         select: which rows of the input are records at all.
@@ -80,6 +81,7 @@ class Stage:
     settings: tuple[str, ...] = ()
     open: Callable[[Job], Any] = lambda job: job
     prepare: Callable[[Settings], Plan] = lambda settings: {}
+    begin: Callable[[Job], None] | None = None
     partitions: Callable[[Job], Iterator[Partition]] | None = None
     records: Callable[[Job, Partition], Iterable[Record]] | None = None
     select: Callable[[Record, Plan], bool] = lambda record, plan: True

@@ -42,7 +42,8 @@ GRAPH: Final = _struct(
 """A whole graph; edges column by column, since there are thousands. Only ingest keeps whole graphs."""
 
 ARGUMENT: Final = _struct(name=TEXT, instance=COUNT)
-CONDITION: Final = _struct(name=TEXT, objects=pa.list_(ARGUMENT))
+CONDITION: Final = _struct(name=TEXT, objects=pa.list_(ARGUMENT), step=COUNT, hard=pa.bool_())
+"""A precondition; `step` and `hard` are null where they came with the program."""
 BINDING: Final = _struct(name=TEXT, instance=COUNT, node=NODE_ID)
 STEP: Final = _struct(
     agent=COUNT,

@@ -38,6 +38,7 @@ _HOME = re.compile(r"(.*?)(_graph)?")
 _EDGE = itemgetter("from_id", "relation_type", "to_id")
 
 Row = dict[str, Any]
+Edge = tuple[int, str, int]
 
 
 def names_it(path: str) -> bool:
@@ -233,12 +234,9 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
         start, final = data["init_graph"], data.get("final_graph")
         edges = _edges(start)
         ordered = sorted(edges)
-        row = {
-            "nodes": [_node(node) for node in start["nodes"]],
-            "sources": [edge[0] for edge in ordered],
-            "relations": [edge[1] for edge in ordered],
-            "targets": [edge[2] for edge in ordered],
-        }
+        sources, relations, targets = _columns(ordered)
+        nodes = [_node(node) for node in start["nodes"]]
+        row = {"nodes": nodes, "sources": sources, "relations": relations, "targets": targets}
         return row, final and _changed(edges, start, final)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         message = f"not a pair of environment graphs: {type(error).__name__} {error}"
@@ -246,11 +244,20 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
         return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
 
 
-def _edges(graph: dict[str, Any]) -> set[tuple[int, str, int]]:
-    edges = set(map(_EDGE, graph["edges"]))
-    if not all(type(a) is int and type(b) is int and type(r) is str for a, r, b in edges):
+def _edges(graph: dict[str, Any]) -> set[Edge]:
+    return set(map(_EDGE, graph["edges"]))
+
+
+def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
+    """Edges column by column.
+
+    Raises:
+        TypeError: an id is no number, or a relation no word.
+    """
+    sources, relations, targets = (list(map(itemgetter(place), edges)) for place in range(3))
+    if not {*map(type, sources), *map(type, targets)} <= {int} or not {*map(type, relations)} <= {str}:
         raise TypeError("an edge needs numbers for ids and a word for its relation")
-    return edges
+    return sources, relations, targets
 
 
 def _node(data: dict[str, Any]) -> Row:
@@ -267,12 +274,14 @@ def _node(data: dict[str, Any]) -> Row:
     }
 
 
-def _changed(edges: set[tuple[int, str, int]], start: dict[str, Any], final: dict[str, Any]) -> Row:
+def _changed(edges: set[Edge], start: dict[str, Any], final: dict[str, Any]) -> Row:
     """What a final graph changes, as `tables.CHANGE`: edges, and states that are simulated."""
     new = _edges(final)
+    added = sorted(new - edges)
+    _columns(added)
     past, now = _states(start), _states(final)
     return {
-        "added": sorted(new - edges),
+        "added": added,
         "removed": sorted(edges - new),
         "set_states": sorted(now - past),
         "cleared_states": sorted(past - now),

@@ -1,0 +1,129 @@
+"""Canonical repairs: nothing in them that is not needed.
+
+A step that a repair has inserted stays only if without it the program stops or misses its goal; no walk leads to where
+the character has just walked; nothing is opened only to be closed again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hearth.grounding.postconditions import Fact, Postconditions, nodes_of, reached
+from hearth.schemas.program import Program, Step
+from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import Rules
+from hearth.simulation.world import World
+
+_UNDOING = {"Open": "Close", "SwitchOn": "SwitchOff", "PlugIn": "PlugOut"}
+_UNDONE = {**_UNDOING, **{undo: do for do, undo in _UNDOING.items()}}
+
+
+def resume(execution: Execution, program: Program, first: int, rules: Rules) -> Execution:
+    """Run a program that equals the one already run up to step `first`, from the world before that step.
+
+    Args:
+        execution: of the earlier program.
+        program: the new one, whole.
+        first: number of the first step that differs.
+        rules: for the run.
+    """
+    together = any(step.joins for step in program.steps) or any(step.joins for step in execution.program.steps)
+    if together or first >= len(execution.worlds):
+        return run(execution.worlds[0], program, rules)
+    rest = run(execution.worlds[first], Program(steps=program.steps[first:]), rules)
+    failure = rest.failure
+    if failure is not None:
+        from dataclasses import replace
+
+        failure = replace(failure, tick=failure.tick + first)
+    return Execution(program, (*execution.worlds[:first], *rest.worlds), failure)
+
+
+def trim(
+    original: Program, execution: Execution, own: tuple[bool, ...], goal: Postconditions, rules: Rules
+) -> Execution:
+    """Take out what is not needed, until nothing more can be taken out.
+
+    Args:
+        original: the program before any repair.
+        execution: of the repaired program, which runs and reaches its goal.
+        own: for each of its steps, whether the original had it; those stay, unless repairing made them void.
+        goal: what must stay reached; what the character holds at the start and at the end, it must go on holding.
+        rules: for the runs.
+    """
+    kept = goal + _hands(execution)
+    marks = list(own)
+    while True:
+        smaller = next(_smaller(original, execution, marks, kept, rules), None)
+        if smaller is None:
+            return execution
+        execution, marks = smaller
+
+
+def _smaller(
+    original: Program, execution: Execution, own: list[bool], goal: Postconditions, rules: Rules
+) -> Iterator[tuple[Execution, list[bool]]]:
+    """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
+    for start, end in _candidates(original, execution.program.steps, own):
+        steps = execution.program.steps
+        program = execution.program.with_steps(steps[:start] + steps[end:])
+        shorter = resume(execution, program, start, rules)
+        if shorter.failure is None and reached(goal, nodes_of(program, shorter.final), shorter.final):
+            yield shorter, own[:start] + own[end:]
+
+
+def _candidates(original: Program, steps: tuple[Step, ...], own: list[bool]) -> Iterator[tuple[int, int]]:
+    together = {n for n, step in enumerate(steps) if step.joins} | {n - 1 for n, s in enumerate(steps) if s.joins}
+    neighbours = {pair for pair in zip(original.steps, original.steps[1:], strict=False)}
+    for number in range(len(steps) - 1, -1, -1):
+        if number in together:
+            continue
+        if not own[number] or _walks_where_it_is(original, steps, number):
+            yield number, number + 1
+        pair = steps[number : number + 2]
+        if len(pair) == 2 and _undo(*pair) and pair not in neighbours:
+            yield number, number + 2
+
+
+def _undo(one: Step, other: Step) -> bool:
+    return one.objects == other.objects and one.agent == other.agent and _UNDONE.get(one.action) == other.action
+
+
+def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int) -> bool:
+    """Whether a walk follows one to the same place, and did not in the original."""
+    step = steps[number]
+    return _last_walk(steps, number) == step.objects and step not in _repeated_walks(original)
+
+
+def _last_walk(steps: tuple[Step, ...], number: int) -> object:
+    """Where the walk before this walk went; None if this is no walk or the first."""
+    if steps[number].action not in ("Walk", "Run"):
+        return None
+    earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in ("Walk", "Run"))
+    last = next(earlier, None)
+    return last.objects if last is not None else None
+
+
+def _repeated_walks(original: Program) -> set[Step]:
+    """Walks that the original itself makes to where its last walk went."""
+    return {s for n, s in enumerate(original.steps) if _last_walk(original.steps, n) == s.objects}
+
+
+def _hands(execution: Execution) -> tuple[Fact, ...]:
+    """What the characters hold at the start and at the end, as facts."""
+    first, last = execution.worlds[0], execution.final
+    nodes = nodes_of(execution.program, last)
+    keys = {node: key for key, node in nodes.items() if key[0] != CHARACTER_CLASS}
+    facts = []
+    for number, (old, new) in enumerate(zip(first.agents, last.agents, strict=True), 1):
+        facts += [
+            Fact("HOLDS", (CHARACTER_CLASS, number), key)
+            for node, key in keys.items()
+            if _held(first, node, old.held) and _held(last, node, new.held)
+        ]
+    return tuple(facts)
+
+
+def _held(world: World, node: int, held: int) -> bool:
+    return bool(held >> world.home.index[node] & 1)

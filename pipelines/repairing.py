@@ -1,0 +1,184 @@
+"""Repairing: run, look the failure up, edit the program, run on from there (thesis 5.5.4, A.2, algorithm 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from hearth.grounding.postconditions import Postconditions, missing, nodes_of
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines import canonical
+from hearth.pipelines.handlers.common import Edit, Handler, Trouble
+from hearth.pipelines.handlers.registry import HANDLERS, UNREPAIRABLE
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import Program, Step
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+TRIES = 20
+"""Repairs of one program in one environment before it is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One repair: a broken program, what broke, and the program after it.
+
+    Attributes:
+        number: from 0.
+        step: number of the step that failed, from 0; the program's length when it ran but missed its goal.
+        failure: why.
+        handler: name of the repair, or of the handler that gave up.
+        before: the steps that broke.
+        after: the steps instead; empty when nothing could be done.
+    """
+
+    number: int
+    step: int
+    failure: Failure
+    handler: str
+    before: tuple[Step, ...]
+    after: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Repaired:
+    """What became of a program in an environment that it was not made for.
+
+    Attributes:
+        program: the last version.
+        execution: of the last version.
+        attempts: every repair, in order.
+        trimmed: how many steps that repairs had inserted turned out not to be needed.
+        failure: why it was given up; None when it runs and reaches its goal.
+    """
+
+    program: Program
+    execution: Execution
+    attempts: tuple[Attempt, ...]
+    trimmed: int = 0
+    failure: Failure | None = None
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A program under repair. `own` says of each step whether the original had it."""
+
+    program: Program
+    own: tuple[bool, ...]
+    execution: Execution
+
+
+def repair(
+    program: Program,
+    world: World,
+    goal: Postconditions,
+    knowledge: Knowledge,
+    rules: Rules = DEFAULT,
+    handlers: Mapping[Code, Handler] = HANDLERS,
+    tries: int = TRIES,
+) -> Repaired:
+    """Repair a program until it runs and reaches its goal.
+
+    Args:
+        program: bound to nodes of the world's home.
+        world: the start.
+        goal: what the original achieves in its own environment.
+        knowledge, rules: what the world goes by.
+        handlers: what to do about each failure.
+        tries: repairs at most.
+
+    Returns:
+        The repaired program, canonical. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
+        repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
+    """
+    draft = _Draft(program, (True,) * len(program.steps), run(world, program, rules))
+    attempts: list[Attempt] = []
+    seen = {program.steps}
+    while True:
+        trouble = _trouble(draft, goal, knowledge, rules)
+        if trouble is None:
+            break
+        if len(attempts) == tries:
+            return _given_up(draft, attempts, trouble, Code.TOO_MANY_TRIES, f"{tries} repairs were not enough")
+        name, edit, refusal = _consult(handlers, trouble)
+        if edit is None:
+            attempts.append(_attempt(attempts, trouble, name, ()))
+            code = Code.GOAL_LOST if trouble.failure.code is Code.GOAL_LOST else Code.NO_HANDLER
+            return _given_up(draft, attempts, trouble, Code.HANDLER_ERROR if refusal else code, refusal)
+        draft = _edited(draft, edit, rules)
+        attempts.append(_attempt(attempts, trouble, edit.name, draft.program.steps))
+        if draft.program.steps in seen:
+            return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
+        seen.add(draft.program.steps)
+    if not attempts:
+        return Repaired(program, draft.execution, ())
+    trimmed = canonical.trim(program, draft.execution, draft.own, goal, rules)
+    return Repaired(trimmed.program, trimmed, tuple(attempts), len(draft.own) - len(trimmed.program.steps))
+
+
+def _trouble(draft: _Draft, goal: Postconditions, knowledge: Knowledge, rules: Rules) -> Trouble | None:
+    """The first thing wrong with a program: a step that fails, or a goal that is missed."""
+    execution = draft.execution
+    if execution.failure is not None:
+        at = _failing(draft.program, execution.failure)
+        return Trouble(draft.program, at, execution.failure, execution.final, knowledge, rules, goal)
+    lost = missing(goal, nodes_of(draft.program, execution.final), execution.final)
+    if not lost:
+        return None
+    end = len(draft.program.steps)
+    wanted = "; ".join(map(str, lost))
+    failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
+    return Trouble(draft.program, end, failure, execution.final, knowledge, rules, goal)
+
+
+def _failing(program: Program, failure: Failure) -> int:
+    """Number of the step that a failure is about: in its tick, that of its agent."""
+    number = 0
+    for tick, steps in enumerate(program.ticks()):
+        if tick == failure.tick:
+            mine = (place for place, step in enumerate(steps) if step.agent == failure.agent)
+            return number + next(mine, 0)
+        number += len(steps)
+    return number
+
+
+def _consult(handlers: Mapping[Code, Handler], trouble: Trouble) -> tuple[str, Edit | None, str]:
+    """(name, edit, what the handler raised): a handler that raises costs only this program."""
+    handler = handlers.get(trouble.failure.code)
+    if handler is None:
+        return "", None, ""
+    name = getattr(handler, "__name__", str(handler))
+    try:
+        return name, handler(trouble), ""
+    except Exception as error:  # whatever a handler does wrong is data too
+        return name, None, f"{name} raised {type(error).__name__}: {error}"
+
+
+def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
+    """The program after an edit, run on from the last world that the edit does not touch."""
+    steps, own = list(draft.program.steps), list(draft.own)
+    mine = {id(step) for step, original in zip(steps, own, strict=True) if original}
+    for splice in reversed(edit.splices):
+        end = splice.at + splice.removed
+        replaced = own[splice.at : end]
+        marks = [id(step) in mine for step in splice.inserted]
+        marks[: len(replaced)] = replaced[: len(marks)]
+        steps[splice.at : end] = splice.inserted
+        own[splice.at : end] = marks
+    program = draft.program.with_steps(steps)
+    first = min(splice.at for splice in edit.splices)
+    return _Draft(program, tuple(own), canonical.resume(draft.execution, program, first, rules))
+
+
+def _attempt(attempts: Sequence[Attempt], trouble: Trouble, name: str, after: tuple[Step, ...]) -> Attempt:
+    return Attempt(len(attempts), trouble.at, trouble.failure, name, trouble.program.steps, after)
+
+
+def _given_up(draft: _Draft, attempts: list[Attempt], trouble: Trouble, code: Code, why: str) -> Repaired:
+    """The failure keeps saying what could not be repaired."""
+    last = trouble.failure
+    reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
+    told = f"{last.code}: {last.expected}" if last.expected else str(last.code)
+    failure = replace(last, code=code, expected=told, actual=f"{last.actual}; {reason}" if last.actual else reason)
+    return Repaired(draft.program, draft.execution, tuple(attempts), 0, failure)

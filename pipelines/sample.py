@@ -1,0 +1,177 @@
+"""Stage 3: every program in an environment where it runs: sampled from a home, or the one it came with."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pyarrow.parquet as pq
+
+from hearth.grounding.preconditions import infer
+from hearth.grounding.sampling import sample
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.cases import difference_of, environment_of, run_row
+from hearth.pipelines.derived import common, write_home
+from hearth.pipelines.manifest import read_manifest
+from hearth.pipelines.parts import Row, read_rows
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, program_of
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.surroundings import DERIVED, RULES, USES, Homes, overlays
+from hearth.schemas.failures import Failure
+from hearth.schemas.program import Program
+from hearth.schemas.tables import CASE, VALIDATED
+from hearth.simulation.engine import run
+from hearth.simulation.home import Home
+from hearth.simulation.rules import REPLAY, Rules
+from hearth.simulation.world import World
+
+SHARED_BY = 32
+"""Start graphs that are compared to find out what a home is where only environments of it are known."""
+
+_KEPT = tuple(name for name in CASE.names if name in VALIDATED.names)
+
+
+class Context(NamedTuple):
+    """What a record is processed with."""
+
+    homes: Homes
+    names: tuple[str, ...]
+    seed: int
+
+
+def process(record: Record, context: Context) -> Iterator[Row | Reject]:
+    """One case for each stored start graph of a program, or else for each home."""
+    stored = [grounding for grounding in record["groundings"] if grounding["start"]]
+    if stored:
+        return (_stored(record, grounding, context) for grounding in stored)
+    program = program_of(record)
+    return (_sampled(record, program, name, context) for name in context.names)
+
+
+def _sampled(record: Record, program: Program, name: str, context: Context) -> Row | Reject:
+    drawn = sample(program, context.homes.home(name), context.seed, record["program_id"])
+    if isinstance(drawn, Failure):
+        return failed(drawn, program, record["place"], f" in {name}")
+    environment, execution = drawn
+    return {
+        **_row(record, name),
+        "seed": context.seed,
+        "environment": environment_of(environment, context.homes.edges(name)),
+        "conditions": condition_rows(environment.conditions),
+        **run_row(execution, "default"),
+    }
+
+
+def failed(failure: Failure, program: Program, place: str, where: str = "") -> Reject:
+    """A reject for a program that does not run, at the line of the step where that shows."""
+    steps = [number for number, tick in enumerate(program.ticks()) for _ in tick]
+    step = steps.index(failure.tick) if failure.tick in steps else 0
+    return Reject.failed(failure, place + where, program.line(step))
+
+
+def _stored(record: Record, grounding: Row, context: Context) -> Row:
+    """A case in the environment that a program came with, run as the release's programs were."""
+    name = grounding["home"]
+    graph = graph_of(grounding["start"])
+    bound = {"title": record["title"], "description": record["description"], "steps": grounding["steps"]}
+    program = program_of(bound, bindings_of(grounding["bindings"]))
+    world = World.start(Home.from_graph(graph, name, context.homes.knowledge))
+    execution = run(world, program, RULES["replay"])
+    reproduces = None
+    if grounding["final"]:
+        reproduces = execution.executable and execution.final.changes(world) == change_of(grounding["final"])
+    return {
+        **_row(record, name),
+        "steps": grounding["steps"],
+        "environment": difference_of(graph, context.homes.home(name), context.homes.edges(name)),
+        "conditions": record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY),
+        **run_row(execution, "replay"),
+        "reproduces": reproduces,
+    }
+
+
+def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> list[Row]:
+    found = infer(program.unbound(), knowledge, rules)
+    return [] if isinstance(found, Failure) else condition_rows(found)
+
+
+def _row(record: Record, home: str) -> Row:
+    environment_id = f"{record['program_id']}@{home}"
+    return {
+        **{name: record[name] for name in _KEPT},
+        "environment_id": environment_id,
+        "execution_id": f"{environment_id}/0",
+        "home": home,
+        "perturbations": [],
+        "repairs": [],
+    }
+
+
+def prepare(settings: Settings) -> dict[str, Any]:
+    """The homes to sample in, and the parts from which homes are derived that only stored graphs tell of."""
+    homes = Homes(settings)
+    parts = {name: [digest for digest, _ in found] for name, found in _told_of(settings, homes).items()}
+    return {**overlays(settings), "homes": list(homes.names()), "derived": parts}
+
+
+def _told_of(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path]]]:
+    """For each home that is not in the catalog, the first parts (digest, path) with enough start graphs in it."""
+    manifest = read_manifest(settings.folder("validate"))
+    assert manifest is not None
+    found: dict[str, list[tuple[str, Path]]] = {}
+    graphs: Counter[str] = Counter()
+    for part in manifest.parts:
+        (file,) = part["files"]
+        column = pq.ParquetFile(manifest.folder / file).read(columns=["groundings.list.element.home"])["groundings"]
+        here = Counter(grounding["home"] for row in column.to_pylist() for grounding in row or ())
+        for name in sorted(here):
+            if graphs[name] < SHARED_BY and not homes.in_catalog(name):
+                entry = (manifest.content["files"][file]["sha256"], manifest.folder / file)
+                found.setdefault(name, []).append(entry)
+                graphs[name] += here[name]
+    return found
+
+
+def derive_homes(job: Job) -> None:
+    """Write the homes that only stored start graphs tell of."""
+    folder = job.folder / DERIVED
+    folder.mkdir(exist_ok=True)
+    told = _told_of(job.settings, Homes(job.settings))
+    for stale in folder.iterdir():
+        if stale.stem not in told:
+            stale.unlink()
+    for name, parts in told.items():
+        write_home(folder / f"{name}.json", common(_starts(name, (path for _, path in parts))))
+
+
+def _starts(name: str, parts: Iterable[Path]) -> Iterator[Row]:
+    count = 0
+    for path in parts:
+        for row in read_rows(path, ["groundings"]):
+            for grounding in row["groundings"]:
+                if grounding["home"] == name and grounding["start"] and count < SHARED_BY:
+                    count += 1
+                    yield grounding["start"]
+
+
+def open_homes(job: Job) -> Context:
+    """Homes, built when first asked for."""
+    return Context(Homes(job.settings), tuple(job.plan["homes"]), job.settings.seed)
+
+
+STAGE = Stage(
+    name="sample",
+    tables={"": CASE},
+    process=process,
+    reads=("validate",),
+    uses=(*USES, "grounding", "pipelines/sample.py", "pipelines/cases.py", "pipelines/derived.py"),
+    settings=("seed",),
+    open=open_homes,
+    prepare=prepare,
+    begin=derive_homes,
+    tally=lambda row: "executable" if row["executable"] else "not executable",
+)

@@ -1,0 +1,139 @@
+"""Stage 2: programs against the action grammar: they parse, their names are known, their objects afford the steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
+
+from hearth.kb import grammar
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines import special
+from hearth.pipelines.parts import Row
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import binding_rows, step_rows, warning_row
+from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.surroundings import knowledge, overlays
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Program
+from hearth.schemas.syntax import parse_program
+from hearth.schemas.tables import VALIDATED
+
+_KEPT = tuple(name for name in VALIDATED.names if name not in ("steps", "groundings", "warnings"))
+
+
+def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject:
+    """Check one program, and each of its groundings; a grounding at fault is refused alone."""
+    program, faults, warnings = checked(record["text"], record["line"], record["place"], known)
+    if faults:
+        return Reject(faults)
+    rejects: list[Reject] = []
+    groundings: list[Row] = []
+    for grounding in record["groundings"] or ():
+        outcome = _grounding(grounding, record["place"], known)
+        (rejects if isinstance(outcome, Reject) else groundings).append(outcome)  # type: ignore[arg-type]
+    row = {
+        **{name: record[name] for name in _KEPT},
+        "title": record["title"] or program.title,
+        "description": record["description"] or program.description,
+        "steps": step_rows(program),
+        "groundings": groundings,
+        "warnings": [warning_row(fault) for fault in warnings],
+    }
+    return [row, *rejects]
+
+
+def checked(
+    text: str, before: int, place: str, known: Knowledge
+) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """A program in canonical names, its faults, and its warnings.
+
+    Args:
+        text: the program as written.
+        before: lines of the file before it.
+        place: the file, for diagnostics.
+        known: the grammar.
+    """
+    expanded = special.expand(text, before)
+    source = expanded.text.split("\n")
+    written, faults = parse_program(expanded.text, place)
+    program, wrong = grammar.check(_numbered(written), known, place, source)
+    faults = (*faults, *wrong)
+    if not faults:
+        faults = grammar.affordances(program, known, place, source)
+    faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
+    lines = tuple(expanded.original(line) for line in program.lines)
+    return replace(program, lines=lines), faults, () if faults else tuple(_warnings(program, known, lines, place))
+
+
+def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place: str) -> Iterator[Diagnostic]:
+    for number, step in enumerate(program.steps):
+        if not known.actions[step.action].executed:
+            message = f"[{step.action}] is valid to write, but never executed"
+            yield Diagnostic(Code.NOT_SIMULATED, message, place, lines[number], found=step.action)
+
+
+def _numbered(program: Program) -> Program:
+    """Objects that are only named by node get an instance of their own, so that (name, instance) tells them apart."""
+    if all(ref.instance for step in program.steps for ref in step.objects):
+        return program
+    taken = {ref.key for step in program.steps for ref in step.objects if ref.instance}
+    given: dict[tuple[str, int | None], int] = {}
+
+    def numbered(ref: ObjectRef) -> ObjectRef:
+        if ref.instance:
+            return ref
+        key = (ref.name, ref.node)
+        if key not in given:
+            given[key] = next(n for n in range(1, len(taken) + 2) if (ref.name, n) not in taken)
+            taken.add((ref.name, given[key]))
+        return replace(ref, instance=given[key])
+
+    steps = tuple(replace(step, objects=tuple(map(numbered, step.objects))) for step in program.steps)
+    return replace(program, steps=steps)
+
+
+def _grounding(grounding: Row, place: str, known: Knowledge) -> Row | Reject:
+    program, faults, _ = checked(grounding["text"], 0, f"{place} in {grounding['home']}", known)
+    unbound = [ref for ref in program.objects() if ref.node is None]
+    if not faults and unbound:
+        message = f"`{unbound[0].name}` ({unbound[0].instance}) is bound to no node"
+        faults = (Diagnostic(Code.UNBOUND, message, place, suggestion="write (1.319) for node 319"),)
+    if faults:
+        return Reject(faults)
+    return {
+        "home": grounding["home"],
+        "steps": step_rows(program),
+        "bindings": binding_rows(program),
+        "start": grounding["start"],
+        "final": grounding["final"],
+    }
+
+
+def open_knowledge(job: Job) -> Knowledge:
+    """The grammar."""
+    return knowledge(job.settings)
+
+
+def is_program(record: Record, plan: dict[str, Any]) -> bool:
+    """Descriptions without a program go on to `publish` as they are."""
+    return bool(record["kind"] == "program")
+
+
+STAGE = Stage(
+    name="validate",
+    tables={"": VALIDATED},
+    process=process,
+    reads=("ingest",),
+    uses=(
+        "kb",
+        "data_raw/crowd/special_blocks.yaml",
+        "pipelines/validate.py",
+        "pipelines/special.py",
+        "pipelines/rows.py",
+    ),
+    open=open_knowledge,
+    prepare=overlays,
+    select=is_program,
+)
