@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 from hearth.kb.formula import Atom, Effect, Formula
-from hearth.kb.records import Action, Kind, ObjectClass, Placement, Repair, StateGroup
+from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.schemas.failures import Code
 
 _DROPPED = {ord(letter): None for letter in " _-"}
@@ -33,6 +33,7 @@ class Knowledge:
         defaults: class or property -> the states a home is prepared with (thesis 5.5.2).
         derived: definitions of derived predicates.
         kinds: the kinds above the classes.
+        associations: what goes with what in use.
         repairs: what to do about a failure, by name; the first that fits is the one to try.
     """
 
@@ -45,6 +46,7 @@ class Knowledge:
     defaults: Mapping[str, Mapping[str, tuple[str, ...]]]
     derived: Mapping[str, tuple[Atom, Formula]]
     kinds: Mapping[str, Kind]
+    associations: tuple[Association, ...]
     repairs: Mapping[str, Repair]
     _action_names: Mapping[str, Action] = field(repr=False)
     _object_names: Mapping[str, ObjectClass] = field(repr=False)
@@ -106,6 +108,11 @@ class Knowledge:
         """All names by which an instance of it may appear in a graph, best first; `(name,)` for an unknown name."""
         found = self.object_class(name)
         return (name,) if found is None else self._same_class(found.name)
+
+    def stand_ins(self, name: str) -> tuple[str, ...]:
+        """The classes whose things may take its place in a home, best first."""
+        thing = self.object_class(name)
+        return self._stand_ins.get(thing.name, ()) if thing else ()
 
     @cached_property
     def _twins(self) -> Mapping[str, tuple[str, ...]]:

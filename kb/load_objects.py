@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hearth.kb.layers import Layers, check_ids, check_properties, csv_rows, cycles, yaml_entries
 from hearth.kb.reading import Entry, Faults, strings
-from hearth.kb.records import EDGES, Kind, ObjectClass, Placement, StateGroup
+from hearth.kb.records import EDGES, Association, Kind, ObjectClass, Placement, StateGroup
 from hearth.schemas.failures import Code
 
 OBJECT_FILES = (
@@ -154,6 +154,28 @@ def load_placements(layers: Layers, known: Container[str], faults: Faults) -> li
         elif weight != "0":
             result.append(Placement(thing, relation, destination, room, int(weight), evidence))
     return result
+
+
+def load_associations(
+    layers: Layers, objects: Container[str], actions: Container[str], faults: Faults
+) -> tuple[Association, ...]:
+    """What goes with what, and what serves which action. A row whose weight is 0 takes an earlier layer's away."""
+    columns = ("name", "relation", "other", "weight", "evidence")
+    result = []
+    for entry in csv_rows(layers, ("associations.csv",), columns, (0, 1, 2), faults).values():
+        name, relation, other, weight, evidence = entry.value
+        others = {"goes_with": objects, "serves": actions}.get(relation)
+        if name not in objects:
+            faults.at(entry, f"`{name}` is no object", code=Code.UNKNOWN_OBJECT)
+        if others is None:
+            faults.at(entry, f"`{relation}` is no association", "goes_with or serves")
+        elif other not in others:
+            faults.at(entry, f"`{other}` is no {'object' if relation == 'goes_with' else 'action'}")
+        if weight not in _WEIGHTS:
+            faults.at(entry, f"`{weight}` is no weight", "1 to 5; 0 removes")
+        elif weight != "0":
+            result.append(Association(name, relation, other, int(weight), evidence))
+    return tuple(result)
 
 
 def load_aliases(layers: Layers, known: Container[str], faults: Faults) -> dict[str, str]:

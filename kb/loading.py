@@ -13,6 +13,7 @@ from hearth.kb.load_actions import load_actions, load_derived, load_repairs
 from hearth.kb.load_objects import (
     OBJECT_FILES,
     load_aliases,
+    load_associations,
     load_objects,
     load_placements,
     load_stand_ins,
@@ -27,6 +28,7 @@ FILES = (
     "actions_written.yaml",
     "affordances.yaml",
     "aliases.csv",
+    "associations.csv",
     "corrections.yaml",
     "derived.yaml",
     "kinds.csv",
@@ -78,6 +80,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
     placements = load_placements(layers, objects, faults)
     derived = load_derived(layers, faults)
     actions = load_actions(layers, derived, faults)
+    associations = load_associations(layers, objects, actions, faults)
     repairs = load_repairs(layers, actions, faults)
     rooms, limits, tables = (yaml_entries(layers, f"{name}.yaml", faults) for name in ("rooms", "limits", "tables"))
     if faults:
@@ -94,6 +97,7 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         defaults=_default_states(tables["default_states"]),
         derived=derived,
         kinds=kinds,
+        associations=associations,
         repairs=repairs,
         _action_names=_action_spellings(actions),
         _object_names=spellings,

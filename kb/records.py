@@ -157,6 +157,19 @@ class Placement(NamedTuple):
         return EDGES[self.relation]
 
 
+class Association(NamedTuple):
+    """Things that belong together in use: `spectacles` serves `Read`, `pen` goes_with `paper`.
+
+    `weight` says how strongly, from 1 to 5; `evidence` who says so.
+    """
+
+    name: str
+    relation: str
+    other: str
+    weight: int
+    evidence: str
+
+
 EDGES = {"ON": "ON", "IN": "INSIDE", "NEARBY": "CLOSE"}
 """Relation of a placement -> relation of a scene graph."""
 
