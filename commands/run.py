@@ -152,7 +152,7 @@ def _summary(change: Change, world: World) -> str:
             quiet[edge.relation] += 1
     parts += [f"{count} more {relation}" for relation, count in quiet.items()]
     if change.removed:
-        parts.append(f"{len(change.removed)} edges less")
+        parts.append(f"{output.counted(len(change.removed), 'edge')} less")
     return "; ".join(parts) or "changes nothing"
 
 

@@ -115,7 +115,9 @@ def _facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
         keys.setdefault(index[node], []).append(key)
     named = sum(1 << i for i in keys)
     for i, subjects in keys.items():
-        found: list[tuple[str, Key | None]] = [(s, None) for s, row in zip(STATES, world.states, strict=True) if row >> i & 1]
+        found: list[tuple[str, Key | None]] = [
+            (s, None) for s, row in zip(STATES, world.states, strict=True) if row >> i & 1
+        ]
         for relation in ("ON", "INSIDE", "HOLDS"):
             found.extend((relation, key) for j in indices(_row(world, relation, i) & named) for key in keys[j])
         for subject in subjects:
@@ -128,9 +130,7 @@ def _rooms_meant(program: Program) -> dict[Key, bool]:
     return {key: key == walked[-1] for key in walked}
 
 
-def _is_meant(
-    fact: Fact, walked: Mapping[Key, bool], placed: set[Key], world: World, nodes: Mapping[Key, int]
-) -> bool:
+def _is_meant(fact: Fact, walked: Mapping[Key, bool], placed: set[Key], world: World, nodes: Mapping[Key, int]) -> bool:
     if fact.name != "INSIDE" or fact.target is None:
         return True
     room = world.home.index[nodes[fact.target]]

@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hearth.grounding.base import Base, prepared
-from hearth.grounding.conditions import CHARACTER, Preconditions
+from hearth.grounding.checking import unmet
+from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
 from hearth.grounding.demands import Moment, conditions_for
 from hearth.grounding.draft import Draft
 from hearth.grounding.filling import fill
 from hearth.grounding.fulfilling import fulfil
 from hearth.grounding.placing import Wishes, bind
 from hearth.grounding.preconditions import infer
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
@@ -65,7 +66,7 @@ def sample(
     seed: int,
     record_id: str = "",
     conditions: Preconditions | None = None,
-    size: Size = Size(),  # noqa: B008 - immutable
+    size: Size = Size(),
     rules: Rules = DEFAULT,
     must_run: bool = True,
 ) -> tuple[Environment, Execution] | Failure:
@@ -91,13 +92,23 @@ def sample(
     for attempt in range(TRIES):
         environment = draw(program, base, found, seed, record_id, attempt, size)
         execution = run(environment.world, environment.program, rules)
-        if execution.failure is None or not must_run:
+        missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
+        if not missing and (execution.failure is None or not must_run):
             return environment, execution
-        failure = execution.failure
-        if attempt % 2:
+        failure = _unmet(missing[0]) if missing else execution.failure
+        if attempt % 2 and execution.failure is not None and not missing:
             found = _with_demand(found, environment, execution, base)
     assert failure is not None
     return failure
+
+
+def _nodes(program: Program) -> dict[Key, int]:
+    return {ref.key: ref.node for ref in program.objects() if ref.node is not None}
+
+
+def _unmet(condition: Condition) -> Failure:
+    names = tuple(name for name, _ in condition.objects)
+    return Failure(Code.CONDITION_UNMET, names=names, expected=str(condition), actual="not so in what was drawn")
 
 
 def draw(
@@ -149,7 +160,7 @@ def _with_demand(
     """The conditions with what the failed run lacked."""
     failure = execution.failure
     assert failure is not None
-    keys = {ref.node: ref.key for ref in environment.program.objects() if ref.node is not None}
+    keys = {node: key for key, node in _nodes(environment.program).items()}
     moment = Moment(
         environment.program, failure.tick, failure, execution.final, environment.world, keys, base.knowledge
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from hearth.kb.formula import Atom, Formula, Not, Or, Some
+from hearth.kb.formula import And, Atom, Formula, Not, Or, Some, Term
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation import rows
@@ -33,8 +33,14 @@ class _Cast:
     o: int
     s: int
 
-    def index(self, variable: str) -> int:
-        return {"a": self.agent.index, "o": self.o, "s": self.s}.get(variable, -1)
+    def index(self, term: Term) -> int:
+        """Index of what a term names, or -1."""
+        index = {"a": self.agent.index, "o": self.o, "s": self.s}.get(term.name, -1)
+        if index < 0 or not term.function:
+            return index
+        if term.function == "room":
+            return rows.room_of(self.world, index)
+        return next((place for thing, place, _ in self.agent.origins if thing == index), -1)
 
     def name(self, index: int) -> str:
         home = self.world.home
@@ -58,15 +64,20 @@ def _witness(formula: Formula, cast: _Cast) -> str:
     if isinstance(formula, Atom):
         tell = _TELL.get(formula.name)
         return tell(formula, cast) if tell else ""
+    if isinstance(formula, And):
+        return ", ".join(text for part in formula.parts if (text := _witness(part, cast)))
     if isinstance(formula, Not) and isinstance(formula.part, Atom):
-        return _states(formula.part, cast) if formula.part.name == "state" else ""
+        tell = _TELL_NOT.get(formula.part.name)
+        return tell(formula.part, cast) if tell else ""
+    if isinstance(formula, Some) and "REMEMBERS" in str(formula):
+        return f"it came from {cast.name(cast.index(Term('o', 'origin')))}"
     if isinstance(formula, Some):
         return ", ".join(map(cast.name, rows.held_indices(cast.agent)))
     return ""
 
 
 def _close(atom: Atom, cast: _Cast) -> str:
-    agent, x = cast.agent, cast.index(atom.terms[1].name)
+    agent, x = cast.agent, cast.index(atom.terms[1])
     if x < 0:
         return ""
     if agent.close >> x & 1:
@@ -80,7 +91,7 @@ def _close(atom: Atom, cast: _Cast) -> str:
 
 
 def _facing(atom: Atom, cast: _Cast) -> str:
-    agent, x = cast.agent, cast.index(atom.terms[1].name)
+    agent, x = cast.agent, cast.index(atom.terms[1])
     if agent.facing >> x & 1:
         return f"character FACING {cast.name(x)}"
     hop = agent.facing & rows.faced(cast.world, x)
@@ -88,7 +99,7 @@ def _facing(atom: Atom, cast: _Cast) -> str:
 
 
 def _holds(atom: Atom, cast: _Cast) -> str:
-    x = cast.index(atom.terms[1].name)
+    x = cast.index(atom.terms[1])
     hand = "right" if cast.agent.right >> x & 1 else "left"
     return f"{cast.name(x)} in the {hand} hand"
 
@@ -98,23 +109,25 @@ def _hands(atom: Atom, cast: _Cast) -> str:
 
 
 def _states(atom: Atom, cast: _Cast) -> str:
-    x = cast.index(atom.terms[0].name)
+    x = cast.index(atom.terms[0])
     if x < 0:
         return ""
     pair = STATE_ID[atom.terms[1].name] & ~1
     now = [name for name in states_of(x, cast.world.states) if name in STATES[pair : pair + 2]]
-    return f"{cast.name(x)} is {' and '.join(now) or 'neither'}"
+    if not now and x == cast.agent.index:
+        return "the character stands"
+    return f"{cast.name(x)} is {' and '.join(now) or ' nor '.join(('neither ' + STATES[pair], STATES[pair + 1]))}"
 
 
 def _affords(atom: Atom, cast: _Cast) -> str:
-    x = cast.index(atom.terms[0].name)
+    x = cast.index(atom.terms[0])
     home = cast.world.home
     names = sorted(name for name, mask in home.properties.items() if mask >> x & 1)
     return f"{cast.name(x)} is {' '.join(names) or 'without properties'}"
 
 
 def _room(atom: Atom, cast: _Cast) -> str:
-    x = cast.index(atom.terms[0].name)
+    x = cast.index(atom.terms[0])
     return f"in {cast.name(rows.room_of(cast.world, x))}"
 
 
@@ -123,7 +136,27 @@ def _seat(atom: Atom, cast: _Cast) -> str:
     return f"on it: {', '.join(on) or 'nothing'}"
 
 
+def _same_room(atom: Atom, cast: _Cast) -> str:
+    return f"both in {cast.name(rows.agent_room(cast.world, cast.agent))}"
+
+
+def _open(atom: Atom, cast: _Cast) -> str:
+    around = rows.inside(cast.world, cast.index(atom.terms[0])) & ~cast.world.home.rooms
+    return f"inside {cast.name(lowest(around))}, which is not CLOSED" if around else "inside nothing but its room"
+
+
+def _edge(atom: Atom, cast: _Cast) -> str:
+    x = cast.index(atom.terms[1])
+    return f"character {atom.name} {cast.name(x)}" if atom.name == "FACING" and cast.agent.facing >> x & 1 else ""
+
+
+_TELL_NOT: dict[str, Callable[[Atom, _Cast], str]] = {
+    "hidden": _open,
+    "state": _states,
+}
+
 _TELL: dict[str, Callable[[Atom, _Cast], str]] = {
+    "FACING": _edge,
     "affords": _affords,
     "close": _close,
     "facing": _facing,
@@ -132,5 +165,6 @@ _TELL: dict[str, Callable[[Atom, _Cast], str]] = {
     "holds": _holds,
     "room_to_lie": _seat,
     "room_to_sit": _seat,
+    "same_room": _same_room,
     "state": _states,
 }

@@ -1,0 +1,111 @@
+"""`run` and `replay` as a user meets them."""
+
+import json
+import zipfile
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth.cli import app
+from hearth.schemas.failures import Code
+
+WATCH = """Watch TV
+Sit and watch.
+
+
+[Walk] <television> (1)
+[SwitchOn] <television> (1)
+[Walk] <sofa> (1)
+[Sit] <sofa> (1)
+[Watch] <television> (1)
+"""
+
+
+def call(*arguments, **options):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments], **options)
+
+
+def test_run_prints_the_binding_and_what_each_step_changed(tmp_path):
+    file = tmp_path / "tv.txt"
+    file.write_text(WATCH)
+    result = call("run", file, "--home", "maple")
+    assert result.exit_code == 0, result.output
+    assert "<sofa> (1) is couch" in result.output
+    assert "is ON" in result.output and "character" in result.output and "is SITTING" in result.output
+    assert "Done: 5 ticks." in result.output
+
+
+def test_explain_names_the_edges_that_checks_held_by(tmp_path):
+    file = tmp_path / "tv.txt"
+    file.write_text(WATCH)
+    result = call("run", file, "--explain")
+    assert "close(a, o)  by  character CLOSE television" in result.output
+    assert "by  character FACING television" in result.output
+
+
+def test_run_as_json_has_the_bound_steps_and_their_changes(tmp_path):
+    file = tmp_path / "tv.txt"
+    file.write_text(WATCH)
+    result = call("run", file, "--json")
+    found = json.loads(result.stdout)
+    assert found["executable"] is True and len(found["changes"]) == len(found["steps"]) == 5
+    assert [state for _, state in found["changes"][1]["set_states"]] == ["ON"]
+
+
+def test_a_program_that_contradicts_itself_ends_with_status_1(tmp_path):
+    file = tmp_path / "twice.txt"
+    file.write_text(WATCH.replace("[Walk] <sofa> (1)", "[SwitchOn] <television> (1)"))
+    result = call("run", file, "--json")
+    found = json.loads(result.stdout)
+    assert result.exit_code == 1 and found["failure"]["code"] == Code.CONTRADICTION
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Fly\n\n\n[Fly] <bed> (1)\n", "UNKNOWN_ACTION"),
+        ("TV\n\n\n[Watch] <televison> (1)\n", "did you mean `television`"),
+        ("TV\n\n\n[Watch]\n", "WRONG_ARITY"),
+        ("TV\n\n\n[Watch] <television> (x)\n", "BAD_INSTANCE"),
+        ("", "EMPTY"),
+        ("a\x00b", "NOT_TEXT"),
+    ],
+)
+def test_a_bad_file_is_explained(tmp_path, text, said):
+    file = tmp_path / "bad.txt"
+    file.write_text(text)
+    result = call("run", file)
+    assert result.exit_code == 1
+    assert said in result.output and "Traceback" not in result.output
+
+
+def test_replay_reproduces_the_release_sample(real_data):
+    result = call("replay", real_data / "activityprograms-sample.zip", "--limit", "40", "--json", "--strict")
+    found = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert (found["programs"], found["executed"], found["exact"], found["mismatches"]) == (40, 40, 40, [])
+
+
+def test_replay_shows_the_edges_of_a_mismatch(real_data, tmp_path):
+    """The stored end is changed: the edge that is not reproduced is printed."""
+    changed = tmp_path / "changed.zip"
+    with zipfile.ZipFile(real_data / "activityprograms-sample.zip") as source, zipfile.ZipFile(changed, "w") as target:
+        for name in sorted(source.namelist()):
+            if "file1003_2" not in name:
+                continue
+            data = source.read(name)
+            if name.endswith(".json"):
+                graphs = json.loads(data)
+                graphs["final_graph"]["edges"].append({"from_id": 65, "relation_type": "ON", "to_id": 1})
+                data = json.dumps(graphs).encode()
+            target.writestr(name, data)
+    result = call("replay", changed, "--strict")
+    assert result.exit_code == 1
+    assert "missing: 65 ON 1" in result.output
+
+
+def test_replay_of_something_else_is_one_clear_error(tmp_path):
+    file = tmp_path / "not.zip"
+    file.write_bytes(b"PK\x03\x04 truncated")
+    result = call("replay", file)
+    assert result.exit_code == 1 and "BAD_ARCHIVE" in result.output and "Traceback" not in result.output

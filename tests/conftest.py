@@ -1,0 +1,37 @@
+"""What several test folders share: the release sample (or why it is skipped), and a home of our own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+from hearth.kb.knowledge import default
+from hearth.simulation.home import Home
+from hearth.simulation.homes import catalog
+
+settings.register_profile("hearth", derandomize=True, deadline=None)
+settings.load_profile("hearth")
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """The folder of real data, where there is one."""
+    folder = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real"))
+    if not (folder / "activityprograms-sample.zip").exists():
+        pytest.skip(f"no release sample in {folder} (set HEARTH_REAL_DATA)")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def knowledge():
+    return default()
+
+
+@pytest.fixture(scope="session")
+def maple(knowledge):
+    return Home.from_graph(catalog.load_graph("maple"), "maple", knowledge)

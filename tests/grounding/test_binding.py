@@ -1,0 +1,67 @@
+"""Counters are bound so that all steps can run."""
+
+from hearth.grounding.binding import Binding, bind
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.engine import run
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
+
+OFFICE = (
+    Node(1, "home_office", "Rooms"),
+    Node(2, "bedroom", "Rooms"),
+    Node(3, "character", "Characters"),
+    Node(10, "keyboard", "Electronics", ("GRABBABLE", "HAS_PLUG")),
+    Node(11, "computer", "Electronics", ("HAS_SWITCH", "LOOKABLE"), ("OFF", "CLEAN")),
+    Node(12, "keyboard", "Electronics", ("GRABBABLE", "HAS_PLUG")),
+    Node(13, "computer", "Electronics", ("LOOKABLE",), ("CLEAN",)),
+)
+EDGES = (
+    Edge(3, "INSIDE", 2),
+    Edge(10, "INSIDE", 2),
+    Edge(13, "INSIDE", 2),
+    Edge(11, "INSIDE", 1),
+    Edge(12, "INSIDE", 1),
+    Edge(11, "CLOSE", 12),
+    Edge(12, "CLOSE", 11),
+)
+
+
+def world(knowledge, nodes=OFFICE, edges=EDGES):
+    return World.start(Home.from_graph(EnvironmentGraph(nodes, edges), "office", knowledge))
+
+
+def program(*steps):
+    return parse_program("Work\n\n\n" + "\n".join(steps))[0]
+
+
+def test_the_keyboard_is_the_one_next_to_the_computer_that_was_switched_on(knowledge):
+    work = program("[Walk] <computer> (1)", "[SwitchOn] <computer> (1)", "[Type] <keyboard> (1)")
+    found = bind(work, world(knowledge))
+    assert isinstance(found, Binding)
+    assert found.nodes == {("computer", 1): 11, ("keyboard", 1): 12}
+    assert run(world(knowledge), found.apply(work)).executable
+
+
+def test_an_earlier_choice_is_undone_when_a_later_step_needs_it(knowledge):
+    work = program("[Walk] <keyboard> (1)", "[Touch] <keyboard> (1)", "[SwitchOn] <computer> (1)")
+    found = bind(work, world(knowledge))
+    assert isinstance(found, Binding) and found.nodes[("keyboard", 1)] == 12
+
+
+def test_two_instances_are_two_things(knowledge):
+    found = bind(program("[Walk] <keyboard> (1)", "[Walk] <keyboard> (2)"), world(knowledge))
+    assert isinstance(found, Binding) and len(set(found.nodes.values())) == 2
+
+
+def test_without_a_binding_the_step_and_its_reason_are_told(knowledge):
+    found = bind(program("[Walk] <computer> (1)", "[Open] <computer> (1)"), world(knowledge))
+    assert isinstance(found, Failure) and found.code is Code.UNBOUND and found.tick == 0
+    found = bind(program("[Walk] <computer> (1)", "[SwitchOff] <computer> (1)"), world(knowledge))
+    assert isinstance(found, Failure) and found.code is Code.IS_OFF and found.tick == 1
+
+
+def test_a_room_that_the_home_lacks_has_a_stand_in(knowledge):
+    found = bind(program("[Walk] <kids_bedroom> (1)"), world(knowledge))
+    assert isinstance(found, Binding) and found.nodes == {("kids_bedroom", 1): 2}

@@ -1,0 +1,111 @@
+"""Preconditions are what a program needs and no earlier step of it provides, each explained by the step."""
+
+import pytest
+
+from hearth.grounding.conditions import CHARACTER
+from hearth.grounding.preconditions import infer
+from hearth.kb import grammar
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.syntax import parse_program
+
+
+def conditions_of(knowledge, *steps):
+    program, faults = parse_program("A title\n\n\n" + "\n".join(steps))
+    program, wrong = grammar.check(program, knowledge)
+    assert not faults and not wrong
+    return infer(program, knowledge)
+
+
+def facts(found):
+    return {str(condition): condition.step for condition in found}
+
+
+@pytest.mark.parametrize(
+    ("steps", "condition", "step"),
+    [
+        (["[Walk] <television> (1)", "[SwitchOn] <television> (1)"], "is_off(television (1))", 1),
+        (["[Walk] <television> (1)", "[SwitchOff] <television> (1)"], "is_on(television (1))", 1),
+        (["[Walk] <television> (1)", "[SwitchOn] <television> (1)"], "plugged(television (1))", 1),
+        (["[Walk] <television> (1)", "[PlugIn] <television> (1)"], "unplugged(television (1))", 1),
+        (["[Walk] <television> (1)", "[PlugOut] <television> (1)"], "plugged(television (1))", 1),
+        (["[Walk] <fridge> (1)", "[Open] <fridge> (1)"], "closed(fridge (1))", 1),
+        (["[Walk] <fridge> (1)", "[Close] <fridge> (1)"], "open(fridge (1))", 1),
+        (["[StandUp]", "[Walk] <bed> (1)"], "sitting(character (1))", 0),
+        (["[WakeUp]"], "lying(character (1))", 0),
+        (["[Grab] <cup> (1)"], "nearby(cup (1), character (1))", 0),
+        (["[Walk] <computer> (1)", "[Grab] <mouse> (1)"], "atreach(mouse (1), computer (1))", 1),
+        (["[Walk] <desk> (1)", "[Grab] <mouse> (1)"], "in(mouse (1), desk (1))", 1),
+        (["[PutOff] <clothes_shirt> (1)"], "in(clothes_shirt (1), character (1))", 0),
+        (["[Walk] <couch> (1)", "[Sit] <couch> (1)"], "free(couch (1))", 1),
+        (["[Read] <book> (1)"], "holds(book (1), character (1))", 0),
+        (
+            ["[Walk] <couch> (1)", "[Sit] <couch> (1)", "[Watch] <television> (1)"],
+            "facing(couch (1), television (1))",
+            2,
+        ),
+        (
+            ["[Walk] <television> (1)", "[TurnTo] <television> (1)", "[Watch] <television> (1)"],
+            "is_on(television (1))",
+            2,
+        ),
+        (
+            [
+                "[Walk] <kitchen> (1)",
+                "[Walk] <fridge> (1)",
+                "[Open] <fridge> (1)",
+                "[Find] <milk> (1)",
+                "[Grab] <milk> (1)",
+            ],
+            "inside(milk (1), fridge (1))",
+            4,
+        ),
+        (["[Walk] <kitchen> (1)", "[Walk] <fridge> (1)"], "location(fridge (1), kitchen (1))", 1),
+    ],
+)
+def test_a_step_needs(knowledge, steps, condition, step):
+    assert facts(conditions_of(knowledge, *steps)).get(condition) == step
+
+
+def test_what_the_program_provides_is_not_needed(knowledge):
+    found = facts(conditions_of(knowledge, "[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Close] <fridge> (1)"))
+    assert "open(fridge (1))" not in found
+
+
+@pytest.mark.parametrize(
+    ("steps", "needing", "spoiling"),
+    [
+        (["[Walk] <television> (1)", "[SwitchOn] <television> (1)", "[SwitchOn] <television> (1)"], 3, 2),
+        (["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Open] <fridge> (1)"], 3, 2),
+        (
+            [
+                "[Walk] <television> (1)",
+                "[TurnTo] <television> (1)",
+                "[Watch] <television> (1)",
+                "[SwitchOn] <television> (1)",
+            ],
+            4,
+            3,
+        ),
+    ],
+)
+def test_a_contradiction_names_both_steps(knowledge, steps, needing, spoiling):
+    found = conditions_of(knowledge, *steps)
+    assert isinstance(found, Failure)
+    assert found.code is Code.CONTRADICTION
+    assert found.expected.endswith(f"at step {needing}")
+    assert f"by step {spoiling}," in found.actual
+
+
+def test_a_third_thing_in_two_hands_is_a_contradiction(knowledge):
+    steps = [f"[{verb}] <{name}> (1)" for name in ("cup", "plate", "book") for verb in ("Walk", "Grab")]
+    found = conditions_of(knowledge, *steps)
+    assert isinstance(found, Failure) and "NO_FREE_HAND" in found.expected
+
+
+def test_an_action_that_is_not_executed_stays_that(knowledge):
+    found = conditions_of(knowledge, "[Walk] <book> (1)", "[Write] <book> (1)")
+    assert isinstance(found, Failure) and found.code is Code.NOT_SIMULATED
+
+
+def test_the_character_has_a_name_of_its_own(knowledge):
+    assert conditions_of(knowledge, "[StandUp]").has("sitting", CHARACTER)

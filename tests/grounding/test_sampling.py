@@ -1,0 +1,130 @@
+"""Sampled environments hold what they promise, and depend on nothing but seed, program and home."""
+
+import zipfile
+
+import orjson
+import pytest
+
+from hearth.grounding.base import prepared
+from hearth.grounding.checking import unmet
+from hearth.grounding.preconditions import infer
+from hearth.grounding.sampling import Size, sample
+from hearth.kb import grammar
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.engine import run
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
+
+BREAKFAST = """Breakfast
+Milk from the fridge.
+
+
+[Walk] <kitchen> (1)
+[Walk] <fridge> (1)
+[Open] <fridge> (1)
+[Find] <milk> (1)
+[Grab] <milk> (1)
+[Close] <fridge> (1)
+[Walk] <table> (1)
+[Sit] <chair> (1)
+[Drink] <milk> (1)
+[PutBack] <milk> (1) <table> (1)
+"""
+
+
+def read(text, knowledge):
+    program, faults = parse_program(text)
+    program, wrong = grammar.check(program, knowledge)
+    assert not faults and not wrong
+    return program
+
+
+def nodes_of(environment):
+    return {ref.key: ref.node for ref in environment.program.objects()}
+
+
+@pytest.fixture
+def breakfast(knowledge):
+    return read(BREAKFAST, knowledge)
+
+
+def test_what_is_sampled_holds_and_runs(breakfast, maple):
+    environment, execution = sample(breakfast, maple, 0)
+    assert execution.executable
+    assert not unmet(environment.conditions, environment.world, nodes_of(environment))
+    milk = environment.program.steps[3].objects[0].node
+    fridge = environment.program.steps[1].objects[0].node
+    assert ("inside", (("milk", 1), ("fridge", 1))) in {c.fact for c in environment.conditions}
+    assert any(edge[:3] == (milk, "INSIDE", fridge) for edge in environment.world.edges())
+
+
+def test_the_check_can_fail(breakfast, maple, knowledge):
+    base = prepared(maple)
+    nodes = {
+        ref.key: base.home.ids[base.instances(ref.name)[0]] for ref in breakfast.objects() if base.instances(ref.name)
+    }
+    assert unmet(infer(breakfast, knowledge), base.start, nodes)
+
+
+def test_equal_seeds_give_equal_environments_and_others_differ(breakfast, maple):
+    first, again, other = (sample(breakfast, maple, seed)[0] for seed in (7, 7, 8))
+    assert (first.nodes, first.added, first.removed, first.states) == (
+        again.nodes,
+        again.added,
+        again.removed,
+        again.states,
+    )
+    assert (first.nodes, first.added) != (other.nodes, other.added)
+
+
+def test_the_difference_from_the_base_rebuilds_the_environment(breakfast, maple):
+    environment, _ = sample(breakfast, maple, 3)
+    edges = {tuple(edge) for edge in World.start(environment.base).edges()} - {tuple(e) for e in environment.removed}
+    close = {(b, r, a) for a, r, b in environment.added if r == "CLOSE"}
+    gone = {(b, r, a) for a, r, b in environment.removed if r == "CLOSE"}
+    assert (edges - gone) | {tuple(e) for e in environment.added} | close == {
+        tuple(edge) for edge in environment.world.edges()
+    }
+
+
+def test_a_release_sized_environment_has_280_to_300_nodes(breakfast, knowledge, real_data):
+    data = orjson.loads((real_data / "homes/TrimmedTestScene2_graph.json").read_bytes())
+    home = Home.from_release(data, "home2", knowledge)
+    for seed in range(5):
+        environment, _ = sample(breakfast, home, seed, size=Size(280, 300))
+        assert 270 <= len(environment.world.home) <= 310
+
+
+def test_the_character_starts_in_another_room(breakfast, maple):
+    for seed in range(5):
+        environment, _ = sample(breakfast, maple, seed)
+        agent = environment.world.agents[0]
+        kitchen = environment.world.home.index[nodes_of(environment)[("kitchen", 1)]]
+        assert not agent.inside >> kitchen & 1
+
+
+def test_the_release_sample_runs_in_every_home(real_data, knowledge, maple):
+    """All but the one that watches a television before switching it on, which is said to contradict itself."""
+    homes = [maple]
+    for number in range(1, 8):
+        data = orjson.loads((real_data / f"homes/TrimmedTestScene{number}_graph.json").read_bytes())
+        homes.append(Home.from_release(data, f"home{number}", knowledge))
+    refused, failed = [], []
+    with zipfile.ZipFile(real_data / "activityprograms-sample.zip") as archive:
+        names = [name for name in sorted(archive.namelist()) if "/withoutconds/" in name and name.endswith(".txt")]
+        for number, name in enumerate(names):
+            program = read(archive.read(name).decode(), knowledge)
+            conditions = infer(program, knowledge)
+            if isinstance(conditions, Failure):
+                refused.append((name.rpartition("/")[2], conditions.code))
+                continue
+            home = homes[number % len(homes)]
+            found = sample(program, home, 0, name, conditions)
+            if isinstance(found, Failure):
+                failed.append((name, home.name, found.message()))
+            elif number % 10 == 0:
+                environment, _ = found
+                assert run(environment.world, environment.program).executable
+    assert refused == [("file1065_1.txt", Code.CONTRADICTION)]
+    assert failed == []
