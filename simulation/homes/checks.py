@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hearth.schemas.failures import Code
 from hearth.simulation.homes.floor import Floor, grid, stands_on_floor
-from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top
+from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
 from hearth.simulation.homes.plan import OUTSIDE, Faults, Plan
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
 
@@ -109,7 +109,7 @@ def _check_openings(thing: Thing, shell: Shell, faults: Faults) -> None:
         return
     rect = footprint(thing.box).inset(-0.02)
     for opening in shell.openings:
-        if opening.room != thing.room:
+        if opening.room != thing.room or opening.wall != wall_of(thing.yaw):
             continue
         hole = strip(_wall_line(shell, opening.room, opening.wall), opening.wall, opening.start, opening.end, 0.02)
         overlap = min(top(thing.box), opening.y1) - max(bottom(thing.box), opening.y0)
@@ -136,7 +136,13 @@ def _check_apart(things: Sequence[Thing], faults: Faults) -> None:
                            f"`{other}` (line {b.line}) covers {_bounds(footprint(b.box))}")  # fmt: skip
 
 
-def _check_kept_free(things: Iterable[Thing], shell: Shell, faults: Faults) -> None:
+def _check_kept_free(things: Sequence[Thing], shell: Shell, faults: Faults) -> None:
+    leaves = [thing for thing in things if thing.class_name in ("door", "maindoor")]
+    for i, leaf in enumerate(leaves):
+        for other in leaves[:i]:
+            if intrusion(leaf.box, other.box) > 0:
+                faults.add(Code.NO_PLACE, f"the open doors of lines {other.line} and {leaf.line} strike each other",
+                           leaf.line, "change `hinge` or `into` of one")  # fmt: skip
     for thing in things:
         if not stands_on_floor(thing):
             continue

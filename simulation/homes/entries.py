@@ -12,7 +12,6 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.homes import located
-from hearth.simulation.homes.forms import form
 from hearth.simulation.homes.geometry import DIRECTIONS, Rect
 from hearth.simulation.homes.plan import OUTSIDE, Doorway, Faults, Piece, Plan, Room, Window
 
@@ -283,14 +282,11 @@ class _Reader:
         )
 
     def _class(self, name: str, line: int) -> str | None:
-        """The class of that name, when the knowledge has it and its shape is known."""
+        """The class of that name, when the knowledge has it."""
         if name not in self.knowledge.objects:
-            near = get_close_matches(name, self.knowledge.objects, 1)
-            hint = f"did you mean `{near[0]}`?" if near else "see the knowledge's objects"
+            near = self.knowledge.suggest(name)
+            hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"
             self.faults.add(Code.UNKNOWN_OBJECT, f"`{name}` is no class", line, hint)
-            return None
-        if form(name, self.knowledge) is None:
-            self.faults.add(Code.UNKNOWN_OBJECT, f"nobody knows the size of `{name}`", line, "add its size")
             return None
         return name
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources import files
 
@@ -33,13 +33,12 @@ class Form:
 
 
 def form(class_name: str, knowledge: Knowledge) -> Form | None:
-    """The shape of a class; with the knowledge's size where the table has none; None when nobody knows its size."""
-    known = _table().get(class_name)
-    if known is not None:
-        return known
-    found = knowledge.objects.get(class_name)
-    size = found.size if found else (0.0, 0.0, 0.0)
-    return Form(size) if all(size) else None
+    """The shape of a class, in the knowledge's size unless at home it lies otherwise; None for an unknown class."""
+    known = knowledge.objects.get(class_name)
+    if known is None:
+        return None
+    found = _table().get(class_name, Form((0.0, 0.0, 0.0)))
+    return found if all(found.size) else replace(found, size=known.size)
 
 
 @lru_cache(maxsize=1)
@@ -49,9 +48,10 @@ def _table() -> dict[str, Form]:
 
 
 def _form(row: dict[str, str]) -> Form:
+    width, height, depth = map(float, row["size"].split()) if row["size"] else (0.0, 0.0, 0.0)
     return Form(
-        size=(float(row["width"]), float(row["height"]), float(row["depth"])),
-        mount=row["mount"],
+        size=(width, height, depth),
+        mount=row["mount"] or "item",
         up=float(row["up"] or 0),
         levels=tuple(map(float, row["levels"].split())),
         shelves=int(row["shelves"] or 1),

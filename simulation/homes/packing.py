@@ -26,13 +26,19 @@ SHELL = 0.03
 SINK = 0.18
 """How deep a sink is let into what it is on."""
 STEP = 0.02
+"""Metres between the places that are tried, where they are not more than `MOST_STEPS` along a side."""
+MOST_STEPS = 40
 FLAT = 0.07
 """Things no higher than this are piled on their like."""
+HAND = 1.2
 FAR = 0.12
 """On a top, things need not stand further apart than this."""
 
 Local = tuple[float, float, float, float]
 """A rectangle in a support's own axes: along its back from the west or south end, and outwards from its back."""
+
+Named = tuple[Piece, list[str]]
+"""An entry, and the names of its things."""
 
 
 @dataclass(slots=True)
@@ -61,7 +67,7 @@ class Support:
         width, depth: of a level.
         rim: the distance from the thing's edges.
         levels: from the lowest.
-        tidy: whether things stand in rows from the back, as in containers and on shelves.
+        apart: how far things should stand apart; 0: in rows from the back, as in containers and on shelves.
     """
 
     thing: Thing
@@ -69,7 +75,12 @@ class Support:
     depth: float
     rim: float
     levels: tuple[Level, ...]
-    tidy: bool
+    apart: float
+
+    @property
+    def tidy(self) -> bool:
+        """Whether things stand in rows from the back."""
+        return self.apart == 0
 
 
 def contents(thing: Thing, piece: Piece, shaped: Form, knowledge: Knowledge, faults: Faults) -> Iterator[Thing]:
@@ -79,13 +90,36 @@ def contents(thing: Thing, piece: Piece, shaped: Form, knowledge: Knowledge, fau
     """
     numbers: dict[str, int] = {}
     for relation, pieces in (("on", piece.on), ("inside", piece.inside)):
-        if not pieces:
-            continue
-        support = _support(thing, shaped, relation, knowledge)
-        # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
         named = [(entry, _names(entry, numbers)) for entry in pieces]
-        for entry, names in sorted(named, key=lambda pair: _rank(pair[0], knowledge)):
-            yield from _stand(support, entry, names, relation=relation, knowledge=knowledge, faults=faults)
+        # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
+        named.sort(key=lambda pair: _rank(pair[0], knowledge))
+        if named:
+            for entry, stood in _arranged(thing, shaped, relation, named, knowledge=knowledge, faults=faults):
+                yield stood
+                yield from contents(stood, entry, shape(entry, knowledge), knowledge, faults)
+
+
+def _arranged(
+    thing: Thing, shaped: Form, relation: str, named: Sequence[Named], *, knowledge: Knowledge, faults: Faults
+) -> list[tuple[Piece, Thing]]:
+    """Everything in its place: well apart if it can be, closer together if it must."""
+    found: list[tuple[Piece, Thing]] = []
+    for apart in (FAR, FAR / 3, 0.0):
+        support = _support(thing, shaped, relation, knowledge, apart)
+        missed: list[tuple[Piece, str]] = []
+        found = []
+        for entry, names in named:
+            try:
+                found.extend((entry, stood) for stood in _stand(support, entry, names, relation, knowledge))
+            except NoPlaceError as why:
+                missed.append((entry, str(why)))
+        if not missed or support.apart == 0:
+            break
+    for entry, why in missed:
+        where = f"{'on' if relation == 'on' else 'in'} `{thing.name}`"
+        faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {why}", entry.line,
+                   "take something away, or make it larger")  # fmt: skip
+    return found
 
 
 def _names(piece: Piece, numbers: dict[str, int]) -> list[str]:
@@ -105,7 +139,7 @@ def _rank(piece: Piece, knowledge: Knowledge) -> tuple[bool, bool, float]:
     return (not sunk, not by_hand, 0.0 if by_hand else -area)
 
 
-def _support(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge) -> Support:
+def _support(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge, apart: float) -> Support:
     width, _, depth = thing.box.size if _along_x(thing) else thing.box.size[::-1]
     low, high = bottom(thing.box), top(thing.box)
     if relation == "on":
@@ -114,13 +148,14 @@ def _support(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge) ->
         if len(heights) > 1:
             ceilings[-1] = high
         levels = tuple(Level(y, above - y - 0.02, []) for y, above in zip(heights, ceilings, strict=True))
-        return Support(thing, width - 2 * MARGIN, depth - 2 * MARGIN, MARGIN, levels, len(levels) > 1)
+        apart = 0.0 if len(levels) > 1 else apart
+        return Support(thing, width - 2 * MARGIN, depth - 2 * MARGIN, MARGIN, levels, apart)
     rim = min(SHELL, 0.1 * min(width, depth))
     base = min(SHELL, 0.1 * (high - low))
     pitch = (high - low - 2 * base) / shaped.shelves
     closed = "CAN_OPEN" in knowledge.objects[thing.class_name].properties or shaped.shelves > 1
     levels = tuple(Level(low + base + k * pitch, pitch - 0.01 if closed else 10.0, []) for k in range(shaped.shelves))
-    return Support(thing, width - 2 * rim, depth - 2 * rim, rim, levels, tidy=True)
+    return Support(thing, width - 2 * rim, depth - 2 * rim, rim, levels, apart=0.0)
 
 
 def _along_x(thing: Thing) -> bool:
@@ -128,32 +163,32 @@ def _along_x(thing: Thing) -> bool:
 
 
 def _stand(
-    support: Support, piece: Piece, names: Sequence[str], *, relation: str, knowledge: Knowledge, faults: Faults
+    support: Support, piece: Piece, names: Sequence[str], relation: str, knowledge: Knowledge
 ) -> Iterator[Thing]:
-    """Find a place for each of an entry's things."""
+    """Find a place for each of an entry's things.
+
+    Raises:
+        NoPlaceError: there is none for one of them.
+    """
     shaped = shape(piece, knowledge)
+    owner = support.thing
     for name in names:
-        try:
-            level, local, height, turned = _find(support, piece, shaped)
-        except NoPlaceError as why:
-            owner = support.thing
-            where = f"{'on' if relation == 'on' else 'in'} `{owner.name}`"
-            faults.add(Code.NO_PLACE, f"`{piece.class_name}` {where}: {why}", piece.line,
-                       "take something away, or make it larger")  # fmt: skip
-            return
+        level, local, height, turned = _find(support, piece, shaped)
         level.taken.append((name, local))
         under = level.piles.get(local, 0.0)
         level.piles[local] = under + height
         box = _box(support, level, local, (under - SINK if shaped.mount == "sunk" else under), height)
-        yaw = ((support.thing.yaw or 0.0) + (90 if turned else 0)) % 360
-        owner_name = support.thing.name
-        thing = Thing(
-            f"{owner_name}/{name}", piece.class_name, support.thing.room, box, yaw, "item",
-            on=owner_name if relation == "on" else "", inside=owner_name if relation == "inside" else "",
+        yield Thing(
+            f"{owner.name}/{name}",
+            piece.class_name,
+            owner.room,
+            box,
+            ((owner.yaw or 0.0) + (90 if turned else 0)) % 360,
+            "item",
+            on=owner.name if relation == "on" else "",
+            inside=owner.name if relation == "inside" else "",
             line=piece.line,
-        )  # fmt: skip
-        yield thing
-        yield from contents(thing, piece, shaped, knowledge, faults)
+        )
 
 
 def _find(support: Support, piece: Piece, shaped: Form) -> tuple[Level, Local, float, bool]:
@@ -207,14 +242,14 @@ def _ways(size: tuple[float, float, float], tidy: bool) -> Iterator[tuple[tuple[
 
 
 def _level_order(support: Support, class_name: str) -> list[Level]:
-    """The levels from the emptiest; a tidy support keeps like with like where it can."""
+    """The levels from the emptiest, those at hand's height first; a tidy support keeps like with like where it can."""
 
-    def rank(pair: tuple[int, Level]) -> tuple[bool, float, int]:
-        number, level = pair
+    def rank(level: Level) -> tuple[bool, float, float]:
         alike = support.tidy and any(name.split(".")[0] == class_name for name, _ in level.taken)
-        return (not alike, sum((u1 - u0) * (v1 - v0) for _, (u0, v0, u1, v1) in level.taken), number)
+        taken = sum((u1 - u0) * (v1 - v0) for _, (u0, v0, u1, v1) in level.taken)
+        return (not alike, taken, abs(level.y - HAND))
 
-    return [level for _, level in sorted(enumerate(support.levels), key=rank)]
+    return sorted(support.levels, key=rank)
 
 
 def _by_hand(support: Support, piece: Piece, width: float, depth: float) -> tuple[Level, Local]:
@@ -253,49 +288,45 @@ def _check(support: Support, level: Level, local: Local) -> None:
             raise NoPlaceError(f"it would stand in `{name}`")
 
 
-def _candidates(support: Support, width: float, depth: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Lower corners of all places of a size: arrays of shape (places,), along the back first, then outwards."""
+def _best(support: Support, level: Level, width: float, depth: float) -> Local | None:
+    """Where a thing of that size stands best: the first free place from the back on tidy supports, else well apart."""
     import numpy as np
 
     across, out = support.width - width, support.depth - depth
     if across < -1e-9 or out < -1e-9:
         return None
-    u = np.linspace(0.0, max(across, 0.0), max(1, round(across / STEP)) + 1)
-    v = np.linspace(0.0, max(out, 0.0), max(1, round(out / STEP)) + 1)
-    grid_v, grid_u = np.meshgrid(v, u, indexing="ij")
-    return grid_u.ravel(), grid_v.ravel()
-
-
-def _distances(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float) -> np.ndarray:
-    """For each place, the least free distance to what stands there already; at most 0 where they touch."""
-    import numpy as np
-
-    best = np.full(u.shape, np.inf)
-    for _, (u0, v0, u1, v1) in level.taken:
-        gap = np.maximum(np.maximum(u0 - (u + width), u - u1), np.maximum(v0 - (v + depth), v - v1))
-        best = np.minimum(best, gap)
-    return best
-
-
-def _best(support: Support, level: Level, width: float, depth: float) -> Local | None:
-    """Where a thing of that size stands best: the first free place from the back on tidy supports, else well apart."""
-    import numpy as np
-
-    places = _candidates(support, width, depth)
-    if places is None:
+    u, v = _steps(across), _steps(out)
+    free = _free(level, u, v, width, depth)
+    allowed = free >= MARGIN - 1e-9
+    if not support.tidy:
+        edge_u, edge_v = np.minimum(u, across - u), np.minimum(v, out - v)
+        edges = np.minimum(edge_v[:, None], edge_u[None])
+        score = np.minimum(free, support.apart) + 0.5 * np.minimum(edges, support.apart)
+        # Rounded, so that the last digit of a distance does not choose between equal places.
+        free = np.where(allowed, np.round(score, 4), -1.0)
+    index = int(np.argmax(allowed if support.tidy else free))
+    row, column = divmod(index, len(u))
+    if not allowed[row, column]:
         return None
-    u, v = places
-    free = _distances(level, u, v, width, depth)
-    far = 0.0 if support.tidy else FAR
-    edges = np.minimum(np.minimum(u, support.width - width - u), np.minimum(v, support.depth - depth - v))
-    score = np.minimum(free, far) + (0.5 * np.minimum(edges, far) if far else 0.0)
-    # Rounded, so that the last digit of a distance does not choose between equal places.
-    score = np.where(free >= MARGIN - 1e-9, np.round(score, 4), -np.inf)
-    index = int(np.argmax(score))
-    if score[index] == -np.inf:
-        return None
-    u0, v0 = float(u[index]), float(v[index])
+    u0, v0 = float(u[column]), float(v[row])
     return u0, v0, u0 + width, v0 + depth
+
+
+def _steps(length: float) -> np.ndarray:
+    """Places along a length, both ends among them."""
+    import numpy as np
+
+    return np.linspace(0.0, max(length, 0.0), min(MOST_STEPS, max(1, round(length / STEP))) + 1)
+
+
+def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float) -> np.ndarray:
+    """For a thing with its corner at each (v, u): the least distance to what stands there; negative where they meet."""
+    import numpy as np
+
+    taken = np.array([local for _, local in level.taken], float).reshape(-1, 4)
+    gap_u = np.maximum(taken[:, 0, None] - (u + width), u - taken[:, 2, None])
+    gap_v = np.maximum(taken[:, 1, None] - (v + depth), v - taken[:, 3, None])
+    return np.min(np.maximum(gap_v[:, :, None], gap_u[:, None, :]), axis=0, initial=FAR)
 
 
 def _box(support: Support, level: Level, local: Local, under: float, height: float) -> Box:
