@@ -134,7 +134,7 @@ def _print_binding(trial: Trial) -> None:
     else:
         added = set()
     for ref in trial.execution.program.objects():
-        index = world.home.index[ref.node] if ref.node in world.home.index else -1
+        index = world.home.index.get(ref.node or -1, -1)
         what = f"{world.home.classes[index]} ({ref.node})" if index >= 0 else "nothing"
         print(f"  <{ref.name}> ({ref.instance}) is {what}{', added' if ref.node in added else ''}")
 

@@ -9,7 +9,7 @@ _MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16", b"\xef\xbb\xbf": "utf-8-
 
 
 def decode(data: bytes, file: str = "") -> str | Diagnostic:
-    """UTF-8 with or without a byte-order mark, or UTF-16 with one; line ends become `\\n`; anything else is NOT_TEXT."""
+    """UTF-8 with or without a byte-order mark, or UTF-16 with one; line ends become `\\n`; else NOT_TEXT."""
     encoding = next((name for mark, name in _MARKS.items() if data.startswith(mark)), "utf-8")
     try:
         text = data.decode(encoding)
