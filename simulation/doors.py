@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, lowest
 
 if TYPE_CHECKING:
     from hearth.simulation.world import World
@@ -40,6 +40,20 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
         expected=f"an open way from {home.classes[start]}",
         actual="the door CLOSED",
     )
+
+
+def side(world: World, agent: Agent, door: int, room: int) -> int:
+    """Index of the room from which a character comes to a door: the one it is in, as the home says, if it can be reached;
+    else one of those it is BETWEEN that can be; else `room` again.
+    """
+    start = rows.agent_room(world, agent)
+    if start < 0:
+        return room
+    reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED_STATE])
+    if room >= 0 and reached >> room & 1:
+        return room
+    within = world.home.between[door] & world.home.rooms & reached
+    return lowest(within) if within else room
 
 
 def _flood(world: World, start: int, doors: int) -> tuple[int, int]:

@@ -20,6 +20,8 @@ def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
         lying = states[LYING] & agent.bit
         return refuse(world, Code.LYING if lying else Code.SITTING, "standing", "lying" if lying else "sitting", o)
     room = rows.room_of(world, o)
+    if rules.doors and world.home.between[o]:
+        room = doors.side(world, agent, o, room)
     if room < 0:
         return refuse(world, Code.NO_ROOM, "an object in some room", "INSIDE no room", o)
     if rules.doors:
