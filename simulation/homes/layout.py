@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from hearth.kb.knowledge import Knowledge, default
-from hearth.schemas.errors import HearthError
+from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.graph import Box
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.homes import checks, shell
@@ -67,12 +67,23 @@ def read(text: str, file: str = "", knowledge: Knowledge | None = None) -> Layou
     plan = read_plan(text, file, knowledge, faults)
     checks.check_rooms(plan, faults)
     if faults and not plan.rooms:
-        raise HearthError(faults)
+        raise HearthError(_shown(faults, text))
     layout = arrange(plan, knowledge, faults)
     checks.check_layout(layout.plan, layout.shell, layout.things, faults)
     if faults:
-        raise HearthError(sorted(faults, key=lambda fault: fault.line))
+        raise HearthError(_shown(faults, text))
     return layout
+
+
+def _shown(faults: Faults, text: str) -> list[Diagnostic]:
+    """The faults in the order of their lines, each with its line's words to underline."""
+    lines = text.splitlines()
+    found = []
+    for fault in sorted(faults, key=lambda fault: fault.line):
+        source = lines[fault.line - 1] if 0 < fault.line <= len(lines) else ""
+        column = len(source) - len(source.lstrip()) + 1 if source else 0
+        found.append(replace(fault, source=source, column=column, length=len(source.strip())))
+    return found
 
 
 def walkable(layout: Layout) -> Floor:

@@ -115,9 +115,9 @@ def _arranged(
                 missed.append((entry, str(why)))
         if not missed or support.apart == 0:
             break
-    for entry, why in missed:
+    for entry, reason in missed:
         where = f"{'on' if relation == 'on' else 'in'} `{thing.name}`"
-        faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {why}", entry.line,
+        faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {reason}", entry.line,
                    "take something away, or make it larger")  # fmt: skip
     return found
 
@@ -326,7 +326,8 @@ def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float
     taken = np.array([local for _, local in level.taken], float).reshape(-1, 4)
     gap_u = np.maximum(taken[:, 0, None] - (u + width), u - taken[:, 2, None])
     gap_v = np.maximum(taken[:, 1, None] - (v + depth), v - taken[:, 3, None])
-    return np.min(np.maximum(gap_v[:, :, None], gap_u[:, None, :]), axis=0, initial=FAR)
+    least: np.ndarray = np.min(np.maximum(gap_v[:, :, None], gap_u[:, None, :]), axis=0, initial=FAR)
+    return least
 
 
 def _box(support: Support, level: Level, local: Local, under: float, height: float) -> Box:

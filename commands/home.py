@@ -1,0 +1,157 @@
+"""`home`: list, show, check and convert homes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.schemas.graph import EnvironmentGraph
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="The homes: list, show, check and convert them.")
+
+Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
+Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
+
+
+@app.command("list")
+def list_homes(homes: Homes = None, as_json: output.Json = False) -> None:
+    """List the homes with their rooms, things and relations.
+
+    \b
+    Example:
+      python cli.py home list --homes my_homes
+    """
+    from hearth.simulation.homes import catalog
+
+    rows = [{"home": name, **_figures(catalog.load_graph(name, homes))} for name in catalog.names(homes)]
+    if as_json:
+        output.emit({"homes": rows})
+        return
+    output.table(
+        ("home", "rooms", "nodes", "edges", "per node", "on", "inside", "close", "facing", "between"),
+        [
+            (row["home"], row["rooms"], row["nodes"], row["edges"], row["edges_per_node"], *row["relations"].values())
+            for row in rows
+        ],
+    )
+
+
+@app.command()
+def show(
+    home: Home,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="Draw the floor plan: .svg or .png.")
+    ] = None,
+    homes: Homes = None,
+    as_json: output.Json = False,
+) -> None:
+    """Show a home: its rooms and what is in them; with --out, draw its floor plan.
+
+    \b
+    Example:
+      python cli.py home show maple --out maple.svg
+    """
+    graph = _graph(home, homes)
+    if out is not None:
+        from hearth.simulation.homes import plan_drawing
+
+        plan_drawing.write(_layout(home, homes), out)
+    rooms = _rooms(graph)
+    if as_json:
+        output.emit({"home": home, **_figures(graph), "contents": rooms, "drawing": out})
+        return
+    for room in rooms:
+        things = ", ".join(f"{name} {count}" if count > 1 else name for name, count in room["things"].items())
+        print(f"{room['room']} ({room['id']}): {things}")
+    figures = _figures(graph)
+    print(f"{figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; floor plan in {out}" if out else ""))
+
+
+@app.command()
+def lint(home: Home, homes: Homes = None, as_json: output.Json = False) -> None:
+    """Report what is wrong with a home or with any scene graph; the status is 1 if something is.
+
+    \b
+    Example:
+      python cli.py home lint TrimmedTestScene1_graph.json
+    """
+    from hearth.simulation.homes.lint import lint as check
+
+    faults = check(_graph(home, homes), file=home if Path(home).suffix else "")
+    if as_json:
+        output.emit({"home": home, "faults": [output.diagnostic_json(fault) for fault in faults]})
+    else:
+        output.report(faults)
+        print(f"{home}: {output.counted(len(faults), 'fault')}")
+    output.status(len(faults), strict=True)
+
+
+@app.command()
+def convert(
+    home: Home,
+    out: Annotated[Path, typer.Argument(metavar="FILE", help="`.json`: the release's layout; `.ids.csv`: node ids.")],
+    homes: Homes = None,
+    as_json: output.Json = False,
+) -> None:
+    """Write a home as a scene graph in the release's layout, or its node ids by name.
+
+    Beside a plan `x.yaml`, a file `x.ids.csv` keeps the ids as they are when the plan changes later: what is new gets
+    new numbers.
+
+    \b
+    Examples:
+      python cli.py home convert maple maple.json
+      python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
+    """
+    from hearth.simulation.homes import exporting
+
+    if out.name.endswith(".ids.csv"):
+        written = exporting.write_ids(_layout(home, homes), out)
+    else:
+        written = exporting.write_release(_graph(home, homes), out)
+    if as_json:
+        output.emit({"home": home, "file": out, "nodes": written})
+    else:
+        print(f"{out}: {output.counted(written, 'node')}")
+
+
+def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
+    from hearth.simulation.homes import catalog
+
+    return catalog.graph_of(home) if Path(home).suffix else catalog.load_graph(home, homes)
+
+
+def _layout(home: str, homes: Path | None) -> Any:
+    from hearth.simulation.homes import catalog
+
+    return catalog.layout_of(home) if Path(home).suffix else catalog.load_layout(home, homes)
+
+
+def _figures(graph: EnvironmentGraph) -> dict[str, Any]:
+    counts = Counter(edge.relation for edge in graph.edges)
+    return {
+        "rooms": sum(node.category == "Rooms" for node in graph.nodes),
+        "nodes": len(graph.nodes),
+        "edges": len(graph.edges),
+        "edges_per_node": round(len(graph.edges) / max(1, len(graph.nodes)), 2),
+        "relations": {name: counts[name] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN")},
+    }
+
+
+def _rooms(graph: EnvironmentGraph) -> list[dict[str, Any]]:
+    """Each room with what is INSIDE it, counted by class."""
+    nodes = {node.id: node for node in graph.nodes}
+    inside: dict[int, Counter[str]] = {node.id: Counter() for node in graph.nodes if node.category == "Rooms"}
+    for edge in graph.edges:
+        if edge.relation == "INSIDE" and edge.target in inside and edge.source in nodes:
+            inside[edge.target][nodes[edge.source].class_name] += 1
+    return [
+        {"room": nodes[room].class_name, "id": room, "things": dict(sorted(things.items()))}
+        for room, things in inside.items()
+    ]

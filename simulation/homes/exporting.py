@@ -1,0 +1,39 @@
+"""Writing homes: scene graphs in the release's layout, and files of node ids."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph, to_release
+from hearth.simulation.homes.layout import Layout
+from hearth.simulation.homes.scene import every_thing, node_ids
+
+
+def write_release(graph: EnvironmentGraph, path: Path) -> int:
+    """Write a graph as JSON in the release's layout, boxes and yaw with it; returns the number of nodes.
+
+    Raises:
+        HearthError: UNSUPPORTED_FILE: the file's ending is not `.json`.
+    """
+    import orjson
+
+    if path.suffix != ".json":
+        raise HearthError.of(Code.UNSUPPORTED_FILE, "a scene graph is written as .json", file=str(path))
+    path.write_bytes(orjson.dumps(to_release(graph), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    return len(graph.nodes)
+
+
+def write_ids(layout: Layout, path: Path) -> int:
+    """Write the ids of a plan's nodes, sorted; ids that were fixed before stay. Returns how many there are."""
+    ids = node_ids((thing.name for thing in every_thing(layout)), layout.plan.ids, layout.plan.file)
+    gone = {name: number for name, number in layout.plan.ids.items() if name not in ids}
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("id", "name"))
+    writer.writerows(sorted((number, name) for name, number in (ids | gone).items()))
+    path.write_text(text.getvalue(), encoding="utf-8")
+    return len(ids)
