@@ -43,8 +43,8 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
 
 
 def side(world: World, agent: Agent, door: int, room: int) -> int:
-    """Index of the room from which a character comes to a door: the one it is in, as the home says, if it can be reached;
-    else one of those it is BETWEEN that can be; else `room` again.
+    """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
+    one that it is BETWEEN and that can be; else `room` again.
     """
     start = rows.agent_room(world, agent)
     if start < 0:
