@@ -97,7 +97,7 @@ def compare(knowledge: Knowledge, other: Path) -> Comparison:
 
 
 def rejection(knowledge: Knowledge) -> float:
-    """The share of random steps that the grammar rejects: an action that takes objects, and objects, each equally likely."""
+    """The share of random steps that the grammar rejects: any action that takes objects, with any objects."""
     size = len(knowledge.objects)
     shares = []
     for action in knowledge.actions.values():

@@ -36,7 +36,7 @@ class Proposal(NamedTuple):
         subject: a class, or for `order` the earlier action.
         relation: what is claimed: goes_with, serves, ON, IN, NEARBY, found_in, before.
         other: a class, room or action.
-        count: in how many programs it is so.
+        seen: in how many programs it is so.
         confidence: the share of the programs with `subject` (for `order`: with both) in which it is so.
         lift: how many times more often than chance; 1 where chance does not apply.
         known: whether we hold the fact already.
@@ -46,7 +46,7 @@ class Proposal(NamedTuple):
     subject: str
     relation: str
     other: str
-    count: int
+    seen: int
     confidence: float
     lift: float
     known: bool
@@ -75,8 +75,8 @@ def mine(
     counts = _Counts()
     for program in programs:
         _count(counts, list(_known_steps(program, knowledge)), knowledge)
-    found = (p for p in _proposals(counts, knowledge) if p.count >= least and p.confidence >= confidence)
-    return tuple(sorted(found, key=lambda p: (p.kind, -p.confidence, -p.count, p.subject, p.other)))
+    found = (p for p in _proposals(counts, knowledge) if p.seen >= least and p.confidence >= confidence)
+    return tuple(sorted(found, key=lambda p: (p.kind, -p.confidence, -p.seen, p.subject, p.other)))
 
 
 def as_lines(proposals: Iterable[Proposal]) -> dict[str, list[str]]:

@@ -1,0 +1,316 @@
+"""`kb ...`: what is known, looked up, checked, compared and extended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.kb.compare import Comparison
+    from hearth.kb.knowledge import Knowledge
+    from hearth.kb.mine import Steps
+
+app = typer.Typer(
+    name="kb",
+    help="The knowledge: actions, objects, places, states and how they relate.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
+Name = Annotated[str, typer.Argument(metavar="NAME", help="A name or synonym, in any case.")]
+Many = Annotated[bool, typer.Option("--all", help="Show every row instead of the first ones.")]
+_SHOWN = 20
+
+
+def _known(kb: Path | None) -> Knowledge:
+    from hearth.kb import knowledge
+
+    return knowledge.load(overlay=kb) if kb else knowledge.default()
+
+
+@app.command()
+def show(name: Name, every: Many = False, kb: Kb = None, as_json: output.Json = False) -> None:
+    """Show everything known about an object, or an action when no object has the name.
+
+    \b
+    Example:
+      python cli.py kb show fridge
+    """
+    from hearth.kb.find import unknown
+    from hearth.kb.show import about_object
+    from hearth.schemas.errors import HearthError
+
+    known = _known(kb)
+    thing = known.object_class(name)
+    if thing is None and known.action(name) is not None:
+        action(name, kb, as_json)
+        return
+    if thing is None:
+        raise HearthError(unknown(known, name, "object"))
+    sheet = about_object(known, thing)
+    if as_json:
+        output.emit(sheet)
+    else:
+        _print_sheet(sheet, every)
+
+
+@app.command()
+def action(name: Name, kb: Kb = None, as_json: output.Json = False) -> None:
+    """Show what an action takes, needs and changes, how it is said, and what repairs it.
+
+    \b
+    Example:
+      python cli.py kb action Open
+    """
+    from hearth.kb.find import unknown
+    from hearth.kb.show import about_action
+    from hearth.schemas.errors import HearthError
+
+    known = _known(kb)
+    found = known.action(name)
+    if found is None:
+        raise HearthError(unknown(known, name, "action"))
+    sheet = about_action(known, found)
+    if as_json:
+        output.emit(sheet)
+    else:
+        _print_sheet(sheet, True)
+
+
+@app.command()
+def find(
+    can: Annotated[
+        list[str] | None, typer.Option("--can", metavar="ACTION", help="An action can be done to it.")
+    ] = None,
+    on: Annotated[str, typer.Option("--on", metavar="PLACE", help="It may be on this.")] = "",
+    inside: Annotated[str, typer.Option("--in", metavar="PLACE", help="It may be in this.")] = "",
+    near: Annotated[str, typer.Option("--near", metavar="PLACE", help="It may be near this.")] = "",
+    room: Annotated[str, typer.Option("--room", metavar="ROOM", help="It is found in this room.")] = "",
+    has: Annotated[list[str] | None, typer.Option("--has", metavar="PROPERTY", help="It has this property.")] = None,
+    may_be: Annotated[
+        list[str] | None, typer.Option("--state", metavar="STATE", help="It may be in this state.")
+    ] = None,
+    kind: Annotated[str, typer.Option("--kind", metavar="KIND", help="It is one of this kind.")] = "",
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Find the objects that meet every condition given, most usual first where a place is given.
+
+    \b
+    Example:
+      python cli.py kb find --can Grab --in fridge
+    """
+    from hearth.kb.find import Query
+    from hearth.kb.find import find as find_objects
+
+    query = Query(tuple(can or ()), on, inside, near, room, tuple(has or ()), tuple(may_be or ()), kind)
+    found = find_objects(_known(kb), query)
+    if as_json:
+        output.emit({"found": [thing.name for thing in found], "count": len(found)})
+        return
+    output.table(
+        ("object", "kind", "rooms", "what it is"), [(o.name, o.hypernym, " ".join(o.rooms), o.gloss) for o in found]
+    )
+    print(output.counted(len(found), "object"))
+
+
+@app.command()
+def path(
+    first: Annotated[str, typer.Argument(metavar="FROM")],
+    second: Annotated[str, typer.Argument(metavar="TO")],
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Show how two things, actions or kinds are related: the most telling chain of facts.
+
+    \b
+    Example:
+      python cli.py kb path spectacles book
+    """
+    from hearth.kb.find import unknown
+    from hearth.kb.paths import path as chain
+    from hearth.schemas.errors import HearthError
+
+    known = _known(kb)
+    try:
+        links = chain(known, first, second)
+    except KeyError as error:
+        raise HearthError(unknown(known, error.args[0], "object")) from error
+    if as_json:
+        output.emit({"links": [link._asdict() for link in links]})
+        return
+    for link in links:
+        print(f"{link}  ({link.evidence})" if link.evidence else link)
+    if not links:
+        print("they are one" if known.object_class(first) == known.object_class(second) else "nothing relates them")
+
+
+@app.command()
+def lint(kb: Kb = None, as_json: output.Json = False) -> None:
+    """Look for contradictions; the status is 1 if there are any.
+
+    \b
+    Example:
+      python cli.py kb lint --kb my_knowledge
+    """
+    from hearth.kb.lint import CHECKS
+    from hearth.kb.lint import lint as contradictions
+
+    found = contradictions(_known(kb))
+    if as_json:
+        output.emit({"findings": [finding._asdict() for finding in found], "checks": list(CHECKS)})
+    else:
+        for finding in found:
+            print(f"{finding.check}: {finding.subject} {finding.message}")
+        print(f"{len(CHECKS)} checks: {output.counted(len(found), 'contradiction') if found else 'no contradictions'}")
+    output.status(len(found), strict=True)
+
+
+@app.command()
+def diff(
+    other: Annotated[
+        Path, typer.Argument(metavar="OTHER", help="The release's five JSON files, or a folder like ours.")
+    ],
+    every: Annotated[bool, typer.Option("--all", help="List explained differences as well.")] = False,
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Compare with another's knowledge fact by fact, with the reason beside each deliberate difference.
+
+    The status is 1 if a fact of the other is missing here without a reason.
+
+    \b
+    Example:
+      python cli.py kb diff ../shared/real/kb
+    """
+    from hearth.kb.compare import compare, rejection
+
+    known = _known(kb)
+    found = compare(known, other)
+    rejected = rejection(known)
+    unexplained = sum(found.count(table, "missing", False) for table in found.theirs)
+    if as_json:
+        output.emit({**_comparison(found), "random_steps_rejected": rejected, "missing_without_reason": unexplained})
+    else:
+        _print_comparison(found, every)
+        print(f"random steps the grammar rejects: {rejected:.1%}")
+    output.status(unexplained, strict=True)
+
+
+@app.command()
+def mine(
+    dataset: Annotated[
+        Path, typer.Argument(metavar="DATASET", help="A published dataset folder, or its programs table.")
+    ],
+    least: Annotated[int, typer.Option("--least", min=1, help="Programs that must show a fact.")] = 3,
+    confidence: Annotated[float, typer.Option("--confidence", min=0, max=1, help="Share that must show it.")] = 0.3,
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Propose new facts from a dataset's programs, as lines to review and add.
+
+    \b
+    Example:
+      python cli.py kb mine data_out/publish
+    """
+    from hearth.kb.mine import as_lines
+    from hearth.kb.mine import mine as propose
+
+    found = propose(_programs(dataset), _known(kb), least, confidence)
+    if as_json:
+        output.emit({"proposals": [proposal._asdict() for proposal in found], "lines": as_lines(found)})
+        return
+    new = [p for p in found if not p.known]
+    rows = [(p.kind, p.subject, p.relation, p.other, p.seen, p.confidence, p.lift) for p in new]
+    output.table(("kind", "subject", "relation", "other", "programs", "confidence", "lift"), rows)
+    for file, lines in as_lines(found).items():
+        print(f"\n--- {file}")
+        print("\n".join(f"+{line}" for line in lines))
+    print(f"\n{output.counted(len(found), 'fact')}, {len(found) - len(new)} of them known")
+
+
+@app.command()
+def export(
+    form: Annotated[str, typer.Argument(metavar="FORM", help="table (Markdown), pddl, graphml or duckdb.")],
+    to: Annotated[
+        Path | None, typer.Option("--to", metavar="FILE", help="Where to; standard output when left out.")
+    ] = None,
+    kb: Kb = None,
+) -> None:
+    """Write the knowledge in another form: the table of actions, the PDDL domain, the graph, a database.
+
+    \b
+    Example:
+      python cli.py kb export pddl --to domain.pddl
+    """
+    from hearth.kb.export import export as write
+
+    text = write(_known(kb), form, to)
+    if text:
+        print(text, end="")
+
+
+def _programs(dataset: Path) -> Iterator[Steps]:
+    from hearth.kb.published import programs
+
+    return programs(dataset)
+
+
+def _print_sheet(sheet: dict[str, Any], every: bool) -> None:
+    """Plain facts as a table of two columns, then each list of rows as a table of its own."""
+    plain = [(key, _said(value)) for key, value in sheet.items() if not _is_rows(value) and value not in ("", [], 0)]
+    output.table(("", ""), plain)
+    for key, rows in sheet.items():
+        if _is_rows(rows):
+            shown = rows if every else rows[:_SHOWN]
+            print()
+            output.table(list(rows[0]), [list(row.values()) for row in shown], key)
+            if len(shown) < len(rows):
+                print(f"... {len(rows) - len(shown)} more with --all")
+
+
+def _is_rows(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+
+
+def _said(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {number:g}" for key, number in value.items())
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _comparison(found: Comparison) -> dict[str, Any]:
+    return {
+        "tables": {
+            table: {
+                "theirs": count,
+                "held": found.held[table],
+                "missing_with_reason": found.count(table, "missing", True),
+                "missing_without_reason": found.count(table, "missing", False),
+                "added_with_reason": found.count(table, "added", True),
+                "added_without_reason": found.count(table, "added", False),
+            }
+            for table, count in found.theirs.items()
+        },
+        "affordance_cells": found.cells,
+        "differences": [difference._asdict() for difference in found.differences],
+    }
+
+
+def _print_comparison(found: Comparison, every: bool) -> None:
+    rows = [(table, *counts.values()) for table, counts in _comparison(found)["tables"].items()]
+    output.table(("facts", "theirs", "held", "missing, why", "missing", "added, why", "added"), rows)
+    for position, counts in sorted(found.cells.items()):
+        words = ", ".join(f"{number:,} {name}" for name, number in counts.items())
+        print(f"affordances of argument {int(position) + 1}: {words}")
+    for difference in found.differences:
+        if every or not difference.why or difference.kind == "missing":
+            print(f"{difference.kind} {difference.table}: {' '.join(difference.fact)}: {difference.why or 'NO REASON'}")
