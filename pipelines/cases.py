@@ -10,6 +10,7 @@ from hearth.grounding.sampling import Environment
 from hearth.pipelines.rows import (
     binding_rows,
     bindings_of,
+    change_of,
     change_row,
     edge_of,
     failure_row,
@@ -41,8 +42,8 @@ def environment_of(environment: Environment, edges: frozenset[Edge]) -> Row:
         edges: those of its home.
     """
     home = environment.base
-    states = dict(environment.states)
-    nodes = [replace(node, states=states.pop(node.id, node.states)) for node in environment.nodes]
+    states: dict[int, Iterable[str]] = dict(environment.states)
+    nodes = [replace(node, states=tuple(states.pop(node.id, node.states))) for node in environment.nodes]
     added = set(_both_ways(environment.added))
     removed = set(_both_ways(environment.removed)) - added
     came, went = _restated(home, states)
@@ -68,39 +69,35 @@ def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[An
     return tuple(sorted(came)), tuple(sorted(went))
 
 
-def difference_of(graph: EnvironmentGraph, home: Home, edges: frozenset[Edge]) -> Row:
-    """A whole graph as what differs from a home, as `tables.ENVIRONMENT`."""
+def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> Row:
+    """A world of any home, at its start, as what differs from another home, as `tables.ENVIRONMENT`.
+
+    Args:
+        world: a start.
+        home: what to tell it from.
+        edges: those of `home`.
+    """
     known = {node_id: home.node(i) for i, node_id in enumerate(home.ids)}
-    nodes = {node.id: node for node in graph.nodes}
-    removed = {node_id for node_id, node in known.items() if node_id not in nodes or not _same(node, nodes[node_id])}
-    new = [node for node in graph.nodes if node.id not in known or node.id in removed]
+    nodes = {node_id: world.home.node(i) for i, node_id in enumerate(world.home.ids)}
+    removed = {node_id for node_id, node in known.items() if not _same(node, nodes.get(node_id))}
+    new = [node for node_id, node in nodes.items() if node_id not in known or node_id in removed]
     kept = edges
     if removed:
         kept = frozenset(edge for edge in edges if edge.source not in removed and edge.target not in removed)
-    now = frozenset(World.start(Home.from_graph(graph, home.name, home.knowledge)).edges())
-    states = {node_id: _simulated(nodes[node_id]) for node_id in known.keys() - removed}
+    now = frozenset(world.edges())
+    states = {node_id: states_of(world.home.index[node_id], world.states) for node_id in known.keys() - removed}
     came, went = _restated(home, states)
     change = Change(tuple(sorted(now - kept)), tuple(sorted(kept - now)), came, went)
     return {"added_nodes": [node_row(node) for node in new], "removed_nodes": sorted(removed), **change_row(change)}
 
 
-def _same(one: Node, other: Node) -> bool:
+def _same(one: Node, other: Node | None) -> bool:
     """Whether two nodes are equal, simulated states aside."""
-    return _still(one) == _still(other)
+    return other is not None and (one == other or _still(one) == _still(other))
 
 
 def _still(node: Node) -> Node:
     return replace(node, states=tuple(name for name in node.states if name not in STATE_ID))
-
-
-def _simulated(node: Node) -> tuple[str, ...]:
-    """The states that hold: of two that exclude each other the one said first."""
-    found: list[str] = []
-    for name in node.states:
-        number = STATE_ID.get(name)
-        if number is not None and not any(STATE_ID[other] == number ^ 1 for other in found):
-            found.append(name)
-    return tuple(found)
 
 
 def home_of(environment: Mapping[str, Any], base: Home) -> Home:
@@ -159,12 +156,6 @@ def difference_on_replay(case: Mapping[str, Any], homes: Homes) -> str:
     if len(changes) != len(case["ticks"]):
         return f"the row has {len(case['ticks'])} ticks, the run {len(changes)}"
     for number, (tick, change) in enumerate(zip(case["ticks"], changes, strict=True)):
-        if _tick_change(tick) != change:
+        if change_of(tick) != change:
             return f"tick {number + 1} changes something else than the row says"
     return ""
-
-
-def _tick_change(tick: Mapping[str, Any]) -> Change:
-    from hearth.pipelines.rows import change_of
-
-    return change_of(tick)

@@ -2,30 +2,36 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from hearth.pipelines.files import write_json
 from hearth.pipelines.rows import graph_of
-from hearth.schemas.graph import Edge, EnvironmentGraph, to_release
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release
 
 
-def common(graphs: Iterable[Mapping[str, Any]]) -> EnvironmentGraph:
-    """The nodes and edges that all graphs (rows of `tables.GRAPH`) share, with the states of the first of them."""
-    nodes: dict[int, Any] = {}
+def common(rows: Iterable[Mapping[str, Any]]) -> EnvironmentGraph:
+    """The nodes and edges that all graphs (rows of `tables.GRAPH`) share, with the states that most of them have."""
+    nodes: dict[int, Node] = {}
     edges: set[Edge] = set()
-    for number, row in enumerate(graphs):
+    states: dict[int, Counter[tuple[str, ...]]] = defaultdict(Counter)
+    for number, row in enumerate(rows):
         graph = graph_of(row)
-        if number == 0:
-            nodes = {node.id: node for node in graph.nodes}
-            edges = set(graph.edges)
-        else:
-            shared = {(node.id, node.class_name) for node in graph.nodes}
-            nodes = {node_id: node for node_id, node in nodes.items() if (node_id, node.class_name) in shared}
-            edges &= set(graph.edges)
+        for node in graph.nodes:
+            states[node.id][node.states] += 1
+        here = {node.id: node for node in graph.nodes}
+        nodes = {i: node for i, node in nodes.items() if i in here and _alike(node, here[i])} if number else here
+        edges = edges & set(graph.edges) if number else set(graph.edges)
     kept = (edge for edge in edges if edge.source in nodes and edge.target in nodes)
-    return EnvironmentGraph(tuple(nodes[node_id] for node_id in sorted(nodes)), tuple(sorted(kept)))
+    usual = (replace(node, states=states[i].most_common(1)[0][0]) for i, node in sorted(nodes.items()))
+    return EnvironmentGraph(tuple(usual), tuple(sorted(kept)))
+
+
+def _alike(one: Node, other: Node) -> bool:
+    return replace(one, states=()) == replace(other, states=())
 
 
 def write_home(path: Path, graph: EnvironmentGraph) -> None:

@@ -32,10 +32,10 @@ READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]]
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {release.NAME: 16}
+WEIGHTS = {release.NAME: 4}
 """What a record counts towards filling a partition, where it brings more than words."""
 
-_FULL = 512
+_FULL = 128
 
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:

@@ -20,7 +20,7 @@ from hearth.pipelines.progress import Progress, Quiet
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import source_digests
 from hearth.pipelines.stage import Job, Partition, Stage
-from hearth.pipelines.workers import run_all
+from hearth.pipelines.workers import Workers
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import REJECTED
@@ -36,7 +36,9 @@ class Result:
     fresh: bool
 
 
-def run_stage(stage: Stage, settings: Settings, workers: int = 1, progress: Progress | None = None) -> Result:
+def run_stage(
+    stage: Stage, settings: Settings, workers: Workers | None = None, progress: Progress | None = None
+) -> Result:
     """Bring a stage's folder up to date.
 
     Raises:
@@ -45,7 +47,7 @@ def run_stage(stage: Stage, settings: Settings, workers: int = 1, progress: Prog
     progress = progress or Quiet()
     try:
         with locked(Path(settings.out)):
-            return _run(stage, settings, workers, progress)
+            return _run(stage, settings, workers or Workers(), progress)
     except OSError as error:
         raise HearthError.of(
             Code.MISSING_FILE,
@@ -55,7 +57,7 @@ def run_stage(stage: Stage, settings: Settings, workers: int = 1, progress: Prog
         ) from error
 
 
-def _run(stage: Stage, settings: Settings, workers: int, progress: Progress) -> Result:
+def _run(stage: Stage, settings: Settings, workers: Workers, progress: Progress) -> Result:
     inputs = _inputs(stage, settings)
     job = Job(stage, settings, stage.prepare(settings))
     key = value_digest([job.key, inputs])
@@ -82,7 +84,7 @@ def _run(stage: Stage, settings: Settings, workers: int, progress: Progress) -> 
     for number in numbers:
         rejects_path(folder, number).unlink(missing_ok=True)
     seconds = time.monotonic() - began
-    write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers})
+    write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
     progress.end(stage.name, counts, seconds, fresh=True)
     return Result(manifest, fresh=True)
 
@@ -90,7 +92,7 @@ def _run(stage: Stage, settings: Settings, workers: int, progress: Progress) -> 
 def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
     """Digest of everything a stage reads, by name."""
     digests = {}
-    for name in stage.reads:
+    for name in (*stage.reads, *stage.needs):
         manifest = read_manifest(settings.folder(name))
         if manifest is None:
             raise HearthError.of(
@@ -131,7 +133,7 @@ def input_partitions(job: Job) -> Iterator[Partition]:
             number += 1
 
 
-def _partitions(job: Job, workers: int, progress: Progress) -> tuple[list[int], Counts]:
+def _partitions(job: Job, workers: Workers, progress: Progress) -> tuple[list[int], Counts]:
     """Run what is not complete yet."""
     numbers: list[int] = []
     counts = Counts()
@@ -147,7 +149,7 @@ def _partitions(job: Job, workers: int, progress: Progress) -> tuple[list[int], 
                 _forget(job, partition.number)
                 yield partition
 
-    for _, done in run_all(job, missing(), workers, progress.seen):
+    for _, done in workers.run(job, missing(), progress.seen):
         counts.add(done)
     return numbers, counts
 

@@ -76,10 +76,9 @@ def failed(failure: Failure, program: Program, place: str, where: str = "") -> R
 def _stored(record: Record, grounding: Row, context: Context) -> Row:
     """A case in the environment that a program came with, run as the release's programs were."""
     name = grounding["home"]
-    graph = graph_of(grounding["start"])
     bound = {"title": record["title"], "description": record["description"], "steps": grounding["steps"]}
     program = program_of(bound, bindings_of(grounding["bindings"]))
-    world = World.start(Home.from_graph(graph, name, context.homes.knowledge))
+    world = World.start(Home.from_graph(graph_of(grounding["start"]), name, context.homes.knowledge))
     execution = run(world, program, RULES["replay"])
     reproduces = None
     if grounding["final"]:
@@ -87,7 +86,7 @@ def _stored(record: Record, grounding: Row, context: Context) -> Row:
     return {
         **_row(record, name),
         "steps": grounding["steps"],
-        "environment": difference_of(graph, context.homes.home(name), context.homes.edges(name)),
+        "environment": difference_of(world, context.homes.home(name), context.homes.edges(name)),
         "conditions": record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY),
         **run_row(execution, "replay"),
         "reproduces": reproduces,

@@ -57,6 +57,7 @@ class Stage:
         process: one record to its rows (`(table, row)` where there are several tables) or its reject. Rejects among
             rows refuse a part of a record.
         reads: the stages whose rows are its records, in order.
+        needs: stages that it looks at besides.
         uses: packages and modules whose code and data decide its output.
         settings: names of the options that decide its output.
         open: makes the context given to `process`, once a process.
@@ -77,6 +78,7 @@ class Stage:
     tables: Mapping[str, pa.Schema]
     process: Callable[[Record, Any], Iterable[Output] | Reject]
     reads: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
     uses: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
     open: Callable[[Job], Any] = lambda job: job

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from types import TracebackType
 from typing import Any
 
 from hearth.pipelines.parts import Counts
@@ -21,77 +22,99 @@ Done = tuple[Partition, Counts]
 _AHEAD = 2
 _POLL_SECONDS = 0.2
 
-_job: Job | None = None
-_seen: Any = None
 
+class Workers:
+    """Processes that stages share; they start when a stage first has work for two.
 
-def run_all(job: Job, partitions: Iterator[Partition], workers: int, seen: Seen) -> Iterator[Done]:
-    """Run partitions and yield each with its counts, in the order of completion.
-
-    Raises:
-        HearthError: a worker died; what was complete is kept.
+    Use it as a context manager, so that they end with the build.
     """
-    first = list(itertools.islice(partitions, 2))
-    rest = itertools.chain(first, partitions)
-    if workers <= 1 or len(first) < 2:
-        yield from ((partition, run_partition(job, partition, seen)) for partition in rest)
-    else:
-        yield from _pooled(job, rest, workers, seen)
+
+    def __init__(self, count: int = 1) -> None:
+        self.count = max(1, count)
+        self._pool: ProcessPoolExecutor | None = None
+        self._seen: Any = None
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop()
+
+    def run(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+        """Run partitions and yield each with its counts, in the order of completion.
+
+        Raises:
+            HearthError: a worker died; what was complete is kept.
+        """
+        first = list(itertools.islice(partitions, 2))
+        rest = itertools.chain(first, partitions)
+        if self.count == 1 or len(first) < 2:
+            yield from ((partition, run_partition(job, partition, seen)) for partition in rest)
+        else:
+            yield from self._pooled(job, rest, seen)
+
+    def _pooled(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+        try:
+            yield from self._drive(job, partitions, seen)
+        except BrokenProcessPool as error:
+            self._stop()
+            raise HearthError.of(
+                Code.CONFLICT,
+                f"a worker of stage `{job.stage.name}` was killed, perhaps for want of memory",
+                file=str(job.folder),
+                suggestion="run the same command again: complete parts are kept; fewer --workers need less memory",
+            ) from error
+
+    def _drive(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+        pool = self._start()
+        before = self._told()
+        running: dict[Future[Counts], Partition] = {}
+        while True:
+            for partition in itertools.islice(partitions, self.count * _AHEAD - len(running)):
+                running[pool.submit(_run, job, partition)] = partition
+            if not running:
+                return
+            done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
+            now = self._told()
+            if now > before:
+                seen(now[0] - before[0], now[1] - before[1])
+                before = now
+            for future in done:
+                yield running.pop(future), future.result()
+
+    def _start(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+            self._seen = context.Array("q", 2)
+            self._pool = ProcessPoolExecutor(self.count, context, _begin, (self._seen,))
+        return self._pool
+
+    def _stop(self) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+            self._pool = None
+
+    def _told(self) -> tuple[int, int]:
+        with self._seen.get_lock():
+            return self._seen[0], self._seen[1]
 
 
-def _pooled(job: Job, partitions: Iterator[Partition], workers: int, seen: Seen) -> Iterator[Done]:
-    method = "forkserver" if sys.platform == "linux" else "spawn"
-    context = multiprocessing.get_context(method)
-    told = _Told(context.Array("q", 2), seen)
-    pool = ProcessPoolExecutor(workers, context, _start, (job, told.array))
-    try:
-        yield from _drive(pool, partitions, workers * _AHEAD, told)
-    except BrokenProcessPool as error:
-        raise HearthError.of(
-            Code.CONFLICT,
-            f"a worker of stage `{job.stage.name}` was killed, perhaps for want of memory",
-            file=str(job.folder),
-            suggestion="run the same command again: complete partitions are kept; fewer --workers need less memory",
-        ) from error
-    finally:
-        pool.shutdown(cancel_futures=True)
+_seen: Any = None
+_job: Job | None = None
 
 
-def _drive(pool: ProcessPoolExecutor, partitions: Iterator[Partition], window: int, told: _Told) -> Iterator[Done]:
-    running: dict[Future[Counts], Partition] = {}
-    while True:
-        for partition in itertools.islice(partitions, window - len(running)):
-            running[pool.submit(_run, partition)] = partition
-        if not running:
-            return
-        done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
-        told.tell()
-        for future in done:
-            yield running.pop(future), future.result()
+def _begin(seen: Any) -> None:
+    global _seen  # noqa: PLW0603 - a worker's own state
+    _seen = seen
 
 
-class _Told:
-    """Two counters shared with the workers, and how much of them was passed on."""
-
-    def __init__(self, array: Any, seen: Seen) -> None:
-        self.array, self._seen = array, seen
-        self._records = self._rejects = 0
-
-    def tell(self) -> None:
-        with self.array.get_lock():
-            records, rejects = self.array[0], self.array[1]
-        if records > self._records:
-            self._seen(records - self._records, rejects - self._rejects)
-            self._records, self._rejects = records, rejects
-
-
-def _start(job: Job, array: Any) -> None:
-    global _job, _seen
-    _job, _seen = job, array
-
-
-def _run(partition: Partition) -> Counts:
-    assert _job is not None
+def _run(job: Job, partition: Partition) -> Counts:
+    """Run a partition in a worker, with the context that the same job opened before."""
+    global _job  # noqa: PLW0603 - a worker's own state
+    if _job is None or (_job.key, _job.settings) != (job.key, job.settings):
+        _job = job
     return run_partition(_job, partition, _count)
 
 

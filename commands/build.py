@@ -1,0 +1,241 @@
+"""`build`, and each stage by its name."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.pipelines.build import Funnel
+
+Sources = Annotated[
+    list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Files and folders; the embedded corpus if none.")
+]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Gets one folder a stage.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
+Jobs = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0 for one a core.")]
+Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N records.")]
+Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on what is there.")]
+InHomes = Annotated[
+    list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")
+]
+HomesFolder = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
+Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
+Salt = Annotated[
+    str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
+]
+Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Film so many programs.")]
+Variants = Annotated[int, typer.Option("--variants", metavar="N", min=0, help="Perturbed environments a program.")]
+
+_OUT = Path("data_out")
+_CODES = 4
+
+
+def build(
+    sources: Sources = None,
+    out: Out = _OUT,
+    seed: Seed = 0,
+    workers: Jobs = 0,
+    limit: Limit = None,
+    only: Only = None,
+    home: InHomes = None,
+    homes: HomesFolder = None,
+    kb: Kb = None,
+    salt: Salt = None,
+    variants: Variants = 3,
+    pictures: Pictures = 3,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Run the stages one after another and publish a dataset.
+
+    What a source is, is told by its content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, or
+    program text. What did not change since the last build is not done again, and a build that was stopped goes on
+    where it was. Ends with what became of every record.
+
+    \b
+    Examples:
+      python cli.py build --out data_out
+      python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
+    """
+    options = _options(seed, limit, home, homes, kb, salt, variants=variants, pictures=pictures)
+    _run(sources, out, workers, only, options, strict, as_json)
+
+
+def ingest(
+    sources: Sources = None,
+    out: Out = _OUT,
+    limit: Limit = None,
+    salt: Salt = None,
+    workers: Jobs = 0,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Read descriptions and programs, from whatever they arrived in.
+
+    \b
+    Example:
+      python cli.py ingest batch.csv --out data_out
+    """
+    _run(sources, out, workers, "ingest", {"limit": limit, "salt": salt}, strict, as_json)
+
+
+def validate(
+    out: Out = _OUT, kb: Kb = None, workers: Jobs = 0, strict: output.Strict = False, as_json: output.Json = False
+) -> None:
+    """Check every ingested program against the action grammar.
+
+    \b
+    Example:
+      python cli.py validate --out data_out
+    """
+    _run(None, out, workers, "validate", {"kb_folder": _text(kb)}, strict, as_json)
+
+
+def sample(
+    out: Out = _OUT,
+    seed: Seed = 0,
+    home: InHomes = None,
+    homes: HomesFolder = None,
+    kb: Kb = None,
+    workers: Jobs = 0,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Place every valid program in homes where it runs.
+
+    \b
+    Example:
+      python cli.py sample --out data_out --seed 7 --home maple
+    """
+    _run(None, out, workers, "sample", _options(seed, None, home, homes, kb, None), strict, as_json)
+
+
+def augment(
+    out: Out = _OUT,
+    seed: Seed = 0,
+    homes: HomesFolder = None,
+    kb: Kb = None,
+    variants: Variants = 3,
+    workers: Jobs = 0,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Perturb what programs rely on, run them, and repair what breaks.
+
+    \b
+    Example:
+      python cli.py augment --out data_out --variants 5
+    """
+    options = _options(seed, None, None, homes, kb, None, variants=variants)
+    _run(None, out, workers, "augment", options, strict, as_json)
+
+
+def render(
+    out: Out = _OUT,
+    pictures: Pictures = 3,
+    homes: HomesFolder = None,
+    kb: Kb = None,
+    workers: Jobs = 0,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Picture a few programs while they run.
+
+    \b
+    Example:
+      python cli.py render --out data_out --pictures 10
+    """
+    options = _options(0, None, None, homes, kb, None, pictures=pictures)
+    _run(None, out, workers, "render", options, strict, as_json)
+
+
+def publish(
+    out: Out = _OUT,
+    seed: Seed = 0,
+    homes: HomesFolder = None,
+    kb: Kb = None,
+    workers: Jobs = 0,
+    strict: output.Strict = False,
+    as_json: output.Json = False,
+) -> None:
+    """Write the tables, the catalog and the manifest; what does not replay is refused.
+
+    \b
+    Example:
+      python cli.py publish --out data_out
+    """
+    _run(None, out, workers, "publish", _options(seed, None, None, homes, kb, None), strict, as_json)
+
+
+def _options(
+    seed: int,
+    limit: int | None,
+    home: list[str] | None,
+    homes: Path | None,
+    kb: Path | None,
+    salt: str | None,
+    **more: Any,
+) -> dict[str, Any]:
+    folders = {"homes_folder": _text(homes), "kb_folder": _text(kb)}
+    return {"seed": seed, "limit": limit, "homes": tuple(home or ()), "salt": salt, **folders, **more}
+
+
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
+def _run(
+    sources: list[Path] | None,
+    out: Path,
+    workers: int,
+    only: str | None,
+    options: dict[str, Any],
+    strict: bool,
+    as_json: bool,
+) -> None:
+    import os
+
+    from hearth.pipelines.build import build as run
+    from hearth.pipelines.progress import for_terminal
+
+    count = workers or os.cpu_count() or 1
+    paths = [str(path) for path in sources or ()]
+    found = run(paths, str(out), workers=count, only=only, progress=for_terminal(), **options)
+    if as_json:
+        output.emit(found.to_json())
+    else:
+        _print(found, out, whole=only is None)
+    output.status(found.rejected, strict=strict)
+
+
+def _print(found: Funnel, out: Path, *, whole: bool) -> None:
+    rows = [
+        (name, counts.records_in, counts.through, counts.rejected, counts.rows.total(), _reasons(counts.codes))
+        for name, counts in found.stages.items()
+    ]
+    sys.stdout.write("\n")
+    output.table(("stage", "records in", "went on", "rejected", "rows out", "why rejected"), rows)
+    if whole and found.dataset:
+        command = Path(sys.argv[0]).name
+        program = "python cli.py" if command == "cli.py" else "hearth"
+        print(f"\nThe dataset is in {found.dataset}. Try next:")
+        for line in _NEXT:
+            print(f"  {program} {line.format(out=out)}")
+
+
+_NEXT = (
+    'query {out} "SELECT title, count(*) AS programs FROM programs GROUP BY title ORDER BY programs DESC LIMIT 10"',
+    'query {out} "SELECT code, count(*) AS rejects FROM rejects GROUP BY code ORDER BY rejects DESC"',
+    'query {out} "SELECT program_text(program_id) FROM programs WHERE parent_id IS NOT NULL LIMIT 1"',
+)
+
+
+def _reasons(codes: Any) -> str:
+    shown = [f"{code} {count:,}" for code, count in codes.most_common(_CODES)]
+    return ", ".join(shown) + (", ..." if len(codes) > _CODES else "")

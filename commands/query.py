@@ -1,0 +1,52 @@
+"""`query`: SQL over a published dataset."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
+Sql = Annotated[str, typer.Argument(metavar="SQL", help="One question; `-` reads it from standard input.")]
+Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Print at most N rows; 0 for all.")]
+
+
+def query(dataset: Folder, sql: Sql, rows: Rows = 100, as_json: output.Json = False) -> None:
+    """Ask a published dataset a question in SQL.
+
+    Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,
+    repairs, sketches, frames, vocabulary, rejects, ledger. Macros: program_text(program_id), graph_nodes(execution_id,
+    tick), graph_edges(execution_id, tick), final_state(execution_id). The dataset can only be read.
+
+    \b
+    Examples:
+      python cli.py query data_out "SELECT action, count(*) FROM steps GROUP BY action ORDER BY 2 DESC"
+      python cli.py query data_out "DESCRIBE programs"
+    """
+    import sys
+
+    from hearth.pipelines.dataset import Dataset
+
+    text = sys.stdin.read() if sql == "-" else sql
+    found = Dataset.open(dataset).sql(text)
+    columns = list(found.columns)
+    if as_json:
+        output.emit([dict(zip(columns, row, strict=True)) for row in found.fetchall()])
+        return
+    shown = found.fetchmany(rows + 1) if rows else found.fetchall()
+    more = bool(rows) and len(shown) > rows
+    output.table(columns, ([_cell(cell) for cell in row] for row in (shown[:rows] if more else shown)))
+    if more:
+        print(f"... more than {rows:,} rows; --rows 0 prints all")
+
+
+def _cell(value: Any) -> Any:
+    """Text for a cell: one line, nested values as JSON."""
+    if isinstance(value, list | dict):
+        import orjson
+
+        return orjson.dumps(value, default=str).decode()
+    return value

@@ -1,0 +1,119 @@
+"""All stages, one after the other, over any mix of sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+
+from hearth.pipelines.lock import locked
+from hearth.pipelines.manifest import Manifest, read_manifest
+from hearth.pipelines.parts import Counts
+from hearth.pipelines.progress import Progress
+from hearth.pipelines.run import REJECTS, run_stage
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.stages import STAGES, stage
+from hearth.pipelines.workers import Workers
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+
+CORPUS = ("crowd/descriptions.csv", "crowd/programs.csv")
+"""The embedded corpus, in `data_raw`."""
+
+_SHOWN = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Funnel:
+    """What became of everything that was read.
+
+    Attributes:
+        stages: counts by stage, in order; stages that never ran are not there.
+        fresh: stages that had something to do.
+        dataset: where the published dataset is; None while there is none.
+    """
+
+    stages: dict[str, Counts]
+    fresh: tuple[str, ...]
+    dataset: Path | None
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values."""
+        return {
+            "stages": {name: counts.to_json() for name, counts in self.stages.items()},
+            "fresh": list(self.fresh),
+            "dataset": str(self.dataset) if self.dataset else None,
+        }
+
+    @property
+    def rejected(self) -> int:
+        """Records refused whole by any stage that reads what people wrote."""
+        return sum(counts.rejected for name, counts in self.stages.items() if name != "augment")
+
+
+def corpus() -> tuple[str, ...]:
+    """Paths of the embedded corpus."""
+    with as_file(files("hearth.data_raw")) as folder:
+        return tuple(str(folder / name) for name in CORPUS)
+
+
+def build(
+    sources: Sequence[str] = (),
+    out: str = "data_out",
+    *,
+    workers: int = 1,
+    only: str | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Funnel:
+    """Bring a dataset up to date with its sources; what did not change is not done again.
+
+    Args:
+        sources: files and folders, in any mix of forms; the embedded corpus when there are none.
+        out: gets one folder a stage; the dataset is its `publish`.
+        workers: processes; any number gives the same bytes.
+        only: the one stage to run, on what the earlier ones wrote.
+        progress: told how it goes.
+        options: the other fields of `Settings` (seed, limit, homes, ...).
+
+    Raises:
+        HearthError: a source can't be read, or nothing in any could be used.
+    """
+    settings = Settings(tuple(sources) or corpus(), out, **options)
+    names = [only] if only else list(STAGES)
+    fresh: list[str] = []
+    with locked(Path(out)), Workers(workers) as pool:
+        for name in names:
+            result = run_stage(stage(name), settings, pool, progress)
+            if result.fresh:
+                fresh.append(name)
+            if name == "ingest":
+                _check_something(result.manifest)
+    return funnel(settings, tuple(fresh))
+
+
+def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
+    """What the manifests of a build say."""
+    manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
+    counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
+    published = manifests["publish"]
+    return Funnel(counts, fresh, published.folder if published else None)
+
+
+def _check_something(ingested: Manifest) -> None:
+    """Say why nothing could be read, where that is so."""
+    if ingested.counts.through:
+        return
+    faults = list(_faults(pq.read_table(ingested.folder / REJECTS).slice(0, _SHOWN).to_pylist()))
+    raise HearthError(faults or [Diagnostic(Code.EMPTY, "the sources hold no records")])
+
+
+def _faults(rows: Iterable[dict[str, Any]]) -> Iterator[Diagnostic]:
+    known = {str(code): code for code in Code}
+    for row in rows:
+        places = {name: row[name] for name in ("message", "file", "line", "column", "found", "suggestion")}
+        yield Diagnostic(known.get(row["code"], Code.SYNTAX), **places)

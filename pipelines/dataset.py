@@ -1,0 +1,305 @@
+"""A published dataset, opened for reading: tables, SQL, and each program with all that belongs to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.pipelines.catalog import attach
+from hearth.pipelines.manifest import FORMAT, NAME
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.program import Program
+
+if TYPE_CHECKING:
+    import networkx
+
+    from hearth.simulation.home import Home
+
+Row = dict[str, Any]
+
+_READING = frozenset({"SELECT", "EXPLAIN"})
+
+
+class Dataset:
+    """A dataset folder.
+
+    Each table is an attribute: `ds.programs` is a DuckDB relation, with `.df()` for pandas and `.to_arrow_table()`.
+    `ds["release:..."]` is one program with its runs.
+    """
+
+    def __init__(self, folder: Path, manifest: Row) -> None:
+        self.folder = folder
+        self.manifest = manifest
+
+    @classmethod
+    def open(cls, path: str | Path) -> Dataset:
+        """Open a dataset, or the dataset of a build's folder.
+
+        Raises:
+            HearthError: the path is no dataset, one that is not complete, or one that a newer version wrote.
+        """
+        from hearth.pipelines.files import read_json
+
+        folder = Path(path)
+        if not (folder / NAME).exists() and (folder / "publish" / NAME).exists():
+            folder = folder / "publish"
+        content = read_json(folder / NAME)
+        if not isinstance(content, dict) or content.get("stage") != "publish":
+            suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
+            raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
+        if content["format"] > FORMAT:
+            message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
+            raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
+        return cls(folder, content)
+
+    def __repr__(self) -> str:
+        return f"Dataset({str(self.folder)!r})"
+
+    @cached_property
+    def connection(self) -> Any:
+        """A DuckDB connection with the views and macros. It can read this folder only, and change nothing in it."""
+        return attach(self.folder)
+
+    def sql(self, query: str, **parameters: Any) -> Any:
+        """A query as a DuckDB relation; `$name` in it is the parameter of that name.
+
+        Raises:
+            HearthError: SYNTAX, with DuckDB's own words, or when the query would change something.
+        """
+        import duckdb
+
+        try:
+            statements = self.connection.extract_statements(query)
+            wrong = next((s.type.name for s in statements if s.type.name not in _READING), None)
+            if wrong or len(statements) != 1:
+                what = f"{wrong} is no question" if wrong else f"{len(statements)} statements where one is expected"
+                suggestion = "ask with SELECT, FROM, DESCRIBE, SHOW or EXPLAIN"
+                raise HearthError.of(Code.SYNTAX, f"a dataset can only be read: {what}", suggestion=suggestion)
+            return self.connection.sql(query, params=parameters or None)
+        except duckdb.Error as error:
+            raise _refused(error) from error
+
+    def __getattr__(self, name: str) -> Any:
+        from hearth.schemas.tables import TABLES
+
+        if name not in (*TABLES, "steps", "ticks"):
+            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
+        return self.connection.table(name)
+
+    def __len__(self) -> int:
+        return int(self.connection.sql("SELECT count(*) FROM programs").fetchone()[0])
+
+    def __iter__(self) -> Iterator[str]:
+        """The ids of all programs, sorted."""
+        for (program_id,) in self.connection.sql("SELECT program_id FROM programs ORDER BY program_id").fetchall():
+            yield program_id
+
+    def __contains__(self, program_id: str) -> bool:
+        return bool(self._rows("SELECT 1 FROM programs WHERE program_id = $id", program_id))
+
+    def __getitem__(self, program_id: str) -> Entry:
+        """A program with all that belongs to it.
+
+        Raises:
+            KeyError: there is none of that id.
+        """
+        found = self._rows("SELECT * FROM programs WHERE program_id = $id", program_id)
+        if not found:
+            raise KeyError(program_id)
+        runs = self._rows(
+            "SELECT e.*, v AS environment FROM executions e JOIN environments v USING (environment_id)"
+            " WHERE e.program_id = $id ORDER BY execution_id",
+            program_id,
+        )
+        repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
+        return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs))
+
+    def home(self, name: str) -> EnvironmentGraph:
+        """The graph of a home, from which environments differ.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        return self._homes(name).graph
+
+    def _homes(self, name: str) -> _Home:
+        known = self._built.get(name)
+        if known is None:
+            known = self._built[name] = _Home.read(self, name)
+        return known
+
+    @cached_property
+    def _built(self) -> dict[str, _Home]:
+        return {}
+
+    def _rows(self, query: str, value: str) -> list[Row]:
+        rows: list[Row] = self.connection.sql(query, params={"id": value}).to_arrow_table().to_pylist()
+        return rows
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A program of a dataset.
+
+    Attributes:
+        row: as in the table `programs`.
+        runs: its executions.
+        repairs: how it was made from its parent, in order; empty for originals.
+    """
+
+    row: Row
+    runs: tuple[Run, ...]
+    repairs: tuple[Row, ...]
+
+    @property
+    def program(self) -> Program:
+        """The program, unbound."""
+        from hearth.pipelines.rows import program_of
+
+        return program_of(self.row)
+
+    @property
+    def title(self) -> str:
+        """The activity as written."""
+        return str(self.row["title"])
+
+    @property
+    def description(self) -> str:
+        """What is done, in words."""
+        return str(self.row["description"])
+
+
+@dataclass(frozen=True)
+class Run:
+    """One execution of a program: its row, and the graphs it went through."""
+
+    dataset: Dataset = field(repr=False)
+    row: Row
+
+    @property
+    def home(self) -> str:
+        """The home its environment was made from."""
+        return str(self.row["home"])
+
+    @property
+    def executable(self) -> bool:
+        """Whether it ran to its end."""
+        return bool(self.row["executable"])
+
+    @property
+    def conditions(self) -> list[Row]:
+        """What had to hold at the start."""
+        return list(self.row["environment"]["conditions"])
+
+    def bindings(self) -> dict[tuple[str, int], int]:
+        """Which node each object of the program is."""
+        from hearth.pipelines.rows import bindings_of
+
+        return bindings_of(self.row["bindings"])
+
+    def graph(self, tick: int = 0) -> EnvironmentGraph:
+        """The graph after so many ticks; nodes by id, edges sorted.
+
+        Raises:
+            IndexError: the run has fewer ticks.
+        """
+        ticks = self.row["ticks"]
+        if not 0 <= tick <= len(ticks):
+            raise IndexError(f"tick {tick} of a run of {len(ticks)}")
+        state = self._start
+        edges, states = set(state.edges), {node: set(names) for node, names in state.states.items()}
+        for change in ticks[:tick]:
+            _apply(change, edges, states)
+        nodes = tuple(replace(node, states=tuple(sorted(states[node.id]))) for node in state.nodes)
+        return EnvironmentGraph(nodes, tuple(sorted(edges)))
+
+    @property
+    def start(self) -> EnvironmentGraph:
+        """The graph before the first tick."""
+        return self.graph(0)
+
+    @property
+    def final(self) -> EnvironmentGraph:
+        """The graph after the last tick that was done."""
+        return self.graph(len(self.row["ticks"]))
+
+    def release_json(self, tick: int = 0) -> Row:
+        """The graph as the release writes it."""
+        from hearth.schemas.graph import to_release
+
+        return to_release(self.graph(tick))
+
+    def networkx(self, tick: int = 0) -> networkx.MultiDiGraph:
+        """The graph for networkx: a node has its class and states, an edge's key is its relation."""
+        import networkx
+
+        found: networkx.MultiDiGraph = networkx.MultiDiGraph()
+        graph = self.graph(tick)
+        for node in graph.nodes:
+            told = {"class_name": node.class_name, "category": node.category, "states": list(node.states)}
+            found.add_node(node.id, **told, properties=list(node.properties))
+        found.add_edges_from((edge.source, edge.target, edge.relation) for edge in graph.edges)
+        return found
+
+    @cached_property
+    def _start(self) -> _Home:
+        from hearth.pipelines.rows import edge_of, node_of
+
+        home, differs = self.dataset._homes(self.home), self.row["environment"]
+        gone = frozenset(differs["removed_nodes"])
+        nodes = [node for node in home.nodes if node.id not in gone] + [node_of(row) for row in differs["added_nodes"]]
+        nodes.sort(key=lambda node: node.id)
+        edges = {edge for edge in home.edges if edge.source not in gone and edge.target not in gone}
+        edges -= {edge_of(row) for row in differs["removed"]}
+        states = {node.id: set(node.states) for node in nodes}
+        _apply({**differs, "removed": []}, edges, states)
+        return _Home(tuple(nodes), edges, states)
+
+
+@dataclass(frozen=True, slots=True)
+class _Home:
+    nodes: tuple[Node, ...]
+    edges: set[Edge]
+    states: dict[int, set[str]]
+
+    @classmethod
+    def read(cls, dataset: Dataset, name: str) -> _Home:
+        from hearth.pipelines.rows import edge_of, node_of
+
+        nodes = tuple(map(node_of, dataset._rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
+        if not nodes:
+            raise KeyError(name)
+        edges = set(map(edge_of, dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
+        return cls(nodes, edges, {node.id: set(node.states) for node in nodes})
+
+    @property
+    def graph(self) -> EnvironmentGraph:
+        return EnvironmentGraph(self.nodes, tuple(sorted(self.edges)))
+
+
+def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]]) -> None:
+    from hearth.pipelines.rows import edge_of
+
+    edges -= {edge_of(row) for row in change["removed"]}
+    edges |= {edge_of(row) for row in change["added"]}
+    for row in change["cleared_states"]:
+        states[row["node"]].discard(row["state"])
+    for row in change["set_states"]:
+        states[row["node"]].add(row["state"])
+
+
+def _refused(error: Exception) -> HearthError:
+    message = str(error).split("\n\n", 1)[0]
+    return HearthError.of(Code.SYNTAX, message)
+
+
+def world_of(run: Run, knowledge: Any = None) -> Home:
+    """The home that a run starts in, for the engine."""
+    from hearth.simulation.home import Home
+
+    return Home.from_graph(run.start, run.home, knowledge)

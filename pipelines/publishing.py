@@ -1,0 +1,271 @@
+"""What is published once all cases are: the tables about the whole, the pictures and the catalog."""
+
+from __future__ import annotations
+
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.catalog import write_catalog
+from hearth.pipelines.files import TEMPORARY, commit, sync_folder
+from hearth.pipelines.manifest import Manifest, read_manifest
+from hearth.pipelines.naming import STAMP, activity_id
+from hearth.pipelines.parts import Counts, Row, part_path, read_rows, write_table
+from hearth.pipelines.rows import node_row
+from hearth.pipelines.stage import Job
+from hearth.pipelines.surroundings import Homes
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.tables import TABLES
+from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
+from hearth.simulation.world import World
+
+STAGES = ("ingest", "validate", "sample", "augment", "render", "publish")
+"""The ledger's order."""
+
+BATCH = 4_096
+
+
+def finish(job: Job, counts: Counts) -> None:
+    """Write every table that needs all cases, then the catalog over them.
+
+    Raises:
+        HearthError: DUPLICATE, when two rows have one id.
+    """
+    _check_unique(job.folder)
+    told = _activities(job)
+    homes = Homes(job.settings)
+    makers: dict[str, Callable[[], Iterable[Row]]] = {
+        "activities": told.activity_rows,
+        "descriptions": told.description_rows,
+        "homes": lambda: _homes(job, homes),
+        "home_nodes": lambda: _home_nodes(job, homes),
+        "home_edges": lambda: _home_edges(job, homes),
+        "sketches": lambda: (),
+        "frames": lambda: _frames(job),
+        "vocabulary": lambda: _vocabulary(homes.knowledge),
+        "rejects": lambda: _rejects(job),
+        "ledger": lambda: _ledger(job, counts),
+    }
+    for table, rows in makers.items():
+        write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
+    _copy_pictures(job)
+    write_catalog(job.folder)
+
+
+def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
+    """Write a table from rows, stamped with the versions it belongs to."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    batches = list(_batches(schema, rows))
+    write_table(path, pa.Table.from_batches(batches, schema))
+
+
+def _batches(schema: pa.Schema, rows: Iterable[Row]) -> Iterator[pa.RecordBatch]:
+    waiting: list[Row] = []
+    for row in rows:
+        waiting.append({**row, **STAMP})
+        if len(waiting) == BATCH:
+            yield pa.RecordBatch.from_pylist(waiting, schema)
+            waiting = []
+    if waiting:
+        yield pa.RecordBatch.from_pylist(waiting, schema)
+
+
+_KEYS = {"programs": "program_id", "environments": "environment_id", "executions": "execution_id"}
+
+
+def _check_unique(folder: Path) -> None:
+    import duckdb
+
+    with duckdb.connect() as connection:
+        for table, key in _KEYS.items():
+            files = str(folder / table / "*.parquet").replace("'", "''")
+            query = f"SELECT {key} FROM read_parquet('{files}') GROUP BY 1 HAVING count(*) > 1 ORDER BY 1 LIMIT 1"
+            twice = connection.execute(query).fetchone()
+            if twice:
+                message = f"two rows of `{table}` have the {key} `{twice[0]}`"
+                raise HearthError.of(Code.DUPLICATE, message, file=str(folder))
+
+
+@dataclass(slots=True)
+class _Activity:
+    titles: Counter[str] = field(default_factory=Counter)
+    scenes: set[str] = field(default_factory=set)
+    descriptions: int = 0
+    programs: int = 0
+
+
+@dataclass(slots=True)
+class _Told:
+    """Activities and descriptions, gathered from what was ingested and published."""
+
+    activities: dict[str, _Activity] = field(default_factory=dict)
+    descriptions: dict[str, Row] = field(default_factory=dict)
+
+    def describe(self, row: Row) -> None:
+        """Take the words of an ingested row; those of a description go before those repeated with a program."""
+        known = self.descriptions.get(row["description_id"])
+        if known is None or (row["kind"] == "description" and known["kind"] != "description"):
+            self.descriptions[row["description_id"]] = {**row, "programs": known["programs"] if known else 0}
+
+    def count(self, program: Row) -> None:
+        """Take a published program."""
+        activity = self.activities.setdefault(program["activity_id"], _Activity())
+        activity.programs += 1
+        activity.titles[program["title"]] += 1
+        if program["parent_id"] is None and program["description_id"] in self.descriptions:
+            self.descriptions[program["description_id"]]["programs"] += 1
+
+    def gather(self) -> None:
+        """Count descriptions under their activities."""
+        for row in self.descriptions.values():
+            activity = self.activities.setdefault(activity_id(row["title"]), _Activity())
+            activity.descriptions += 1
+            activity.titles[row["title"]] += 1
+            if row["scene"]:
+                activity.scenes.add(row["scene"])
+
+    def activity_rows(self) -> Iterator[Row]:
+        for name, activity in sorted(self.activities.items()):
+            title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
+            yield {
+                "activity_id": name,
+                "title": title,
+                "scenes": sorted(activity.scenes),
+                "descriptions": activity.descriptions,
+                "programs": activity.programs,
+            }
+
+    def description_rows(self) -> Iterator[Row]:
+        names = [name for name in TABLES["descriptions"].names if name not in (*STAMP, "activity_id")]
+        for _, row in sorted(self.descriptions.items()):
+            yield {"activity_id": activity_id(row["title"]), **{name: row[name] for name in names}}
+
+
+_WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
+
+
+def _activities(job: Job) -> _Told:
+    told = _Told()
+    for path in _parts(job, "ingest"):
+        for row in read_rows(path, list(_WORDS)):
+            told.describe(row)
+    for path in sorted((job.folder / "programs").glob("part-*.parquet")):
+        for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
+            told.count(row)
+    told.gather()
+    return told
+
+
+def _manifest(job: Job, stage: str) -> Manifest:
+    manifest = read_manifest(job.settings.folder(stage))
+    assert manifest is not None
+    return manifest
+
+
+def _parts(job: Job, stage: str) -> Iterator[Path]:
+    for part in _manifest(job, stage).parts:
+        yield from (job.settings.folder(stage) / file for file in part["files"])
+
+
+def _used_homes(job: Job) -> list[str]:
+    names: set[str] = set()
+    for path in (job.folder / "environments").glob("part-*.parquet"):
+        names.update(pq.read_table(path, columns=["home"])["home"].unique().to_pylist())
+    return sorted(names)
+
+
+def _homes(job: Job, homes: Homes) -> Iterator[Row]:
+    for name in _used_homes(job):
+        home = homes.home(name)
+        rooms = [node for node in map(home.node, range(len(home))) if home.rooms >> home.index[node.id] & 1]
+        yield {
+            "home": name,
+            "origin": "catalog" if homes.in_catalog(name) else "derived",
+            "rooms": sorted(node.class_name for node in rooms),
+            "nodes": len(home),
+            "edges": len(homes.edges(name)),
+            "has_geometry": bool(rooms) and all(node.box for node in rooms),
+        }
+
+
+def _home_nodes(job: Job, homes: Homes) -> Iterator[Row]:
+    for name in _used_homes(job):
+        for node in World.start(homes.home(name)).graph().nodes:
+            yield {"home": name, **node_row(node)}
+
+
+def _home_edges(job: Job, homes: Homes) -> Iterator[Row]:
+    for name in _used_homes(job):
+        for edge in sorted(homes.edges(name)):
+            yield {"home": name, **edge._asdict()}
+
+
+def _frames(job: Job) -> Iterator[Row]:
+    home = {}
+    for path in (job.folder / "executions").glob("part-*.parquet"):
+        table = pq.read_table(path, columns=["execution_id", "home"])
+        home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
+    for path in _parts(job, "render"):
+        for row in read_rows(path):
+            if row["execution_id"] in home:
+                yield {**row, "home": home[row["execution_id"]]}
+
+
+def _copy_pictures(job: Job) -> None:
+    """Copy the pictures beside the tables, and drop those of an earlier build."""
+    source, folder = job.settings.folder("render") / "frames", job.folder / "frames"
+    wanted = {path.relative_to(source) for path in source.rglob("*") if path.is_file()} if source.exists() else set()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix != ".parquet" and path.relative_to(folder) not in wanted:
+            path.unlink()
+    for name in sorted(wanted):
+        target = folder / name
+        if name.suffix != ".parquet" and not name.name.startswith("."):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            temporary = target.with_name(f".{target.name}{TEMPORARY}")
+            shutil.copyfile(source / name, temporary)
+            commit(temporary, target)
+    if wanted:
+        sync_folder(folder)
+
+
+def _vocabulary(knowledge: Knowledge) -> Iterator[Row]:
+    for action in sorted(knowledge.actions.values(), key=lambda action: action.id):
+        told = {"arity": action.arity, "simulated": action.executed}
+        yield {"kind": "action", "id": action.id, "name": action.name, **told}
+    for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
+        yield {"kind": "class", "id": thing.id, "name": thing.name}
+    fixed = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "failure": tuple(map(str, Code))}
+    for kind, names in fixed.items():
+        yield from ({"kind": kind, "id": number, "name": name} for number, name in enumerate(names))
+
+
+def _rejects(job: Job) -> Iterator[Row]:
+    for stage in STAGES:
+        for row in read_rows(job.settings.folder(stage) / "rejects.parquet"):
+            yield {name: value for name, value in row.items() if name != "partition"}
+
+
+def _ledger(job: Job, counts: Counts) -> Iterator[Row]:
+    for order, stage in enumerate(STAGES):
+        stage_counts = counts if stage == job.stage.name else _manifest(job, stage).counts
+        codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
+        row: dict[str, Any] = {
+            "stage": stage,
+            "order": order,
+            "records_in": stage_counts.records_in,
+            "records_through": stage_counts.through,
+            "records_rejected": stage_counts.rejected,
+            "partial_rejects": stage_counts.partial,
+            "rows": stage_counts.rows.total(),
+            "codes": [{"code": code, "count": count} for code, count in codes],
+        }
+        yield row
