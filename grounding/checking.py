@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from hearth.grounding.conditions import CHARACTER, STATE_OF, Condition, Key, Preconditions
+from hearth.grounding.conditions import CHARACTER, PETS, STATE_OF, Condition, Key, Preconditions
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation import rows
+from hearth.simulation.bits import indices
 from hearth.simulation.world import World
 
 Nodes = Mapping[Key, int]
@@ -85,6 +86,36 @@ def _occupied(world: World, index: tuple[int, ...], _: Condition) -> bool:
     return not _is_free(world, index[0])
 
 
+def _apart(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    """Whether who has walked to the second object is not close to the first."""
+    there = world.home.reach[index[1]] & ~world.home.properties["BODY_PART"]
+    return not (1 << index[0] | rows.close(world, index[0]) | rows.on(world, index[0])) & there
+
+
+def _elsewhere(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    return rows.room_of(world, index[0]) != index[1]
+
+
+def _stowed(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    return rows.closed_container(world, index[0]) >= 0
+
+
+def _full_hands(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    return bool(world.agents[0].right and world.agents[0].left)
+
+
+def _shut_in(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    """Whether a way into its room leads through a closed door."""
+    room = rows.room_of(world, index[0])
+    closed = world.home.doors & world.states[STATE_ID["CLOSED"]]
+    return any(world.home.between[door] >> room & 1 for door in indices(closed))
+
+
+def _pet(world: World, index: tuple[int, ...], _: Condition) -> bool:
+    pets = (world.home.by_class.get(name, 0) for name in PETS)
+    return any(mask & rows.bearing(world, index[0]) for mask in pets)
+
+
 HOLDS: dict[str, Test] = {
     **dict.fromkeys(STATE_OF, _state),
     "in": _on,
@@ -99,4 +130,10 @@ HOLDS: dict[str, Test] = {
     "lying": _resting,
     "free": _free,
     "occupied": _occupied,
+    "apart": _apart,
+    "elsewhere": _elsewhere,
+    "stowed": _stowed,
+    "full_hands": _full_hands,
+    "shut_in": _shut_in,
+    "pet": _pet,
 }

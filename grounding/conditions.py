@@ -38,7 +38,14 @@ RELATION_OF: dict[str, str] = {
 SEATS = ("sitting", "lying", "free", "occupied")
 """Conditions about the character's rest, and about what is on a seat or bed."""
 
-NAMES = (*STATE_OF, *RELATION_OF, *SEATS, "together")
+SPOILING = ("apart", "elsewhere", "stowed", "full_hands", "shut_in", "pet")
+"""What perturbing asks for instead: not at reach of the other; in another room than the other names; in something
+closed; both hands of the character hold something; the doors of the object's room are closed; a pet is on the seat."""
+
+PETS = ("cat", "dog")
+"""What may lie on a seat that is wanted."""
+
+NAMES = (*STATE_OF, *RELATION_OF, *SEATS, *SPOILING, "together")
 """Every condition. `together` is being in one room."""
 
 

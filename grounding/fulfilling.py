@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from hearth.grounding import spoiling
 from hearth.grounding.conditions import CHARACTER, STATE_OF, Condition, Key, Preconditions
 from hearth.grounding.draft import Draft
 from hearth.schemas.graph import Edge
@@ -127,4 +128,10 @@ FULFIL: dict[str, Fulfil] = {
     "occupied": _occupied,
     "sitting": _resting,
     "lying": _resting,
+    "apart": spoiling.apart,
+    "elsewhere": spoiling.elsewhere,
+    "stowed": spoiling.stowed,
+    "full_hands": spoiling.full_hands,
+    "shut_in": spoiling.shut_in,
+    "pet": spoiling.pet,
 }

@@ -75,7 +75,7 @@ def _smaller(
 
 def _candidates(original: Program, steps: tuple[Step, ...], own: list[bool]) -> Iterator[tuple[int, int]]:
     together = {n for n, step in enumerate(steps) if step.joins} | {n - 1 for n, s in enumerate(steps) if s.joins}
-    neighbours = {pair for pair in zip(original.steps, original.steps[1:], strict=False)}
+    neighbours = set(zip(original.steps, original.steps[1:], strict=False))
     for number in range(len(steps) - 1, -1, -1):
         if number in together:
             continue
