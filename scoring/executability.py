@@ -27,8 +27,8 @@ class ErrorClass(StrEnum):
     """Why a program first fails.
 
     A `wrong order` is one that the program's own steps could mend: it would get past the failing step if that step
-    stood earlier, or if a later step stood before it. An `additional step` asks for what is already so. What is
-    neither is a `missing step`.
+    stood where it could last be done, or if a later step stood before it. An `additional step` asks for what is already
+    so. What is neither is a `missing step`.
     """
 
     SYNTAX = "syntax"
@@ -124,7 +124,8 @@ def executability(
     program, _ = check(Program(steps=steps_of(lines)), knowledge)
     program = bind(program, nodes_of(world.home), knowledge, reference)
     place = [number for number, line in enumerate(lines) if isinstance(line, Step)]
-    unfit = [line for line, step in zip(place, program.steps, strict=True) if not _fits(step, knowledge)]
+    steps = zip(place, program.steps, strict=True)
+    unfit = [line for line, step in steps if line not in faults and not _fits(step, knowledge)]
     sound = sum(line < min(faults, default=len(lines)) for line in place)
     execution = run(world, program.with_steps(program.steps[:sound]), rules)
     failures: list[First] = [(line, STATIC[code], code) for line, code in sorted(faults.items())]
@@ -140,8 +141,8 @@ def executability(
 
 
 def _fits(step: Step, knowledge: Knowledge) -> bool:
-    """Whether the grammar lets the step's objects be what they are to it; other faults are not asked about here."""
-    return step.action not in knowledge.actions or not affordances(Program(steps=(step,)), knowledge)
+    """Whether the grammar lets the step's objects be what they are to it."""
+    return not affordances(Program(steps=(step,)), knowledge)
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
@@ -176,12 +177,13 @@ def _is_put(step: Step, world: World) -> bool:
 
 
 def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
-    """Whether moving one step, this one forward or a later one before it, gets the program past this one."""
+    """Whether moving one step, a later one before this or this one forward, gets the program past this one."""
     step = steps[failed]
     later = dict.fromkeys(steps[failed + 1 :])
     if any(_runs(worlds[failed], (other, step), rules) for other in later):
         return True
-    return any(_runs(worlds[n], (step, *steps[n:failed]), rules) for n in range(failed - 1, -1, -1))
+    could = next((n for n in range(failed - 1, -1, -1) if _runs(worlds[n], (step,), rules)), None)
+    return could is not None and _runs(worlds[could], (step, *steps[could:failed]), rules)
 
 
 def _runs(world: World, steps: Sequence[Step], rules: Rules) -> bool:

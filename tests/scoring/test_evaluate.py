@@ -1,0 +1,86 @@
+import pytest
+
+from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, signatures, summarise
+from hearth.scoring.executability import ErrorClass
+from hearth.scoring.predictions import Pair
+from hearth.scoring.reading import read
+
+REFERENCE = read(["[Walk] <fridge> (1)", "[Open] <fridge> (1)"])
+
+
+def pair(name, predicted, reference=REFERENCE, **more):
+    return Pair(name, None if predicted is None else read(predicted), reference, 1, more)
+
+
+PAIRS = [
+    pair("same", ["[Walk] <fridge> (1)", "[Open] <fridge> (1)"], activity="a"),
+    pair("late", ["[Open] <fridge> (1)", "[Walk] <fridge> (1)"], activity="b"),
+    pair("empty", [], activity="a"),
+    pair("missing", None),
+    pair("words", ["open the fridge"]),
+    pair("reference fails", ["[Walk] <fridge> (1)"], read(["[Open] <fridge> (1)"])),
+]
+
+
+@pytest.fixture(scope="module")
+def scored(knowledge, world):
+    return evaluate(PAIRS, knowledge, lambda _: world)
+
+
+def values(scored, metric):
+    return {each.pair.id: METRICS[metric](each) for each in scored}
+
+
+@pytest.mark.parametrize(
+    ("metric", "expected"),
+    [
+        ("lcs_step", (1, 0.5, 0, 0, 0, 0)),
+        ("parsable", (1, 1, 1, 0, 0, 1)),
+        ("parsable_names", (1, 1, 1, 0, 0, 1)),
+        ("executable", (1, 0, 1, 0, 0, 1)),
+        ("executable_filled", (1, 0, None, 0, 0, 1)),
+        ("goal", (1, 0, 0, 0, 0, None)),
+        ("goal_fraction", (1, 0, 0, 0, 0, None)),
+    ],
+)
+def test_scores_by_name(scored, metric, expected):
+    assert tuple(values(scored, metric).values()) == expected
+
+
+def test_f1_is_nothing_without_a_final_graph_and_not_asked_without_a_reference(scored):
+    found = values(scored, "f1")
+    assert found["same"] == 1
+    assert 0 < found["empty"] < 1  # an empty program runs, and leaves the home as it was
+    assert found["late"] == found["missing"] == found["words"] == 0
+    assert found["reference fails"] is None
+
+
+def test_summary(scored):
+    summary = summarise(scored)
+    assert (summary.count, summary.missing, summary.empty, summary.incomparable, summary.inexact) == (6, 1, 1, 1, 0)
+    assert summary.errors == {ErrorClass.SYNTAX: 1, ErrorClass.WRONG_ORDER: 1}
+    assert summary.failed_at == {0: 2}
+    assert summary.means["lcs_step"].mean == 0.25
+    assert summary.means["executable"].mean == 0.5
+    assert summary.means["executable_filled"].mean == 0.4
+    assert summary.means["goal"].mean == 0.2
+    assert list(summary.means) == list(METRICS)
+
+
+def test_without_environments_only_programs_are_compared(knowledge):
+    summary = summarise(evaluate(PAIRS, knowledge))
+    assert list(summary.means) == ["lcs_step", "lcs_action", "lcs_object", "lcs_mean", "parsable", "parsable_names"]
+    assert summary.errors == {}
+
+
+def test_parts_by_a_field(scored):
+    parts = by_field(scored, "activity")
+    assert {name: part.count for name, part in parts.items()} == {"": 3, "a": 2, "b": 1}
+    assert parts["b"].means["lcs_step"].mean == 0.5
+
+
+def test_every_score_says_what_it_is():
+    found = signatures(Options(match="swap1", scope="own", instances=True))
+    assert found["f1"] == "f1|match:swap1|scope:own|empty:1|v1"
+    assert found["lcs_step"] == "lcs|norm:max|level:step|instances:yes|v1"
+    assert {name.split("_")[0] for name in METRICS} == {name.split("_")[0] for name in found}

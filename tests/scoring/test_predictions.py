@@ -1,0 +1,141 @@
+import json
+
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.scoring.predictions import SHOWN, Pair, read_pairs
+from hearth.scoring.reading import read
+
+WALK = read(["[Walk] <sofa> (1)"])
+
+
+def row(name, predicted="[Walk] <sofa> (1)", **more):
+    return {"id": name, "predicted": predicted, "reference": ["[Walk] <sofa> (1)"], **more}
+
+
+@pytest.fixture
+def write(tmp_path):
+    def lines(*rows, name="p.jsonl"):
+        path = tmp_path / name
+        texts = (each if isinstance(each, str) else json.dumps(each) for each in rows)
+        path.write_text("".join(f"{text}\n" for text in texts))
+        return path
+
+    return lines
+
+
+def faults(path, *args):
+    with pytest.raises(HearthError) as caught:
+        read_pairs(path, *args)
+    return [(fault.code, fault.line, fault.message, fault.suggestion) for fault in caught.value.diagnostics]
+
+
+def test_texts_lists_and_missing_predictions(write):
+    pairs = read_pairs(write(row("a", activity="sit"), "", row(7, ["[Walk] <sofa> (1)"]), row("c", None), row("d", [])))
+    assert pairs == [
+        Pair("a", WALK, WALK, 1),
+        Pair("7", WALK, WALK, 3),
+        Pair("c", None, WALK, 4),
+        Pair("d", (), WALK, 5),
+    ]
+    assert pairs[0].more == {"activity": "sit"}
+
+
+def test_parquet_whatever_its_name(tmp_path):
+    path = tmp_path / "predictions"
+    step = {"action": "Walk", "agent": 0, "objects": [{"name": "sofa", "instance": 1}]}
+    columns = {"id": [1, 2], "predicted": [[step], None], "reference": ["[Walk] <sofa> (1)"] * 2}
+    parquet.write_table(pa.table(columns), path)
+    assert read_pairs(path) == [Pair("1", WALK, WALK, 1), Pair("2", None, WALK, 2)]
+
+
+def test_references_apart(write):
+    references = write({"id": "b", "reference": "[Walk] <sofa> (1)"}, {"id": "a", "reference": ""}, name="r.jsonl")
+    pairs = read_pairs(write({"id": "a", "predicted": "[Walk] <sofa> (1)"}), references)
+    assert pairs == [Pair("b", None, WALK), Pair("a", WALK, (), 1)]
+
+
+def test_references_given_as_programs(write):
+    assert read_pairs(write({"id": "a", "predicted": ""}), {"a": "[Walk] <sofa> (1)"}) == [Pair("a", (), WALK, 1)]
+
+
+def test_every_fault_is_reported_with_its_line(write):
+    path = write(
+        row("a"),
+        '{"id": "b", "predicted"',
+        "[1, 2]",
+        {"id": "c", "predicted": "x"},
+        row("a"),
+        row(True),
+        row("d", 3),
+        row("e", ["[Walk] <sofa> (1)", {"objects": []}]),
+    )
+    assert faults(path) == [
+        (Code.BAD_JSON, 2, "unexpected end of data", "one JSON object a line"),
+        (Code.BAD_TABLE, 3, "a list, not an object", "one JSON object a line"),
+        (Code.BAD_TABLE, 4, "no `reference`", "every row needs id, predicted, reference"),
+        (Code.DUPLICATE, 5, "a second row of id `a`; the first is line 1", "keep one row an id"),
+        (Code.BAD_TABLE, 6, "`id` is True", "a text or a whole number"),
+        (Code.BAD_TABLE, 7, "`predicted` of id `d` is int, not a program", "a text, or a list of steps"),
+        (Code.BAD_TABLE, 8, "`predicted` of id `e` is list, not a program", "a text, or a list of steps"),
+    ]
+
+
+def test_an_unknown_id_is_named_with_the_nearest(write):
+    path = write({"id": "watch_tv2", "predicted": ""}, {"id": "zzz", "predicted": ""})
+    assert faults(path, {"watch_tv": "", "read": ""}) == [
+        (Code.UNKNOWN_ID, 1, "no reference has the id `watch_tv2`", "did you mean `watch_tv`?"),
+        (Code.UNKNOWN_ID, 2, "no reference has the id `zzz`", "ids are those of the references"),
+    ]
+
+
+def test_many_faults_of_a_kind_are_counted(write):
+    found = faults(write(*({"id": n} for n in range(SHOWN + 5))))
+    assert len(found) == SHOWN + 1
+    assert found[-1][:3] == (Code.BAD_TABLE, 0, "and 5 more of this kind")
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (b"", Code.EMPTY),
+        (b"\n \n", Code.EMPTY),
+        (b"\x89PNG\r\n\x1a\n\x00", Code.NOT_TEXT),
+        (b"{\x00}", Code.NOT_TEXT),
+        (b"PAR1 and no more", Code.BAD_TABLE),
+        (b"[Walk] <sofa> (1)", Code.BAD_JSON),
+    ],
+)
+def test_what_is_no_predictions_file(tmp_path, data, code):
+    path = tmp_path / "p.jsonl"
+    path.write_bytes(data)
+    assert [fault[0] for fault in faults(path)] == [code]
+
+
+def test_no_file_and_a_folder(tmp_path):
+    assert [fault[0] for fault in faults(tmp_path / "none.jsonl")] == [Code.MISSING_FILE]
+    assert [fault[0] for fault in faults(tmp_path)] == [Code.UNSUPPORTED_FILE]
+
+
+def test_a_parquet_file_without_a_column(tmp_path):
+    path = tmp_path / "p.parquet"
+    parquet.write_table(pa.table({"id": ["a"], "prediction": ["x"]}), path)
+    ((code, line, message, suggestion),) = faults(path)
+    assert (code, line, message) == (Code.BAD_TABLE, 0, "no column `predicted`, `reference`")
+    assert suggestion == "its columns are id, prediction"
+
+
+def test_windows_and_utf16_files(tmp_path):
+    for encoding in ("utf-16", "utf-8-sig"):
+        path = tmp_path / encoding
+        path.write_bytes((json.dumps(row("ä", None), ensure_ascii=False) + "\r\n").encode(encoding))
+        assert read_pairs(path) == [Pair("ä", None, WALK, 1)]
+
+
+def test_a_huge_line_is_one_line_that_does_not_parse(write):
+    ((_, predicted, *_),) = [(p.id, p.predicted) for p in read_pairs(write(row("a", "[Walk] " + "x" * 10_000_000)))]
+    assert len(predicted) == 1
+    assert isinstance(predicted[0], str)

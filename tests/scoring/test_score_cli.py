@@ -1,0 +1,95 @@
+import json
+import os
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth.cli import app
+from hearth.schemas.graph import to_release
+
+HERE = Path(__file__).resolve().parents[1] / "golden/score"
+PREDICTIONS = "predictions.jsonl"
+
+
+@pytest.fixture
+def score(tmp_path, flat, monkeypatch):
+    """Runs `score` in a folder that holds the golden predictions and the flat."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / PREDICTIONS).write_bytes((HERE / PREDICTIONS).read_bytes())
+    (tmp_path / "flat.json").write_text(json.dumps(to_release(flat)))
+
+    def run(*args):
+        return CliRunner().invoke(app, ["score", *args])
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("name", "args"),
+    [
+        ("lcs.txt", ["lcs", PREDICTIONS]),
+        ("lcs.json", ["lcs", PREDICTIONS, "--json"]),
+        ("program.txt", ["program", PREDICTIONS, "--graph", "flat.json", "--by", "activity"]),
+        ("program.json", ["program", PREDICTIONS, "--graph", "flat.json", "--json"]),
+        ("program_alone.txt", ["program", PREDICTIONS]),
+        ("graphs.txt", ["graphs", "flat.json", "flat.json", "--nodes", "20,22/21"]),
+        ("graphs.json", ["graphs", "flat.json", "flat.json", "--nodes", "20/21", "--match", "swap1", "--json"]),
+    ],
+)
+def test_prints(score, golden, name, args):
+    found = score(*args)
+    assert found.exit_code == 0, found.output
+    golden(name, found.stdout)
+
+
+def test_json_holds_the_mean_and_each_value(score):
+    found = json.loads(score("lcs", PREDICTIONS, "--json").stdout)
+    values = [each["step"] for each in found["scores"]]
+    assert found["mean"]["step"]["mean"] == pytest.approx(sum(values) / len(values))
+    assert [each["id"] for each in found["scores"] if each["missing"]] == ["nothing yet"]
+
+
+def test_the_environment_may_stand_in_the_row(score, tmp_path):
+    row = {"id": "a", "predicted": "[Walk] <cup> (1)", "reference": "[Walk] <cup> (1)"}
+    (tmp_path / "rows.jsonl").write_text(json.dumps({**row, "graph": "flat.json"}))
+    assert json.loads(score("program", "rows.jsonl", "--json").stdout)["mean"]["f1"]["mean"] == 1
+    (tmp_path / "rows.jsonl").write_text(json.dumps({**row, "home": "maple"}))
+    assert json.loads(score("program", "rows.jsonl", "--json").stdout)["mean"]["executable"]["mean"] == 1
+
+
+@pytest.mark.parametrize(
+    ("args", "status", "said"),
+    [
+        (["lcs", "none.jsonl"], 1, "error[MISSING_FILE]"),
+        (["lcs", "flat.json"], 1, "error[BAD_TABLE]: no `id`, `predicted`, `reference`"),
+        (["lcs", PREDICTIONS, "--references", "references.jsonl"], 1, "error[UNKNOWN_ID]"),
+        (["program", "rows.jsonl"], 1, "the environment of `a` (rows.jsonl:1)"),
+        (["graphs", "flat.json", PREDICTIONS, "--nodes", "1"], 1, "error[BAD_JSON]"),
+        (["graphs", "flat.json", "flat.json", "--nodes", "cup"], 1, "error[SYNTAX]"),
+        (["lcs"], 2, "Missing argument"),
+        (["graphs", "flat.json", "flat.json"], 2, "--nodes"),
+    ],
+)
+def test_bad_input_is_one_clear_error(score, tmp_path, args, status, said):
+    (tmp_path / "references.jsonl").write_text('{"id": "other", "reference": ""}\n')
+    (tmp_path / "rows.jsonl").write_text('{"id": "a", "predicted": "", "reference": "", "graph": "none.json"}\n')
+    found = score(*args)
+    assert found.exit_code == status, found.output
+    assert said in found.output
+    assert "Traceback" not in found.output
+
+
+@pytest.mark.parametrize("command", ["lcs", "program", "graphs"])
+def test_help_shows_an_example(score, command):
+    found = score(command, "--help")
+    assert found.exit_code == 0
+    assert f"python cli.py score {command}" in found.output
+
+
+@pytest.mark.skipif("HEARTH_REFRESH" in os.environ, reason="golden files are being written")
+def test_golden_files_are_the_ones_compared():
+    assert {path.name for path in HERE.iterdir()} == {
+        PREDICTIONS,
+        *("lcs.txt", "lcs.json", "program.txt", "program.json", "program_alone.txt", "graphs.txt", "graphs.json"),
+    }
