@@ -8,13 +8,15 @@ from typing import NamedTuple
 class Agent(NamedTuple):
     """One character.
 
+    An edge between two characters stands in the row of the one it goes out from; CLOSE stands in both.
+
     Attributes:
         index: its node's index.
         bit: the set of it alone.
         close: what it is CLOSE to, and what is CLOSE to it.
-        facing, faced: what it is FACING; what is FACING it.
-        inside, contents: what it is INSIDE; what is INSIDE it.
-        on, worn: what it is ON; what is ON it.
+        facing, faced: what it is FACING; the things that are FACING it.
+        inside, contents: what it is INSIDE; the things that are INSIDE it.
+        on, worn: what it is ON; the things that are ON it.
         right, left: what each hand holds.
         origins: where grabbed things came from: (thing, place, kind of relation), for PutObjBack.
     """
@@ -36,3 +38,17 @@ class Agent(NamedTuple):
     def held(self) -> int:
         """What either hand holds."""
         return self.right | self.left
+
+
+def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:
+    """The characters with one replaced, and the others CLOSE to it where it is CLOSE to them, and only there."""
+    return tuple(
+        agent if i == number else _beside(other, agent.bit if agent.close & other.bit else 0, agent.bit)
+        for i, other in enumerate(agents)
+    )
+
+
+def _beside(agent: Agent, close: int, other: int) -> Agent:
+    if agent.close & other == close:
+        return agent
+    return Agent(agent.index, agent.bit, agent.close & ~other | close, *agent[3:])

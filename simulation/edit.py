@@ -15,7 +15,8 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home, agent_row
+from hearth.simulation.building import CHARACTER_PROPERTIES, agent_row
+from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home
 
 _NO_STATES: Mapping[int, Iterable[str]] = MappingProxyType({})
 
@@ -104,7 +105,8 @@ def _append(home: Home, node: Node) -> None:
     elif node.category == ROOM_CATEGORY:
         home.rooms |= bit
     for prop in node.properties:
-        home.properties[prop] = home.properties.get(prop, 0) | bit
+        if name != CHARACTER_CLASS or prop in CHARACTER_PROPERTIES:
+            home.properties[prop] = home.properties.get(prop, 0) | bit
     for rows in home.rows:
         rows.append(0)
     if node.states:
@@ -163,6 +165,8 @@ def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, i
         field = fields.get(relation)
         if field is None or me not in home.agents:
             continue
+        if part and relation != "CLOSE":
+            break  # between two characters it stays with the one it goes out from
         part = True
         number = home.agents.index(me)
         row = list(home.agent_rows[number])

@@ -7,15 +7,12 @@ from functools import cached_property
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge, default
-from hearth.schemas.graph import Box, EnvironmentGraph, Node
-from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, ROOM_CATEGORY, STATE_ID, STATES
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.simulation import building
 from hearth.simulation.affordance import allowed
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, mask_of
+from hearth.simulation.building import Raw, Rows
 from hearth.simulation.nodes import with_states
-
-Rows = list[int]
-Raw = tuple[int, str, int]
-AgentRow = tuple[int, int, int, int, int, int, int, int, int]
 
 AGENT_OUT = {"CLOSE": 0, "FACING": 1, "INSIDE": 3, "ON": 5, "HOLDS_RH": 7, "HOLDS_LH": 8}
 """Where an edge from a character stands in its row of `Home.agent_rows`, which is that of `Agent` without its node."""
@@ -63,99 +60,52 @@ class Home:
 
     def __init__(
         self,
-        nodes: Sequence[Mapping[str, Any]] | Sequence[Node],
-        edges: Iterable[Raw],
+        nodes: Iterable[Mapping[str, Any]] | Iterable[Node],
+        edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw],
         name: str = "",
         knowledge: Knowledge | None = None,
     ) -> None:
         self.name = name
-        self.nodes: list[Any] = list(nodes)
+        self.knowledge = knowledge or default()
         self.restated = 0
         self.base: tuple[Home, int] | None = None
-        self.knowledge = knowledge or default()
-        self.others: list[Raw] = []
-        self._add_nodes()
-        self._add_edges(edges)
+        read = building.read_nodes(nodes)
+        self.nodes, self.ids, self.index, self.classes = read.nodes, read.ids, read.index, read.classes
+        self.by_class, self.properties, self.rooms = read.by_class, read.properties, read.rooms
+        self.states, self.agents = read.states, read.agents
+        rows = building.read_edges(edges, read)
+        self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced = rows[:7]
+        self.between, self.agent_rows, self.others = rows[7:]
         self.reach = Memo(self._reach)
         self.direct_room = Memo(self._direct_room)
 
     @classmethod
     def from_release(cls, data: Mapping[str, Any], name: str = "", knowledge: Knowledge | None = None) -> Home:
-        """A home straight from the release's JSON, without an `EnvironmentGraph` between."""
-        nodes = sorted(data["nodes"], key=lambda node: node["id"])
-        edges = ((e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"])
+        """A home straight from the release's JSON, without an `EnvironmentGraph` between.
+
+        Raises:
+            HearthError: BAD_GRAPH (see `building`).
+        """
+        try:
+            nodes, edges = list(data["nodes"]), list(data["edges"])
+        except (KeyError, TypeError) as error:
+            raise building.bad_graph(f"no environment graph: {type(error).__name__} {error}") from error
         return cls(nodes, edges, name, knowledge)
 
     @classmethod
     def from_graph(cls, graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None = None) -> Home:
-        """A home from a graph; edges to missing nodes are left out (the linter reports them)."""
-        return cls(sorted(graph.nodes, key=lambda node: node.id), graph.edges, name, knowledge)
+        """A home from a graph.
+
+        Raises:
+            HearthError: BAD_GRAPH (see `building`).
+        """
+        return cls(graph.nodes, graph.edges, name, knowledge)
 
     def __len__(self) -> int:
         return len(self.ids)
 
     def __repr__(self) -> str:
         return f"Home({self.name!r}, {len(self)} nodes)"
-
-    def _add_nodes(self) -> None:
-        self.ids: list[int] = []
-        self.classes: list[str] = []
-        self.by_class: dict[str, int] = {}
-        self.properties: dict[str, int] = dict.fromkeys(PROPERTIES, 0)
-        self.rooms = 0
-        states = [0] * len(STATES)
-        agents: list[int] = []
-        bit = 1
-        for node in self.nodes:
-            node_id, class_name, category, properties, node_states = _fields(node)
-            if class_name == CHARACTER_CLASS:
-                agents.append(len(self.ids))
-            elif category == ROOM_CATEGORY:
-                self.rooms |= bit
-            self.ids.append(node_id)
-            self.classes.append(class_name)
-            self.by_class[class_name] = self.by_class.get(class_name, 0) | bit
-            for name in properties:
-                self.properties[name] = self.properties.get(name, 0) | bit
-            for name in node_states:
-                number = STATE_ID.get(name)
-                # Of two states that exclude each other the one said first holds.
-                if number is not None and not states[number ^ 1] & bit:
-                    states[number] |= bit
-            bit <<= 1
-        self.index = {node_id: index for index, node_id in enumerate(self.ids)}
-        self.states = tuple(states)
-        self.agents = tuple(agents)
-
-    def _add_edges(self, edges: Iterable[Raw]) -> None:
-        n = len(self.ids)
-        bits = [1 << i for i in range(n)]
-        index = self.index
-        out: dict[str, Rows] = {name: [0] * n for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN")}
-        held: dict[str, Rows] = {"HOLDS_RH": [0] * n, "HOLDS_LH": [0] * n}
-        rows = out | held
-        for source, relation, target in edges:
-            try:
-                rows[relation][index[source]] |= bits[index[target]]
-            except KeyError:
-                self.others.append((source, relation, target))
-        self.on, self.inside, self.facing, self.between = out["ON"], out["INSIDE"], out["FACING"], out["BETWEEN"]
-        self.bears, self.contents, self.faced = (_transposed(r) for r in (self.on, self.inside, self.facing))
-        self.close = [a | b for a, b in zip(out["CLOSE"], _transposed(out["CLOSE"]), strict=True)]
-        self.holding = held
-        self._part_agents(bits)
-
-    def _part_agents(self, bits: Rows) -> None:
-        """Move the characters' edges out of the things' rows into `agent_rows`."""
-        tables = (self.close, self.facing, self.faced, self.inside, self.contents, self.on, self.bears)
-        hands = (self.holding["HOLDS_RH"], self.holding["HOLDS_LH"])
-        self.agent_rows: list[AgentRow] = [agent_row([table[i] for table in tables + hands]) for i in self.agents]
-        inverse = (self.close, self.faced, self.facing, self.contents, self.inside, self.bears, self.on)
-        for i in self.agents:
-            for table, opposite in zip(tables, inverse, strict=True):
-                for j in indices(table[i]):
-                    opposite[j] &= ~bits[i]
-                table[i] = 0
 
     def node(self, index: int) -> Node:
         """The node as it was given, in the states of the start."""
@@ -227,17 +177,17 @@ class Home:
     @cached_property
     def characters(self) -> int:
         """All characters."""
-        return sum(1 << i for i in self.agents)
+        return mask_of(self.agents)
 
     @cached_property
     def doors(self) -> int:
         """All nodes that are BETWEEN rooms."""
-        return sum(1 << i for i, row in enumerate(self.between) if row)
+        return mask_of(i for i, row in enumerate(self.between) if row)
 
     @cached_property
     def furniture(self) -> int:
         """All nodes of the category Furniture."""
-        return sum(1 << i for i in range(len(self)) if self.node(i).category == "Furniture")
+        return mask_of(i for i in range(len(self)) if self.node(i).category == "Furniture")
 
     @cached_property
     def near(self) -> Rows:
@@ -275,36 +225,15 @@ class Home:
         return (rooms & -rooms).bit_length() - 1
 
 
-def agent_row(row: Iterable[int]) -> AgentRow:
-    """The nine rows of a character, from any iterable."""
-    close, facing, faced, inside, contents, on, worn, right, left = row
-    return close, facing, faced, inside, contents, on, worn, right, left
-
-
-def _fields(node: Mapping[str, Any] | Node) -> tuple[int, str, str, Iterable[str], Iterable[str]]:
-    if isinstance(node, Node):
-        return node.id, node.class_name, node.category, node.properties, node.states
-    return node["id"], node["class_name"], node["category"], node["properties"], node["states"]
-
-
 def _node(data: Mapping[str, Any]) -> Node:
     box = data.get("bounding_box")
     return Node(
         data["id"],
         data["class_name"],
-        data["category"],
-        tuple(data["properties"]),
-        tuple(data["states"]),
+        data.get("category") or "",
+        tuple(data.get("properties") or ()),
+        tuple(data.get("states") or ()),
         data.get("prefab_name"),
         Box(tuple(box["center"]), tuple(box["size"])) if box else None,
         data.get("yaw"),
     )
-
-
-def _transposed(rows: Rows) -> Rows:
-    columns = [0] * len(rows)
-    for i, row in enumerate(rows):
-        bit = 1 << i
-        for j in indices(row):
-            columns[j] |= bit
-    return columns

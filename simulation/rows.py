@@ -76,8 +76,9 @@ def is_close(world: World, agent: Agent, i: int) -> bool:
         return True
     home = world.home
     if home.characters >> i & 1:
-        other = next(a for a in world.agents if a.index == i)
-        return bool(mine & (other.close | other.on))
+        other = character(world, i)
+        if mine & (other.close | other.on):
+            return True
     if len(world.agents) == 1 and not mine & agent.bit:
         return False
     return any(mine & other.bit and (other.close | other.worn) >> i & 1 for other in world.agents)
@@ -88,7 +89,12 @@ def is_facing(world: World, agent: Agent, i: int) -> bool:
     mine = agent.facing
     if mine >> i & 1 or mine & faced(world, i):
         return True
-    return len(world.agents) > 1 and any(mine & other.bit and other.facing >> i & 1 for other in world.agents)
+    home = world.home
+    if not mine & home.characters and not home.characters >> i & 1:
+        return False
+    if home.characters >> i & 1 and mine & character(world, i).faced:
+        return True
+    return any(mine & other.bit and other.facing >> i & 1 for other in world.agents)
 
 
 def room_of(world: World, i: int) -> int:
@@ -102,8 +108,8 @@ def room_of(world: World, i: int) -> int:
         if room >= 0:
             return room
     if home.characters >> i & 1:
-        return agent_room(world, next(a for a in world.agents if a.index == i))
-    return _search_room(world, inside(world, i), 1 << i)
+        return agent_room(world, character(world, i))
+    return _search_room(world, containers(world, i), 1 << i)
 
 
 def agent_room(world: World, agent: Agent) -> int:
@@ -122,21 +128,37 @@ def _search_room(world: World, frontier: int, seen: int) -> int:
             return (found & -found).bit_length() - 1
         seen |= frontier
         outer = 0
-        for i in indices(frontier & ~world.home.characters):
-            outer |= inside(world, i)
+        for i in indices(frontier):
+            outer |= containers(world, i)
         frontier = outer & ~seen
     return -1
 
 
 def closed_container(world: World, i: int) -> int:
     """Index of a closed thing that hides i, or -1."""
-    hiding = inside(world, i) & ~world.home.rooms & world.states[0]
+    hiding = containers(world, i) & ~world.home.rooms & world.states[0]
     return (hiding & -hiding).bit_length() - 1
 
 
+def character(world: World, i: int) -> Agent:
+    """The character whose node has that index."""
+    return next(agent for agent in world.agents if agent.index == i)
+
+
+def containers(world: World, i: int) -> int:
+    """What i is INSIDE, characters included, and whether or not it is a character itself."""
+    if world.home.characters >> i & 1:
+        return character(world, i).inside
+    found = inside(world, i)
+    for agent in world.agents:
+        if agent.contents >> i & 1:
+            found |= agent.bit
+    return found
+
+
 def bearing(world: World, i: int) -> int:
-    """Everything ON i, characters included."""
-    found = bears(world, i)
+    """Everything ON i, characters included, and whether or not it is a character itself."""
+    found = character(world, i).worn if world.home.characters >> i & 1 else bears(world, i)
     for agent in world.agents:
         if agent.on >> i & 1:
             found |= agent.bit

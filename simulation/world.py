@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation import rows
-from hearth.simulation.agent import Agent
+from hearth.simulation.agent import Agent, replaced
 from hearth.simulation.change import Change, between
 from hearth.simulation.home import Home
 from hearth.simulation.moved import NOTHING, Moved
@@ -43,7 +43,7 @@ class World:
 
     def with_agent(self, number: int, agent: Agent) -> World:
         """The same world with one agent's edges replaced."""
-        agents = (agent,) if len(self.agents) == 1 else (*self.agents[:number], agent, *self.agents[number + 1 :])
+        agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)
         return World(self.home, self.states, agents, self.moved)
 
     def has_state(self, node_id: int, state: str) -> bool:

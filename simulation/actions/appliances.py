@@ -28,7 +28,7 @@ def open_(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
         need_able(world, "Open", o)
         or need_close(world, agent, o)
         or need_free_hand(world, agent, o)
-        or need_state(world, Code.IS_OPEN, CLOSED, o)
+        or _need_pair(world, Code.IS_OPEN, CLOSED, o)
     )
     if failure is None and world.states[ON] >> o & 1:
         failure = refuse(world, Code.IS_ON, "not ON", "ON", o)
@@ -38,7 +38,7 @@ def open_(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
 def close(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Close what is open."""
     agent = world.agents[number]
-    failure = need_able(world, "Close", o) or need_close(world, agent, o) or need_state(world, Code.IS_CLOSED, OPEN, o)
+    failure = need_able(world, "Close", o) or need_close(world, agent, o) or _need_pair(world, Code.IS_CLOSED, OPEN, o)
     return _set(world, CLOSED, o) if failure is None else failure
 
 
@@ -75,6 +75,12 @@ def type_(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
     agent = world.agents[number]
     failure = need_close(world, agent, o) or need_able(world, "Type", o)
     return world if failure is None else failure
+
+
+def _need_pair(world: World, code: Code, state: int, o: int) -> Failure | None:
+    """Refuse what is already open or closed with `code`, what is neither with one of its own."""
+    either = (world.states[OPEN] | world.states[CLOSED]) >> o & 1
+    return need_state(world, code if either else Code.NOT_OPENABLE_STATE, state, o)
 
 
 def _need_plug(world: World, number: int, o: int, action: str) -> Failure | None:

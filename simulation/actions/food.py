@@ -22,7 +22,7 @@ def eat(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fail
     failure = need_close(world, world.agents[number], o)
     if failure is None:
         eatable = world.home.properties["EATABLE"]
-        if not eatable >> o & 1 and not rows.bears(world, o) & eatable:
+        if not eatable >> o & 1 and not rows.bearing(world, o) & eatable:
             failure = refuse(world, Code.NOTHING_TO_EAT, "EATABLE, or something EATABLE on it", "neither", o)
     return world if failure is None else failure
 

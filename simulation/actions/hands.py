@@ -107,14 +107,25 @@ def _put(
     o, kind, s = edge
     agent = world.agents[number]
     close = agent.close | 1 << s
-    if s == agent.index:
-        worn = agent.worn | 1 << o if kind == kinds.ON else agent.worn
-        freed = _freed(agent, o, close | 1 << o, worn, memory)
-        return world.with_agent(number, freed)
-    edges = (edge,) if kind == kinds.CLOSE else ((o, kinds.CLOSE, s), edge)
     freed = _freed(agent, o, close, agent.worn, memory)
+    if world.home.characters >> s & 1:
+        return _put_at_character(world.with_agent(number, freed), edge)
+    edges = (edge,) if kind == kinds.CLOSE else ((o, kinds.CLOSE, s), edge)
     agents = (freed,) if len(world.agents) == 1 else world.with_agent(number, freed).agents
     return World(world.home, world.states, agents, add(world.moved, *edges))
+
+
+def _put_at_character(world: World, edge: tuple[int, int, int]) -> World:
+    """Leave a thing with a character, oneself or another: its edges stand in the character's rows."""
+    o, kind, s = edge
+    bit = 1 << o
+    number, (index, me, close, facing, faced, inside, contents, on, worn, right, left, memory) = next(
+        (number, agent) for number, agent in enumerate(world.agents) if agent.index == s
+    )
+    worn |= bit if kind == kinds.ON else 0
+    contents |= bit if kind == kinds.INSIDE else 0
+    agent = Agent(index, me, close | bit, facing, faced, inside, contents, on, worn, right, left, memory)
+    return world.with_agent(number, agent)
 
 
 def _freed(agent: Agent, o: int, close: int, worn: int, memory: tuple[tuple[int, int, int], ...]) -> Agent:

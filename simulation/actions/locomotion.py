@@ -63,10 +63,7 @@ def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World
         near = 1 << o | home.properties["BODY_PART"] | (rows.inside(world, o) & ~home.rooms)
         if home.properties["SURFACES"] >> o & 1:
             near |= rows.bears(world, o)
-    if home.properties["SURFACES"] >> o & 1:
-        for other in world.agents:
-            if other.on >> o & 1:
-                near |= other.bit
+    near |= _characters_near(world, o)
     held = agent.right | agent.left
     for i in indices(held):
         moved = carry(moved, i, room)
@@ -75,6 +72,19 @@ def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World
     if len(world.agents) == 1:
         return World(home, world.states, (arrived,), moved)
     return World(home, world.states, _seen_by_others(world.agents, number, arrived, held), moved)
+
+
+def _characters_near(world: World, o: int) -> int:
+    """What a walk to o brings the character close to besides things: who is ON o, who o is INSIDE, what o is INSIDE."""
+    bit = 1 << o
+    surface = world.home.properties["SURFACES"] & bit
+    near = 0
+    for other in world.agents:
+        if other.contents & bit or (surface and other.on & bit):
+            near |= other.bit
+        if other.bit == bit:
+            near |= other.inside & ~world.home.rooms
+    return near
 
 
 def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held: int) -> tuple[Agent, ...]:
