@@ -1,0 +1,118 @@
+"""Goals are counted, and the counts follow the changes."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hearth.kb.knowledge import default
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Failure
+from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.engine import act
+from hearth.simulation.goals import Progress
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
+
+THINGS = ("GRABBABLE", "MOVABLE")
+GRAPH = EnvironmentGraph(
+    (
+        Node(1, "kitchen", "Rooms"),
+        Node(2, "character", "Characters"),
+        Node(3, "plate", "Props", THINGS, ("DIRTY",)),
+        Node(4, "plate", "Props", THINGS, ("CLEAN",)),
+        Node(5, "table", "Furniture", ("SURFACES",)),
+        Node(6, "dishwasher", "Appliances", ("CAN_OPEN", "CONTAINERS", "HAS_SWITCH"), ("CLOSED", "OFF")),
+    ),
+    (Edge(2, "INSIDE", 1), *(Edge(i, "INSIDE", 1) for i in (3, 4, 5, 6)), Edge(3, "INSIDE", 6), Edge(4, "ON", 5)),
+)
+SET_TABLE = Goal.of((Predicate("ON", "plate", "table"), 2), Predicate("CLEAN", 3), Predicate("HOLDS", "agent", "plate"))
+
+
+def start():
+    return World.start(Home.from_graph(GRAPH, "kitchen", default()))
+
+
+def step(action, *nodes):
+    return Step(action, tuple(ObjectRef("thing", 1, node) for node in nodes))
+
+
+def follow(world, progress, *steps):
+    for instruction in steps:
+        after = act(world, instruction)
+        assert not isinstance(after, Failure), after.message()
+        progress = progress.after(after, after.changes(world))
+        world = after
+    return world, progress
+
+
+def test_counts_follow_what_is_done():
+    progress = Progress.start(SET_TABLE, start())
+    assert progress.counts == (1, 0, 0) and not progress.satisfied
+    world, progress = follow(
+        start(), progress, step("Walk", 6), step("Open", 6), step("Walk", 3), step("Grab", 3), step("Wash", 3)
+    )
+    assert progress.counts == (1, 1, 1)
+    assert str(progress.unmet().counts[0][0]) == "ON(plate, table)" and progress.unmet().counts[0][1] == 1
+    world, progress = follow(world, progress, step("Walk", 5), step("PutBack", 3, 5), step("Grab", 4))
+    assert progress.counts == (1, 1, 1)
+    world, progress = follow(world, progress, step("PutBack", 4, 5), step("Grab", 3))
+    assert progress.counts == (1, 1, 1)
+    assert not progress.satisfied
+
+
+def test_a_satisfied_goal_has_nothing_unmet():
+    goal = Goal.of(Predicate("ON", "plate", "table"), Predicate("INSIDE", 3, "dishwasher"))
+    progress = Progress.start(goal, start())
+    assert progress.satisfied and progress.unmet() == Goal(())
+
+
+def test_two_books_in_two_hands_are_two():
+    world = start()
+    goal = Goal.of((Predicate("HOLDS", "agent:0", "plate"), 2))
+    progress = Progress.start(goal, world)
+    _, progress = follow(world, progress, step("Walk", 5), step("Grab", 4), step("Walk", 6), step("Open", 6))
+    assert progress.counts == (1,)
+
+
+@pytest.mark.parametrize(
+    "predicate",
+    [
+        Predicate("ON", "plato", "table"),
+        Predicate("UNDER", "plate", "table"),
+        Predicate("SHINY", "plate"),
+        Predicate("HOLDS", "agent:3", "plate"),
+        Predicate("ON", 99, "table"),
+    ],
+)
+def test_a_goal_about_nothing_is_refused(predicate):
+    with pytest.raises(HearthError):
+        Progress.start(Goal.of(predicate), start())
+
+
+ACTIONS = ["Walk", "Find", "Grab", "PutBack", "PutIn", "Open", "Close", "Wash", "Drop", "Sit", "TurnTo"]
+GOAL = Goal.of(
+    Predicate("ON", "plate", "table"),
+    Predicate("INSIDE", "plate", "dishwasher"),
+    Predicate("CLOSE", "agent", "plate"),
+    Predicate("CLOSE", "plate", "agent"),
+    Predicate("HOLDS", "agent", "plate"),
+    Predicate("OPEN", "dishwasher"),
+    Predicate("FACING", "agent", 5),
+    Predicate("CLEAN", "plate"),
+)
+
+
+@given(st.lists(st.tuples(st.sampled_from(ACTIONS), st.integers(1, 6), st.integers(1, 6)), max_size=30))
+def test_following_the_changes_is_looking_again(plan):
+    world = start()
+    progress = Progress.start(GOAL, world)
+    for action, first, second in plan:
+        nodes = (first, second) if action in ("PutBack", "PutIn") else (first,)
+        after = act(world, step(action, *nodes))
+        if isinstance(after, Failure):
+            continue
+        progress = progress.after(after, after.changes(world))
+        world = after
+        assert progress.counts == Progress.start(GOAL, world).counts
