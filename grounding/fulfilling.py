@@ -65,28 +65,36 @@ def _stands(relation: str) -> Fulfil:
 
 def _free(draft: Draft, condition: Condition) -> None:
     """Move what is on the seat to the floor of its room, until one more fits."""
+    _cleared(draft, _node(draft, condition.objects[0]), -1)
+
+
+def _cleared(draft: Draft, seat: int, which: int) -> int:
+    """Move those of these nodes that the home has on a seat to the floor of their room; how many."""
     home = draft.base.home
-    seat = _node(draft, condition.objects[0])
     i = home.index.get(seat)
     if i is None:
-        return
-    for j in indices(home.bears[i]):
+        return 0
+    gone = 0
+    for j in indices(home.bears[i] & which):
         node_id = home.ids[j]
         if node_id not in draft.taken and node_id not in draft.room:
             room = draft.room_of(node_id)
             draft.lift(node_id)
             draft.settle(node_id, room)
+            gone += 1
+    return gone
 
 
 def _occupied(draft: Draft, condition: Condition) -> None:
-    """Fill the seat to its limit with what belongs there."""
+    """Fill the seat to its limit with what belongs there and can be taken off it."""
     knowledge = draft.base.knowledge
     seat = _node(draft, condition.objects[0])
     name = condition.objects[0][0]
+    fixed = _cleared(draft, seat, ~draft.base.home.able("Grab"))
     limit = max(knowledge.seat_limit(name), knowledge.bed_limit(name))
     belongs = [p.object for p in knowledge.holds(name) if p.relation == "ON"] or ["book", "cat", "pillow"]
     small = [n for n in belongs if _graspable(draft, n)] or ["book"]
-    for _ in range(limit - draft.crowd(seat)):
+    for _ in range(limit - draft.crowd(seat) + fixed):
         node_id = draft.add(draft.rng.choice(small), draft.room_of(seat))
         draft.put(node_id, "ON", seat)
 

@@ -17,6 +17,7 @@ from hearth.grounding.spoiling import closes
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.program import Program
+from hearth.simulation.bits import indices
 
 PATIENCE = 8
 """Draws in a row that bring nothing new before no more are made."""
@@ -81,10 +82,12 @@ class Chances:
         kinds: the probability of each kind, for every condition it applies to.
         draws: weights of the ways to combine them: `each` with its own probability (thesis 5.5.4), exactly `one`, or
             exactly `two`.
+        most: perturbations of one draw.
     """
 
     kinds: Mapping[str, float]
     draws: Mapping[str, float]
+    most: int = 6
 
 
 Kind = Callable[[Case], Iterator[Perturbation]]
@@ -131,7 +134,7 @@ def _chosen(every: Sequence[Perturbation], chances: Chances, rng: Random) -> tup
     chosen: list[Perturbation] = []
     for one in picked:
         claims = one.claims()
-        if not claims & claimed:
+        if not claims & claimed and len(chosen) < chances.most:
             claimed |= claims
             chosen.append(one)
     return tuple(one for one in every if one in chosen)
@@ -157,6 +160,15 @@ def _swap(kind: str, pairs: Mapping[str, str]) -> Kind:
     return swap
 
 
+def _plugged(case: Case) -> Iterator[Perturbation]:
+    """What was plugged in is not, or the reverse, if it has a plug that can be put in."""
+    for one in _swap("plugged", {"plugged": "unplugged", "unplugged": "plugged"})(case):
+        home = case.base.home
+        lacking = (i for i in case.base.instances(one.about.objects[0][0]) if not home.able("PlugIn") >> i & 1)
+        if next(lacking, -1) < 0 and has(case.knowledge, one.about.objects[0][0], "HAS_PLUG"):
+            yield one
+
+
 def _drop(kind: str, *names: str) -> Kind:
     """Every condition of these names is dropped."""
 
@@ -174,9 +186,7 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
         if condition.name == "nearby":
             yield Perturbation("at_reach", (condition,))
         elif condition.name == "atreach" and condition.objects[0] != condition.objects[1]:
-            others = (c for c in _placing(case, condition.objects[0]) if c.name != "location" and c != condition)
-            added = Condition("apart", condition.objects, condition.step)
-            yield Perturbation("at_reach", (condition, *others), (added,))
+            yield _replaced(case, "at_reach", condition, Condition("apart", condition.objects, condition.step))
 
 
 def _container(case: Case) -> Iterator[Perturbation]:
@@ -227,8 +237,17 @@ def _door(case: Case) -> Iterator[Perturbation]:
     """The doors of the room in which the program begins are closed; the character is in another."""
     resting = any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions)
     number, first = next(((n, s) for n, s in enumerate(case.program.steps) if s.objects), (0, None))
-    if first is not None and not resting and first.action in ("Walk", "Run", "Find"):
+    if first is not None and not resting and first.action in ("Walk", "Run") and _has_door(case, first.objects[0].name):
         yield Perturbation("door", (), (Condition("shut_in", (first.objects[0].key,), number),))
+
+
+def _has_door(case: Case, room: str) -> bool:
+    """Whether the name is a room's, and each room that may serve as it has a door that closes."""
+    home = case.base.home
+    doors = list(indices(home.doors & home.able("Close")))
+    return case.knowledge.is_room(room) and all(
+        any(home.between[door] >> i & 1 for door in doors) for i in case.base.rooms(room)
+    )
 
 
 def _pet(case: Case) -> Iterator[Perturbation]:
@@ -260,7 +279,7 @@ PERTURBATIONS: dict[str, Kind] = {
     "sitting": _drop("sitting", "sitting"),
     "lying": _drop("lying", "lying"),
     "at_reach": _at_reach,
-    "plugged": _swap("plugged", {"plugged": "unplugged", "unplugged": "plugged"}),
+    "plugged": _plugged,
     "on": _swap("on", {"is_on": "is_off", "is_off": "is_on"}),
     "open": _swap("open", {"open": "closed", "closed": "open"}),
     "free": _swap("free", {"free": "occupied", "occupied": "free"}),

@@ -1,4 +1,4 @@
-"""Augmenting one program in one home: perturb what it relies on, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
+"""Augmenting a program in a home: perturb what it relies on, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def load_chances(path: Path) -> Chances:
     faults = list(_faults(data))
     if faults:
         raise HearthError.of(Code.BAD_TABLE, "; ".join(faults), file=str(path), suggestion=_PARTS)
-    return Chances(dict(data["kinds"]), dict(data["draws"]))
+    return Chances(dict(data["kinds"]), dict(data["draws"]), data.get("most", Chances.most))
 
 
 _PARTS = "`kinds` gives each perturbation a probability; `draws` gives each, one and two a weight"

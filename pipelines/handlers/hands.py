@@ -16,13 +16,12 @@ _CLOTHS = ("rag", "towel", "sponge", "paper_towel", "cloth_napkin", "napkin", "d
 def no_free_hand(trouble: Trouble) -> Edit | None:
     """Put one thing down, and take it up again after: at once, or when the hand is free again that the step fills."""
     held = [trouble.world.home.index[node] for node in trouble.failure.objects[1:]]
-    things = [thing for thing in trouble.refs(held) if thing not in trouble.step.objects] or list(trouble.refs(held))
-    thing = max(things, key=lambda one: _needed_after(trouble, one))
+    spare = [thing for thing in trouble.refs(held) if not _is_tool(trouble, thing)]
+    if not spare:
+        return None
+    thing = max(spare, key=lambda one: _idleness(trouble, one))
     down, up = trouble.does("Release", thing), trouble.does("Grab", thing)
-    if trouble.step.action == "Cut" and "knife" in thing.name and len(things) > 1:
-        thing = next(one for one in things if one is not thing)
-        down, up = trouble.does("Release", thing), trouble.does("Grab", thing)
-    after = _hand_is_free(trouble)
+    after = _hand_is_free(trouble, thing)
     if after is None:
         return before(trouble, "no_free_hand", down)
     return around(trouble, "no_free_hand", (down,), after, (up,))
@@ -49,25 +48,44 @@ def no_origin(trouble: Trouble) -> Edit | None:
     return replaced(trouble, "no_origin", trouble.does("PutBack" if relation == "ON" else "PutIn", thing, support))
 
 
-def _needed_after(trouble: Trouble, thing: ObjectRef) -> int:
-    """In how many steps the program needs a thing: far too many when never."""
+def _is_tool(trouble: Trouble, thing: ObjectRef) -> bool:
+    """Whether the failing step is done with the thing: its own object, or the knife that cuts."""
+    return thing in trouble.step.objects or (trouble.step.action == "Cut" and "knife" in thing.name)
+
+
+def _idleness(trouble: Trouble, thing: ObjectRef) -> tuple[bool, int]:
+    """How little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
+    wanted = any(fact.name == "HOLDS" and fact.target == thing.key for fact in trouble.goal)
+    return (not wanted, _needed_in(trouble, thing))
+
+
+def _needed_in(trouble: Trouble, thing: ObjectRef) -> int:
+    """In how many steps the program needs a thing; one more than it has left when never."""
     later = trouble.program.steps[trouble.at :]
-    return next((number for number, step in enumerate(later) if thing in step.objects), len(later))
+    return next((number for number, step in enumerate(later) if thing in step.objects), len(later) + 1)
 
 
-def _hand_is_free(trouble: Trouble) -> int | None:
-    """Number of the step after which a hand is free again: the failing one, unless it fills the hand itself."""
+def _hand_is_free(trouble: Trouble, thing: ObjectRef) -> int | None:
+    """Number of the step after which the thing can be taken up again; None when it can't.
+
+    That is the failing step, unless it fills the hand; then the step that empties it if the program needs the thing
+    later, else the last one if a hand is empty and the character on its feet by then.
+    """
     if trouble.step.action != "Grab":
         return trouble.at
-    taken = 1
-    for number in range(trouble.at + 1, len(trouble.program.steps)):
-        step = trouble.program.steps[number]
+    needed = trouble.at + _needed_in(trouble, thing)
+    steps = trouble.program.steps
+    last = len(steps) - 1
+    filled, resting = 0, trouble.resting
+    for number in range(trouble.at, len(steps)):
+        step = steps[number]
         if step.agent != trouble.failure.agent:
             continue
-        taken += (step.action == "Grab") - (step.action in HAND_FREEING)
-        if taken == 0:
-            return number
-    return None
+        filled += (step.action == "Grab") - (step.action in HAND_FREEING)
+        resting = step.action in ("Sit", "Lie") or (resting and step.action != "StandUp")
+        if filled <= 0 and needed <= len(steps):
+            return number if number < needed else None
+    return last if filled <= 0 and not resting else None
 
 
 def _wanted(trouble: Trouble) -> int | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from hearth.pipelines.handlers.common import Edit, Trouble, before, removed
+from hearth.pipelines.handlers.common import Edit, Splice, Trouble, before, removed
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
 
@@ -37,8 +37,10 @@ def occupied(trouble: Trouble) -> Edit | None:
     there = [home.index[node] for node in trouble.failure.objects[1:]]
     too_many = len(there) - home.limit(seat, trouble.step.action == "Lie") + 1
     loose = [i for i in there if home.able("Grab") >> i & 1 and not home.characters >> i & 1]
+    taken = trouble.seat_taken()
     if too_many > len(loose):
-        return None
+        mine = too_many == len(loose) + 1 and taken is not None and taken[2].node == trouble.failure.objects[0]
+        return Edit("occupied_by_itself", (Splice(taken[0], 1),)) if mine and taken is not None else None
     named = {ref.node for ref in trouble.program.objects()}
     loose.sort(key=lambda i: (home.ids[i] in named, i))
     things = trouble.refs(loose[:too_many])
