@@ -42,6 +42,18 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     )
 
 
+def open_rooms(world: World, agent: Agent) -> int:
+    """The rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
+    home = world.home
+    start = rows.agent_room(world, agent)
+    closed = home.doors & world.states[CLOSED_STATE]
+    if start < 0 or not closed:
+        return home.rooms
+    reached, _ = _flood(world, start, home.doors & ~closed)
+    beyond, _ = _flood(world, start, home.doors)
+    return home.rooms & (reached | ~beyond)
+
+
 def side(world: World, agent: Agent, door: int, room: int) -> int:
     """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
     one that it is BETWEEN and that can be; else `room` again.

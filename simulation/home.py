@@ -195,6 +195,16 @@ class Home:
         return [a | b for a, b in zip(self.close, self.on, strict=True)]
 
     @cached_property
+    def around(self) -> Rows:
+        """For each node, what is close to who is CLOSE to it: its CLOSE row and what is ON it."""
+        return [a | b for a, b in zip(self.close, self.bears, strict=True)]
+
+    @cached_property
+    def containing(self) -> int:
+        """All nodes that something is INSIDE at the start."""
+        return mask_of(i for i, row in enumerate(self.contents) if row)
+
+    @cached_property
     def edges(self) -> list[Raw]:
         """Every edge between things at the start, the characters' own left out."""
         found: list[Raw] = []
