@@ -1,0 +1,115 @@
+"""Triangle soup with its paint: the one thing that recipes make and scenes are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Ints = NDArray[np.int16]
+
+ATTRIBUTES = 5
+"""Columns of `Mesh.surface`: linear red, green, blue, glow, shine."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Mesh:
+    """T triangles, each with its own corners, so that edges are sharp unless normals say otherwise.
+
+    Models stand on y = 0 around the origin, face +z, and are in metres.
+
+    Attributes:
+        corners: (T, 3, 3) positions.
+        normals: (T, 3, 3) unit vectors, one a corner.
+        uvs: (T, 3, 2) texture coordinates, in tiles of the texture.
+        surface: (T, 5) linear colour, glow (light it sends out by itself) and shine (0 matt, 1 polished).
+        textures: (T,) slots of `textures.SLOTS`.
+    """
+
+    corners: Floats
+    normals: Floats
+    uvs: Floats
+    surface: Floats
+    textures: Ints
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+    def __add__(self, other: Mesh) -> Mesh:
+        return join((self, other))
+
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest corner of the bounding box; zeros for an empty mesh."""
+        if not len(self):
+            return np.zeros(3, np.float32), np.zeros(3, np.float32)
+        points = self.corners.reshape(-1, 3)
+        return points.min(axis=0), points.max(axis=0)
+
+
+def empty() -> Mesh:
+    """No triangles."""
+    return Mesh(
+        np.zeros((0, 3, 3), np.float32),
+        np.zeros((0, 3, 3), np.float32),
+        np.zeros((0, 3, 2), np.float32),
+        np.zeros((0, ATTRIBUTES), np.float32),
+        np.zeros(0, np.int16),
+    )
+
+
+def join(meshes: Iterable[Mesh]) -> Mesh:
+    """All triangles of all, in that order."""
+    parts = [mesh for mesh in meshes if len(mesh)]
+    if not parts:
+        return empty()
+    if len(parts) == 1:
+        return parts[0]
+    return Mesh(
+        np.concatenate([mesh.corners for mesh in parts]),
+        np.concatenate([mesh.normals for mesh in parts]),
+        np.concatenate([mesh.uvs for mesh in parts]),
+        np.concatenate([mesh.surface for mesh in parts]),
+        np.concatenate([mesh.textures for mesh in parts]),
+    )
+
+
+def shift(mesh: Mesh, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Mesh:
+    """Moved by (x, y, z) metres."""
+    return replace(mesh, corners=mesh.corners + np.array((x, y, z), np.float32))
+
+
+def transform(mesh: Mesh, matrix: Floats, offset: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
+    """Turned by the rotation `matrix` (3, 3), then moved by `offset`."""
+    turn_ = np.asarray(matrix, np.float32).T
+    return replace(
+        mesh, corners=mesh.corners @ turn_ + np.array(tuple(offset), np.float32), normals=mesh.normals @ turn_
+    )
+
+
+def stretch(mesh: Mesh, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Mesh:
+    """Scaled along the axes about the origin; normals stay perpendicular to their surfaces."""
+    scale = np.array((x, y, z), np.float32)
+    normals = mesh.normals / scale
+    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
+    return replace(mesh, corners=mesh.corners * scale, normals=normals)
+
+
+def rotation(axis: str, degrees: float) -> Floats:
+    """The matrix that turns by `degrees` about `axis` (x, y or z), right-handed: y by 90 takes +z to +x."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    rows = {
+        "x": ((1, 0, 0), (0, c, -s), (0, s, c)),
+        "y": ((c, 0, s), (0, 1, 0), (-s, 0, c)),
+        "z": ((c, -s, 0), (s, c, 0), (0, 0, 1)),
+    }
+    return np.array(rows[axis], np.float32)
+
+
+def turn(mesh: Mesh, axis: str, degrees: float, about: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
+    """Turned by `degrees` about the line through `about` along `axis`."""
+    pivot = np.array(tuple(about), np.float32)
+    matrix = rotation(axis, degrees)
+    return transform(mesh, matrix, pivot - matrix @ pivot)

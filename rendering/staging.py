@@ -1,0 +1,262 @@
+"""From an environment graph to a scene: which model stands where, and what shines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import cos, radians, sin
+
+from hearth.kb.knowledge import Knowledge, default
+from hearth.rendering.figure import Figure
+from hearth.rendering.lights import Daylight, Light, daylight, lamp, window
+from hearth.rendering.meshes.catalog import RECIPES
+from hearth.rendering.meshes.look import Size
+from hearth.rendering.models import choice_of, model_of
+from hearth.rendering.scene import Scene, Thing
+from hearth.rendering.shell import walls_of
+from hearth.schemas.graph import Box, EnvironmentGraph, Node
+from hearth.schemas.rng import derive
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+from hearth.simulation.homes.forms import form
+
+Point = tuple[float, float, float]
+
+UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
+"""Categories that are not objects to be drawn; characters are drawn as figures."""
+
+BUILDING = ("floor", "wall", "ceiling")
+
+LIQUIDS = {
+    "water": "#a9d2e6",
+    "coffee": "#4a2c1a",
+    "tea": "#a8662c",
+    "milk": "#f4f1ea",
+    "juice": "#e8922e",
+    "wine": "#6b1d2e",
+    "beer": "#d8a23a",
+    "alcohol": "#b87a34",
+    "soup": "#c88a3a",
+    "sauce": "#a8342e",
+    "oil": "#d8c04a",
+    "dish_soap": "#8fd0c0",
+    "cleaning_solution": "#9fc8d8",
+    "milkshake": "#e9c3cc",
+}
+"""Classes that fill what they are INSIDE, and their colours."""
+
+STRENGTH = {"ceiling_lamp": 2.3, "ceiling_fan": 1.8, "floor_lamp": 1.4, "candle": 0.15, "fireplace": 1.2}
+"""How bright a lamp is by its recipe; others 0.7."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A graph, prepared for taking scenes of it at many moments.
+
+    Attributes:
+        graph: the home, with boxes.
+        knowledge: for classes without a recipe of their own.
+        seed: decides colours and variants.
+        hour: of the day, 0 to 24.
+    """
+
+    graph: EnvironmentGraph
+    knowledge: Knowledge
+    seed: int = 0
+    hour: float = 10.0
+
+    @cached_property
+    def day(self) -> Daylight:
+        """Sun and sky."""
+        return daylight(self.hour)
+
+    @cached_property
+    def rooms(self) -> dict[int, Node]:
+        """Rooms by id."""
+        return {node.id: node for node in self.graph.nodes if node.category == ROOM_CATEGORY}
+
+    @cached_property
+    def room_of(self) -> dict[int, int]:
+        """Node id -> id of the room it is INSIDE."""
+        return {e.source: e.target for e in self.graph.edges if e.relation == "INSIDE" and e.target in self.rooms}
+
+    @cached_property
+    def laden(self) -> frozenset[int]:
+        """Nodes that something is ON or INSIDE."""
+        return frozenset(e.target for e in self.graph.edges if e.relation in ("ON", "INSIDE"))
+
+    @cached_property
+    def sunk(self) -> dict[int, Box]:
+        """Counter id -> box of the basin that is sunk into it."""
+        nodes = {node.id: node for node in self.graph.nodes}
+        found = {}
+        for edge in self.graph.edges:
+            source, target = nodes.get(edge.source), nodes.get(edge.target)
+            if edge.relation in ("ON", "INSIDE") and source and target and source.box and target.box:
+                if source.class_name == "sink" and choice_of(target.class_name, self.knowledge).recipe == "counter":
+                    found[target.id] = source.box
+        return found
+
+    @cached_property
+    def jambs(self) -> tuple[Node, ...]:
+        """The doorways."""
+        return tuple(node for node in self.graph.nodes if node.class_name == "doorjamb" and node.box)
+
+    def seed_of(self, node: Node) -> int:
+        """What decides a node's colours: furniture of one class in one room is alike."""
+        if (
+            node.category in ("Furniture", "Doors", "Windows", "Walls", "Floor", "Ceiling")
+            or "curtain" in node.class_name
+        ):
+            return derive(self.seed, "look", self.room_of.get(node.id, 0), node.class_name)
+        return derive(self.seed, "look", node.id)
+
+    def scene(
+        self, nodes: Iterable[Node] | None = None, figures: Iterable[tuple[Node, Figure, Point, float]] = ()
+    ) -> Scene:
+        """The scene of a moment.
+
+        Args:
+            nodes: the graph's nodes as they are now: boxes, yaws and states; as in the graph when None. A node
+                without a box is not there.
+            figures: for each character its node, pose, place on the floor and yaw.
+        """
+        present = [
+            node for node in (self.graph.nodes if nodes is None else nodes) if node.box and node.category not in UNSEEN
+        ]
+        things = [thing for node in present for thing in self.things(node)]
+        things += walls_of(self.graph, tuple(self.rooms.values()))
+        people = [Thing(node.id, node.class_name, pose, place, yaw) for node, pose, place, yaw in figures]
+        lights = [light for node in present for light in self.lights(node)]
+        return Scene(tuple(things + people), tuple(lights), self.day)
+
+    def things(self, node: Node) -> Iterator[Thing]:
+        """What a node is drawn as."""
+        if node.box is None:
+            return
+        room = self.rooms.get(self.room_of.get(node.id, -1))
+        choice = choice_of(node.class_name, self.knowledge)
+        box, yaw = node.box, node.yaw or 0.0
+        if choice.recipe == "door" and "CLOSED" in node.states:
+            box, yaw = self._shut(box) or (box, yaw)
+        building = choice.recipe in BUILDING
+        if building:
+            yaw = 0.0
+        size = local_size(box.size, yaw)
+        more: dict[str, object] = {"level": self._level(node.class_name, size[1])}
+        if building and room:
+            more["kind"] = room.class_name
+        elif choice.recipe == "bookshelf" and node.id in self.laden:
+            more["kind"] = "bare"
+        elif choice.recipe == "counter" and node.id in self.sunk:
+            more["hole"] = _local_hole(self.sunk[node.id], box, yaw)
+        seed = derive(self.seed, "look", room.id, "walls") if building and room else self.seed_of(node)
+        model = model_of(node.class_name, size, frozenset(node.states), seed, self.knowledge, **more)
+        (x, y, z), h = box.center, box.size[1]
+        above = choice.recipe in ("ceiling", "ceiling_lamp", "ceiling_fan")
+        shining = RECIPES[choice.recipe].lamp is not None and "ON" in node.states
+        yield Thing(node.id, node.class_name, model, (x, y - h / 2, z), yaw, above, building, shining)
+
+    def lights(self, node: Node) -> Iterator[Light]:
+        """The light a node gives."""
+        if node.box is None:
+            return
+        choice = choice_of(node.class_name, self.knowledge)
+        (x, y, z), size = node.box.center, node.box.size
+        room = self.rooms.get(self.room_of.get(node.id, -1))
+        share = RECIPES[choice.recipe].lamp
+        if share is not None and "ON" in node.states:
+            bounds = _bounds(room.box) if room and room.box else None
+            yield lamp((x, y + (share - 0.5) * size[1], z), STRENGTH.get(choice.recipe, 0.7), bounds)
+        if choice.recipe == "window" and room and room.box and node.yaw is not None:
+            facing = (sin(radians(node.yaw)), 0.0, cos(radians(node.yaw)))
+            yield window(node.box.center, size, _rounded(facing), _bounds(room.box), self.day)
+
+    def _level(self, class_name: str, height: float) -> float:
+        """The height at which things stand on it, if the home's forms say so and it is not the top."""
+        known = form(class_name, self.knowledge)
+        if known is None or not known.levels or known.levels[0] >= height:
+            return 0.0
+        return known.levels[0]
+
+    def _shut(self, leaf: Box) -> tuple[Box, float] | None:
+        """Box and yaw of a closed door: in the nearest doorway."""
+        if not self.jambs:
+            return None
+        jamb = min(self.jambs, key=lambda node: _distance(node.box, leaf) if node.box else 1e9)
+        if jamb.box is None or _distance(jamb.box, leaf) > 1.0:
+            return None
+        (w, _, d), (x, _, z) = jamb.box.size, jamb.box.center
+        height, thick = leaf.size[1], min(leaf.size[0], leaf.size[2])
+        size = (w - 0.1, height - 0.05, thick) if w > d else (thick, height - 0.05, d - 0.1)
+        return Box((x, leaf.center[1] - 0.025, z), size), 0.0
+
+
+def stage(graph: EnvironmentGraph, *, seed: int = 0, hour: float = 10.0, knowledge: Knowledge | None = None) -> Stage:
+    """A graph prepared for rendering."""
+    return Stage(graph, knowledge or default(), seed, hour)
+
+
+def scene_of(
+    graph: EnvironmentGraph, *, seed: int = 0, hour: float = 10.0, knowledge: Knowledge | None = None
+) -> Scene:
+    """The scene of a graph as it is. Nodes without a box are not drawn.
+
+    Args:
+        graph: with boxes, yaws and states.
+        seed: decides colours and variants.
+        hour: of the day, 0 to 24.
+        knowledge: for hypernyms; Hearth's own by default.
+    """
+    return stage(graph, seed=seed, hour=hour, knowledge=knowledge).scene()
+
+
+def local_size(size: Size, yaw: float) -> Size:
+    """The size of a thing in its own frame, from its axis-aligned box in the world and its yaw."""
+    w, h, d = size
+    c, s = abs(cos(radians(yaw))), abs(sin(radians(yaw)))
+    if s < 0.02:
+        return size
+    if c < 0.02:
+        return d, h, w
+    # The box of a turned rectangle: X = a c + b s, Z = a s + b c; near 45 degrees that says nothing of a and b.
+    det = c * c - s * s
+    if abs(det) < 0.2:
+        side = min(w, d) / (c + s)
+        return side, h, side
+    a, b = (w * c - d * s) / det, (d * c - w * s) / det
+    return max(a, 0.02), h, max(b, 0.02)
+
+
+def liquid(node: Node, vessel: Box) -> Node:
+    """A liquid's node with the box of its surface in a vessel."""
+    (x, y, z), (w, h, d) = vessel.center, vessel.size
+    side = min(w, d) * 0.72
+    return replace(node, box=Box((x, y + h * 0.24, z), (side, 0.004, side)))
+
+
+def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, float, float]:
+    """The basin's outline in the counter's frame, without its rim."""
+    dx, dz = basin.center[0] - counter.center[0], basin.center[2] - counter.center[2]
+    c, s = cos(radians(yaw)), sin(radians(yaw))
+    x, z = dx * c - dz * s, dx * s + dz * c
+    w, _, d = local_size(basin.size, yaw)
+    return tuple(round(v, 4) for v in (x - w / 2 + 0.01, x + w / 2 - 0.01, z - d / 2 + 0.01, z + d / 2 - 0.01))  # type: ignore[return-value]
+
+
+def _bounds(box: Box) -> tuple[float, float, float, float]:
+    (x, _, z), (w, _, d) = box.center, box.size
+    return x - w / 2 - 0.07, x + w / 2 + 0.07, z - d / 2 - 0.07, z + d / 2 + 0.07
+
+
+def _rounded(direction: Point) -> Point:
+    x, y, z = (round(value, 6) + 0.0 for value in direction)
+    return x, y, z
+
+
+def _distance(a: Box | None, b: Box) -> float:
+    if a is None:
+        return 1e9
+    return max(
+        max(abs(p - q) - (s + t) / 2, 0) for p, q, s, t in zip(a.center, b.center, a.size, b.size, strict=True)
+    ) + 0.01 * sum(abs(p - q) for p, q in zip(a.center, b.center, strict=True))
