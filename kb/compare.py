@@ -6,26 +6,14 @@ object_script_placing, class_name_equivalence, affordances), as many as there ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge, load
-from hearth.kb.reading import Faults, read_yaml, strings
+from hearth.kb.reasons import FIELDS, Fact, Reasons, root_of
 from hearth.kb.release_facts import is_release, read_release
-
-Fact = tuple[str, ...]
-"""Names; what they mean depends on the table."""
-
-FIELDS: dict[str, tuple[str, ...]] = {
-    "properties": ("class", "property"),
-    "states": ("class", "state"),
-    "placements": ("object", "relation", "destination"),
-    "synonyms": ("class", "name"),
-    "affordances": ("action", "position", "class"),
-}
-"""The tables that are compared, and what the parts of their facts are."""
 
 
 class Difference(NamedTuple):
@@ -130,24 +118,19 @@ def facts_of(knowledge: Knowledge) -> dict[str, set[Fact]]:
     return facts
 
 
-def _root(knowledge: Knowledge, name: str) -> str:
-    thing = knowledge.object_class(name)
-    return (thing.same_as or thing.name) if thing else name
-
-
 def _ours(knowledge: Knowledge, reasons: Reasons, table: str, fact: Fact) -> Fact:
     """The other's fact in our words: our names of classes, actions and states."""
     if table == "affordances":
         action, thing = knowledge.action(fact[0]), knowledge.object_class(fact[2])
         return (action.name if action else fact[0], fact[1], thing.name if thing else fact[2])
     if table == "placements":
-        return (_root(knowledge, fact[0]), fact[1], _root(knowledge, fact[2]))
+        return (root_of(knowledge, fact[0]), fact[1], root_of(knowledge, fact[2]))
     if table == "synonyms":
         thing = knowledge.object_class(fact[0])
         return (thing.name if thing else fact[0], fact[1])
     if table == "states":
-        return (_root(knowledge, fact[0]), reasons.renamed.get(fact[1], fact[1].upper()))
-    return (_root(knowledge, fact[0]), *fact[1:])
+        return (root_of(knowledge, fact[0]), reasons.renamed.get(fact[1], fact[1].upper()))
+    return (root_of(knowledge, fact[0]), *fact[1:])
 
 
 def _cells(knowledge: Knowledge, accepted: Iterable[Fact]) -> dict[str, dict[str, int]]:
@@ -165,67 +148,3 @@ def _cells(knowledge: Knowledge, accepted: Iterable[Fact]) -> dict[str, dict[str
         taken = need.accepts(thing.properties, thing.name, thing.category == "Rooms")
         row["rule" if taken and by_rule else "exception" if taken else "refused"] += 1
     return counts
-
-
-class Reasons:
-    """The reasons of corrections.yaml for facts we do not hold, and for those that only we hold."""
-
-    def __init__(self, knowledge: Knowledge) -> None:
-        entries = read_yaml(Path(__file__).parent / "corrections.yaml", Faults())
-        self.knowledge = knowledge
-        self.renamed: Mapping[str, str] = entries["renamed"].value["states"]
-        self.rules: dict[str, list[Mapping[str, Any]]] = {kind: entries[kind].value for kind in ("gone", "added")}
-
-    def gone(self, table: str, fact: Fact) -> str:
-        """Why we do not hold the other's fact, or ''."""
-        parts = dict(zip(FIELDS[table], fact, strict=True))
-        return next((str(rule["why"]) for rule in self._of("gone", table) if self._covers(rule, parts)), "")
-
-    def added(self, table: str, fact: Fact) -> str:
-        """Why we hold a fact that the other does not, or ''."""
-        parts = dict(zip(FIELDS[table], fact, strict=True))
-        why = next((str(rule["why"]) for rule in self._of("added", table) if self._covers(rule, parts)), "")
-        if why or table == "properties":
-            return why
-        if table == "affordances":
-            return next(
-                (self._from(rule) for rule in self._of("added", "properties") if self._follows(rule, parts)), ""
-            )
-        if table == "states":
-            return self._given(parts)
-        return "ours" if table == "synonyms" else self._evidence(fact)
-
-    def _of(self, kind: str, table: str) -> Iterator[Mapping[str, Any]]:
-        return (rule for rule in self.rules[kind] if rule["table"] == table)
-
-    def _covers(self, rule: Mapping[str, Any], parts: Mapping[str, str]) -> bool:
-        if rule.get("same") and parts["object"] != parts["destination"]:
-            return False
-        for name, value in parts.items():
-            if name in rule and value.lower() not in {_root(self.knowledge, n).lower() for n in strings(rule[name])}:
-                return False
-        if "property" in rule and "property" not in parts:
-            thing = self.knowledge.object_class(parts["class"])
-            return thing is not None and not thing.properties.isdisjoint(strings(rule["property"]))
-        return True
-
-    def _follows(self, rule: Mapping[str, Any], parts: Mapping[str, str]) -> bool:
-        """Whether the cell is accepted because of a property that was added."""
-        need = self.knowledge.actions[parts["action"]].grammar[int(parts["position"])]
-        return _root(self.knowledge, parts["class"]) in strings(rule["class"]) and not need.any_of.isdisjoint(
-            strings(rule["property"])
-        )
-
-    @staticmethod
-    def _from(rule: Mapping[str, Any]) -> str:
-        return f"follows from {' and '.join(strings(rule['property']))}: {rule['why']}"
-
-    def _given(self, parts: Mapping[str, str]) -> str:
-        group = self.knowledge.state_groups[self.knowledge.group_of(parts["state"])]
-        thing = self.knowledge.objects[parts["class"]]
-        given = sorted(group.given_by & thing.properties)
-        return f"follows from {given[0]}" if given else f"what may be in one state of {group.name} may be in another"
-
-    def _evidence(self, fact: Fact) -> str:
-        rows = (p for p in self.knowledge.placements(fact[0]) if (p.relation, p.destination) == fact[1:])
-        return next((f"evidence: {row.evidence}" for row in rows), "")

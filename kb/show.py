@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.reasons import Reasons
 from hearth.kb.records import Action, ObjectClass, Placement
 
 
 def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
     """Everything about a class; placements and what is done with it, most usual first."""
     name = thing.name
+    taken = [[a.name for a in knowledge.actions.values() if knowledge.affords(a.name, n, name)] for n in (0, 1)]
     return {
         "name": name,
         "id": thing.id,
@@ -30,8 +32,9 @@ def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
         "placed": [_placed(p) for p in knowledge.placements(name)],
         "holds": [_held(p) for p in knowledge.holds(name)],
         "goes_with": _goes_with(knowledge, thing.same_as or name),
-        "takes_it_first": [a.name for a in knowledge.actions.values() if knowledge.affords(a.name, 0, name)],
-        "takes_it_second": [a.name for a in knowledge.actions.values() if knowledge.affords(a.name, 1, name)],
+        "takes_it_first": taken[0],
+        "takes_it_second": taken[1],
+        "our_own": _our_own(knowledge, name, taken),
         "source": thing.source,
     }
 
@@ -67,6 +70,16 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
         "served_by": [a.name for a in knowledge.associations if a.relation == "serves" and a.other == action.name],
         "source": action.source,
     }
+
+
+def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[dict[str, str]]:
+    """The affordances that the release's matrix does not hold, each with the reason; of its own classes only."""
+    if knowledge.objects[name].source != "release":
+        return []
+    reasons = Reasons(knowledge)
+    cells = ((action, position) for position in (0, 1) for action in taken[position])
+    said = ((action, reasons.cell(action, position, name)) for action, position in cells)
+    return [{"action": action, "evidence": evidence} for action, evidence in said if evidence != "release"]
 
 
 def _placed(placement: Placement) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.reasons import Reasons
 
 if TYPE_CHECKING:
     import duckdb
@@ -64,7 +65,12 @@ def edges(knowledge: Knowledge) -> Iterator[Edge]:
 def _taking(knowledge: Knowledge) -> Iterator[Edge]:
     for row in _affordances(knowledge):
         position = row["position"]
-        yield f"action:{row['action']}", row["class"], f"takes_{position + 1}", {"position": position}
+        yield (
+            f"action:{row['action']}",
+            row["class"],
+            f"takes_{position + 1}",
+            {"position": position, "evidence": row["evidence"]},
+        )
 
 
 def _object_edges(knowledge: Knowledge) -> Iterator[Edge]:
@@ -192,11 +198,13 @@ def _states(knowledge: Knowledge) -> Iterator[Row]:
 
 
 def _affordances(knowledge: Knowledge) -> Iterator[Row]:
+    reasons = Reasons(knowledge)
     for action in knowledge.actions.values():
         for position, need in enumerate(action.grammar):
             for name, thing in knowledge.objects.items():
                 if need.accepts(thing.properties, name, thing.category == "Rooms"):
-                    yield {"action": action.name, "position": position, "class": name}
+                    row = {"action": action.name, "position": position, "class": name}
+                    yield {**row, "evidence": reasons.cell(action.name, position, name)}
 
 
 def _repairs(knowledge: Knowledge) -> Iterator[Row]:
