@@ -35,10 +35,10 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
     executed = yaml_entries(layers, "actions.yaml", faults)
     written = yaml_entries(layers, "actions_written.yaml", faults)
     grammar = yaml_entries(layers, "affordances.yaml", faults)
-    for name in executed.keys() & written.keys():
+    for name in sorted(executed.keys() & written.keys()):
         faults.at(written[name], f"`{name}` stands in actions.yaml too", "an action is executed or only written")
     entries = {**written, **executed}
-    for name in grammar.keys() - entries.keys():
+    for name in sorted(grammar.keys() - entries.keys()):
         faults.at(grammar[name], f"`{name}` is no action", code=Code.UNKNOWN_ACTION)
     result = {}
     for name, entry in entries.items():
@@ -48,7 +48,7 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
             faults.at(entry, f"`{name}` is not a mapping", "id, roles, needs, say, ...")
     check_ids({name: (action.id, entries[name]) for name, action in result.items()}, faults)
     known = {*RELATIONS, *BUILT_IN, *derived}
-    for name in executed.keys() & result.keys():
+    for name in sorted(executed.keys() & result.keys()):
         _check_literals(result[name], known, entries[name], faults)
         result[name] = replace(result[name], executed=True)
     return dict(sorted(result.items(), key=lambda item: item[1].id))
@@ -56,7 +56,7 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
 
 def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str, Entry], faults: Faults) -> Action:
     fields = entry.value
-    for key in fields.keys() - _ACTION_KEYS:
+    for key in sorted(fields.keys() - _ACTION_KEYS):
         faults.at(entry, f"`{key}` is not part of an action", f"parts are {', '.join(sorted(_ACTION_KEYS))}")
     roles = strings(fields.get("roles"))
     needs = tuple(_requirement(value, entry, faults) for value in fields.get("needs") or ())
@@ -88,7 +88,7 @@ def _requirement(value: Any, at: Entry, faults: Faults) -> Requirement:
     if not isinstance(value, dict):
         faults.at(at, f"`{value}` is no requirement", "anything, object, or a mapping")
         return Requirement()
-    for key in value.keys() - _REQUIREMENT_KEYS:
+    for key in sorted(value.keys() - _REQUIREMENT_KEYS):
         faults.at(at, f"`{key}` is not part of a requirement", f"parts are {', '.join(sorted(_REQUIREMENT_KEYS))}")
     return Requirement(
         any_of=check_properties(strings(value.get("any")), at, faults),
@@ -162,12 +162,12 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
     result = {}
     for name, entry in yaml_entries(layers, "repairs.yaml", faults).items():
         fields = entry.value if isinstance(entry.value, dict) else {}
-        for key in fields.keys() - _REPAIR_KEYS:
+        for key in sorted(fields.keys() - _REPAIR_KEYS):
             faults.at(entry, f"`{key}` is not part of a repair", f"parts are {', '.join(sorted(_REPAIR_KEYS))}")
         if fields.get("on") not in Code.__members__:
             faults.at(entry, f"`{fields.get('on')}` is no failure code")
             continue
-        for unknown in set(strings(fields.get("actions"))) - actions.keys():
+        for unknown in sorted(set(strings(fields.get("actions"))) - actions.keys()):
             faults.at(entry, f"`{unknown}` is no action", code=Code.UNKNOWN_ACTION)
         result[name] = Repair(
             name=name,

@@ -53,11 +53,9 @@ def assemble(layers: list[Path]) -> Knowledge:
     faults = Faults()
     for number, layer in enumerate(layers):
         _check_files(layer, number == 0, faults)
-    if faults:
-        raise HearthError(faults)
-    knowledge = _read(layers, faults)
+    knowledge = None if faults else _read(layers, faults)
     if faults or knowledge is None:
-        raise HearthError(faults)
+        raise HearthError(sorted(faults, key=lambda fault: (fault.file, fault.line)))
     return knowledge
 
 
