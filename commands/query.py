@@ -31,14 +31,12 @@ def query(dataset: Folder, sql: Sql, rows: Rows = 100, as_json: output.Json = Fa
     from hearth.pipelines.dataset import Dataset
 
     text = sys.stdin.read() if sql == "-" else sql
-    found = Dataset.open(dataset).sql(text)
-    columns = list(found.columns)
+    columns, found = Dataset.open(dataset).rows(text, rows + 1 if rows and not as_json else None)
     if as_json:
-        output.emit([dict(zip(columns, row, strict=True)) for row in found.fetchall()])
+        output.emit([dict(zip(columns, row, strict=True)) for row in found])
         return
-    shown = found.fetchmany(rows + 1) if rows else found.fetchall()
-    more = bool(rows) and len(shown) > rows
-    output.table(columns, ([_cell(cell) for cell in row] for row in (shown[:rows] if more else shown)))
+    more = bool(rows) and len(found) > rows
+    output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:
         print(f"... more than {rows:,} rows; --rows 0 prints all")
 

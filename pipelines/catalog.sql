@@ -65,8 +65,13 @@ CREATE MACRO steps_text(steps) AS
         ''
     );
 
--- The text of a program: its steps, one tick a line.
-CREATE MACRO program_text(which) AS (SELECT steps_text(steps) FROM programs WHERE program_id = which);
+-- The text of a program: its steps, one tick a line. (Inside, no column is called program_id, so that it can be asked
+-- of a column of that name.)
+CREATE MACRO program_text(which) AS (
+    SELECT steps_text(its_steps)
+    FROM (SELECT program_id AS its_id, steps AS its_steps FROM programs)
+    WHERE its_id = which
+);
 
 -- Every edge after so many ticks of an execution (0: its start; NULL: its end).
 CREATE MACRO graph_edges(which, after) AS TABLE

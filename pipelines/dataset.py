@@ -84,6 +84,20 @@ class Dataset:
         except duckdb.Error as error:
             raise _refused(error) from error
 
+    def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
+        import duckdb
+
+        relation = self.sql(query, **parameters)
+        try:
+            found = relation if limit is None or self._explains(query) else relation.limit(limit)
+            return list(relation.columns), found.fetchall()
+        except duckdb.Error as error:
+            raise _refused(error) from error
+
+    def _explains(self, query: str) -> bool:
+        return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
+
     def __getattr__(self, name: str) -> Any:
         from hearth.schemas.tables import TABLES
 
@@ -92,7 +106,7 @@ class Dataset:
         return self.connection.table(name)
 
     def __len__(self) -> int:
-        return int(self.connection.sql("SELECT count(*) FROM programs").fetchone()[0])
+        return int(self.connection.sql("SELECT count(*) FROM programs").fetchall()[0][0])
 
     def __iter__(self) -> Iterator[str]:
         """The ids of all programs, sorted."""

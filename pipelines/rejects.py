@@ -63,12 +63,10 @@ class Reject:
         """What it counts under."""
         return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
 
-    def rows(self, stage: str, record_id: str, partition: int, partial: bool) -> list[dict[str, Any]]:
-        """One row of the rejects table for each fault."""
+    def rows(self) -> list[dict[str, Any]]:
+        """For each fault, what the rejects table says of it."""
         return [
             {
-                "stage": stage,
-                "record_id": record_id,
                 "code": self.code if self.internal else str(fault.code),
                 "file": fault.file,
                 "line": fault.line,
@@ -76,9 +74,6 @@ class Reject:
                 "found": fault.found[:_LONGEST],
                 "message": fault.message[:_LONGEST],
                 "suggestion": fault.suggestion,
-                "partial": partial,
-                "fault": number,
-                "partition": partition,
             }
-            for number, fault in enumerate(self.diagnostics)
+            for fault in self.diagnostics
         ]

@@ -1,19 +1,25 @@
-"""Stage 5: pictures of a few programs while they run: the home from above, and one camera; colour and instance ids."""
+"""Stage 5: pictures of a few programs while they run: the home from above and one camera, colour and instance ids."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.pipelines.cases import rerun
-from hearth.pipelines.files import write_bytes
+from hearth.pipelines.files import value_digest, write_bytes
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Row, read_rows
-from hearth.pipelines.rejects import Reject
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Record, Stage
 from hearth.pipelines.surroundings import USES, Homes, overlays
 from hearth.schemas.tables import RENDERED
+
+if TYPE_CHECKING:
+    from hearth.rendering.camera import Camera
+    from hearth.rendering.snapshots import Snapshot
+
+AUTO = "auto"
+TOP = "top"
 
 FRAMES = "frames"
 """Folder of the pictures, in the stage's own folder and in the dataset."""
@@ -26,22 +32,54 @@ class Context(NamedTuple):
     job: Job
 
 
-def process(case: Record, context: Context) -> Iterable[Row] | Reject:
+def process(case: Record, context: Context) -> Iterator[Row]:
     """One row for each picture of a case."""
-    from hearth.rendering import snapshots
+    from hearth.rendering.png import encode
+    from hearth.rendering.snapshots import snapshots
+    from hearth.simulation.homes import catalog
 
+    job = context.job
+    home = catalog.load_graph(case["home"], job.settings.homes_folder)
     execution = rerun(case, context.homes)
-    return _pictures(case, context, snapshots.film(execution, context.homes.layout(case["home"])))
+    folder = _folder(case["execution_id"])
+    for shot in snapshots(execution, home, knowledge=context.homes.knowledge):
+        for modality, picture in shot.pictures.items():
+            name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
+            path = job.folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_bytes(path, encode(picture))
+            yield {**_camera(shot.camera), **_told(case, shot, modality), "file": name}
 
 
-def _pictures(case: Record, context: Context, shots: Iterable[Any]) -> Iterator[Row]:
-    folder = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in case["execution_id"])
-    for shot in shots:
-        name = f"{FRAMES}/{folder}/{shot.tick:03d}_{shot.camera}_{shot.modality}.png"
-        path = context.job.folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_bytes(path, shot.png)
-        yield {"execution_id": case["execution_id"], "file": name}
+def _folder(execution_id: str) -> str:
+    """A folder's name that any file system takes, and that no two executions share."""
+    words = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in execution_id)
+    return f"{words.strip('._')[-80:]}-{value_digest(execution_id)[:8]}"
+
+
+def _view(camera: Camera) -> str:
+    """`top`, or `auto` for the camera of the room that was chosen: its name is in the row."""
+    return TOP if camera.name == TOP else AUTO
+
+
+def _camera(camera: Camera) -> Row:
+    matrix = camera.intrinsics
+    return {
+        "camera": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "intrinsics": {
+            "fx": float(matrix[0, 0]),
+            "fy": float(matrix[1, 1]),
+            "cx": float(matrix[0, 2]),
+            "cy": float(matrix[1, 2]),
+        },
+        "pose": [float(number) for number in camera.pose.flatten()],
+    }
+
+
+def _told(case: Record, shot: Snapshot, modality: str) -> Row:
+    return {"execution_id": case["execution_id"], "tick": shot.tick, "modality": modality}
 
 
 def prepare(settings: Settings) -> dict[str, Any]:

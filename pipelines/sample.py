@@ -49,7 +49,20 @@ def process(record: Record, context: Context) -> Iterator[Row | Reject]:
     if stored:
         return (_stored(record, grounding, context) for grounding in stored)
     program = program_of(record)
-    return (_sampled(record, program, name, context) for name in context.names)
+    return _once([_sampled(record, program, name, context) for name in context.names])
+
+
+def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
+    """The outputs; what fails in every home for one reason is said once."""
+    said: set[tuple[str, int]] = set()
+    fails = all(isinstance(output, Reject) for output in outputs)
+    for output in outputs:
+        if isinstance(output, Reject) and fails:
+            fault = output.diagnostics[0]
+            if (fault.code, fault.line) in said:
+                continue
+            said.add((fault.code, fault.line))
+        yield output
 
 
 def _sampled(record: Record, program: Program, name: str, context: Context) -> Row | Reject:

@@ -237,8 +237,10 @@ class _Sink:
             counts.partial += len(rejects)
         else:
             counts.codes[rejects[0].code] += 1
-        for reject in rejects:
-            self.writer.reject(reject.rows(self.stage.name, record_id, self.number, partial))
+        faults = [row for reject in rejects for row in reject.rows()]
+        for number, row in enumerate(faults):
+            told = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
+            self.writer.reject([{**row, **told, "fault": number}])
         for _, row in rows:
             label = self.stage.tally(row)
             if label is not None:

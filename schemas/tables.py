@@ -173,11 +173,11 @@ RENDERED: Final = pa.schema(
         _column(
             "intrinsics",
             _struct(fx=pa.float64(), fy=pa.float64(), cx=pa.float64(), cy=pa.float64()),
-            "pinhole camera, pixels; null for orthographic views",
+            "pinhole camera, pixels",
         ),
         _column("pose", pa.list_(pa.float64()), "camera to world, 4x4 row by row"),
-        _column("start_time", pa.float64(), "seconds from the start of the execution"),
-        _column("end_time", pa.float64(), "seconds from the start of the execution"),
+        _column("start_time", pa.float64(), "seconds from the start of the execution; null for pictures between ticks"),
+        _column("end_time", pa.float64(), "the same"),
         _column("file", TEXT, "picture or video, relative to the dataset"),
     ]
 )
