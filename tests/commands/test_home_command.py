@@ -1,0 +1,75 @@
+"""`home list|show|lint|convert`, through typer's runner."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth.cli import app
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["home", *map(str, arguments)])
+
+
+def test_list_counts_each_home():
+    result = run("list", "--json")
+    homes = {row["home"]: row for row in json.loads(result.stdout)["homes"]}
+    assert result.exit_code == 0
+    assert homes["maple"]["rooms"] == 4
+    assert homes["maple"]["nodes"] > 350
+    assert "maple" in run("list").stdout
+
+
+def test_show_says_what_is_in_each_room_and_draws(tmp_path):
+    result = run("show", "maple", "--out", tmp_path / "maple.svg", "--json")
+    contents = {room["room"]: room["things"] for room in json.loads(result.stdout)["contents"]}
+    assert result.exit_code == 0
+    assert contents["kitchen"]["fridge"] == 1
+    assert (tmp_path / "maple.svg").read_text().startswith("<svg")
+    assert "fridge" in run("show", "maple").stdout
+
+
+def test_lint_ends_with_1_where_something_is_wrong(tmp_path):
+    assert run("lint", "maple").exit_code == 0
+    odd = {"nodes": [{"id": 1, "class_name": "kitchen", "category": "Rooms"}, {"id": 2, "class_name": "cup", "category": "Props"}],
+           "edges": [{"from_id": 2, "relation_type": "INSIDE", "to_id": 7}]}  # fmt: skip
+    (tmp_path / "odd.json").write_text(json.dumps(odd))
+    result = run("lint", tmp_path / "odd.json", "--json")
+    assert result.exit_code == 1
+    assert {fault["code"] for fault in json.loads(result.stdout)["faults"]} == {"UNKNOWN_ID", "NO_ROOM"}
+
+
+def test_convert_writes_graphs_and_ids(tmp_path):
+    assert run("convert", "maple", tmp_path / "copy.json").exit_code == 0
+    assert run("lint", "copy", "--homes", tmp_path).exit_code == 0
+    assert run("convert", "maple", tmp_path / "maple.ids.csv").exit_code == 0
+    assert (tmp_path / "maple.ids.csv").read_text().startswith("id,name\n1,living_room\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("show", "mapel"), "UNKNOWN_HOME"),
+        (("show", "missing.yaml"), "MISSING_FILE"),
+        (("list", "--homes", "nowhere"), "MISSING_FILE"),
+        (("convert", "maple", "copy.txt"), "UNSUPPORTED_FILE"),
+    ],
+)
+def test_bad_input_is_one_clear_error(arguments, code):
+    result = run(*arguments, "--json")
+    assert result.exit_code == 1
+    assert [fault["code"] for fault in json.loads(result.stdout)["errors"]] == [code]
+
+
+@pytest.mark.parametrize(("name", "data"), [("x.json", b"{"), ("x.json", b"[]"), ("x.yaml", b"\x00"), ("x.yaml", b"")])
+def test_files_that_are_no_homes_are_refused(tmp_path, name, data):
+    (tmp_path / name).write_bytes(data)
+    result = run("show", tmp_path / name)
+    assert result.exit_code == 1
+    assert "Traceback" not in result.output
+
+
+def test_each_help_has_an_example():
+    for command in ("list", "show", "lint", "convert"):
+        assert f"python cli.py home {command}" in run(command, "--help").stdout

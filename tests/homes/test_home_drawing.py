@@ -1,0 +1,40 @@
+"""Floor plans as SVG and PNG."""
+
+import xml.etree.ElementTree as Xml
+
+import pytest
+
+from hearth.schemas.errors import HearthError
+from hearth.simulation.homes import catalog, plan_drawing
+
+
+def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
+    layout = catalog.load_layout("maple")
+    plan_drawing.write(layout, tmp_path / "plan.svg")
+    root = Xml.parse(tmp_path / "plan.svg").getroot()
+    texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert {room.name for room in layout.plan.rooms} <= set(texts)
+    standing = [thing.class_name for thing in layout.things if thing.mount == "floor"]
+    assert sorted(text for text in texts if text in set(standing)) == sorted(standing)
+    # North is up: what lies further north is drawn higher.
+    heights = {e.text: float(e.get("y")) for e in root.iter("{http://www.w3.org/2000/svg}text")}
+    assert heights["kitchen"] < heights["living_room"]
+
+
+def test_everything_drawn_lies_within_the_drawing():
+    layout = catalog.load_layout("willow")
+    area = plan_drawing.bounds(layout)
+    assert all(area.contains(shape.rect) for shape in plan_drawing.shapes(layout))
+
+
+def test_the_png_is_the_same_each_time(tmp_path):
+    layout = catalog.load_layout("maple")
+    for name in ("one.png", "two.png"):
+        plan_drawing.write(layout, tmp_path / name)
+    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
+    assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_other_formats_are_refused(tmp_path):
+    with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
+        plan_drawing.write(catalog.load_layout("maple"), tmp_path / "plan.gif")

@@ -1,0 +1,114 @@
+"""The linter finds each fault that a graph can have, and none in our homes."""
+
+from dataclasses import replace
+
+import pytest
+
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.simulation.homes import catalog
+from hearth.simulation.homes.lint import CHECKS, lint
+
+ROOM, CHARACTER, CUP, FRIDGE, BOX = 1, 2, 3, 4, 5
+NODES = (
+    Node(ROOM, "kitchen", "Rooms"),
+    Node(CHARACTER, "character", "Characters"),
+    Node(CUP, "cup", "Props", ("GRABBABLE",), ("CLEAN",)),
+    Node(FRIDGE, "fridge", "Appliances", ("CAN_OPEN", "CONTAINERS"), ("CLOSED",)),
+    Node(BOX, "box", "Props", ("CAN_OPEN", "CONTAINERS"), ("CLOSED",)),
+)
+INSIDE = tuple(Edge(i, "INSIDE", ROOM) for i in (CHARACTER, CUP, FRIDGE, BOX))
+SOUND = EnvironmentGraph(NODES, INSIDE)
+
+
+def with_edges(*edges):
+    return replace(SOUND, edges=INSIDE + tuple(Edge(*edge) for edge in edges))
+
+
+def with_node(node):
+    edges = () if node.category == "Rooms" else (Edge(node.id, "INSIDE", ROOM),)
+    return EnvironmentGraph((*NODES, node), INSIDE + edges)
+
+
+ODD = {
+    "two nodes of one id": (with_node(Node(CUP, "cup", "Props")), Code.DUPLICATE, "3"),
+    "unknown category": (with_node(Node(9, "cup", "Spaceship")), Code.BAD_GRAPH, "9"),
+    "unknown class": (with_node(Node(9, "warpdrive", "Props")), Code.UNKNOWN_OBJECT, "9"),
+    "unknown state": (with_node(Node(9, "cup", "Props", (), ("ENCHANTED",))), Code.BAD_GRAPH, "9"),
+    "unknown property": (with_node(Node(9, "cup", "Props", ("MAGIC",))), Code.BAD_GRAPH, "9"),
+    "edge to nowhere": (with_edges((CUP, "ON", 99)), Code.UNKNOWN_ID, "3 99"),
+    "edge twice": (with_edges((CUP, "ON", BOX), (CUP, "ON", BOX)), Code.DUPLICATE, "3 5"),
+    "unknown relation": (with_edges((CUP, "ABOVE", BOX)), Code.BAD_GRAPH, "3 5"),
+    "on itself": (with_edges((CUP, "ON", CUP)), Code.LOOP, "3 3"),
+    "exclusive states": (with_node(Node(9, "oven", "Appliances", (), ("ON", "OFF"))), Code.CONTRADICTION, "9"),
+    "sits and lies": (with_node(Node(9, "character", "Characters", (), ("SITTING", "LYING"))), Code.CONTRADICTION, "9"),
+    "no state": (with_node(Node(9, "oven", "Appliances", ("CAN_OPEN",))), Code.CONDITION_UNMET, "9"),
+    "two rooms": (
+        EnvironmentGraph((*NODES, Node(9, "bedroom", "Rooms")), (*INSIDE, Edge(CUP, "INSIDE", 9))), Code.BAD_GRAPH, "3 1 9",
+    ),
+    "two containers": (with_edges((CUP, "INSIDE", FRIDGE), (CUP, "INSIDE", BOX)), Code.BAD_GRAPH, "3 4 5"),
+    "no room for it": (replace(SOUND, edges=INSIDE[:1] + INSIDE[2:]), Code.NO_ROOM, "3"),
+    "no room at all": (EnvironmentGraph(), Code.NO_ROOM, ""),
+    "room in a box": (with_edges((ROOM, "INSIDE", BOX)), Code.BAD_GRAPH, "1"),
+    "circle": (with_edges((FRIDGE, "INSIDE", BOX), (BOX, "INSIDE", FRIDGE)), Code.LOOP, "4 5"),
+    "circle of three": (
+        with_edges((CUP, "ON", FRIDGE), (FRIDGE, "ON", BOX), (BOX, "ON", CUP)), Code.LOOP, "3 4 5",
+    ),
+    "between one room": (with_edges((BOX, "BETWEEN", ROOM)), Code.BAD_GRAPH, "5 1"),
+    "held twice": (
+        EnvironmentGraph(
+            (*NODES, Node(9, "character", "Characters")),
+            (*INSIDE, Edge(9, "INSIDE", ROOM), Edge(9, "HOLDS_LH", CUP), Edge(CHARACTER, "HOLDS_RH", CUP)),
+        ),
+        Code.CONFLICT,
+        "3 2 9",
+    ),
+    "two in one hand": (with_edges((CHARACTER, "HOLDS_RH", CUP), (CHARACTER, "HOLDS_RH", BOX)), Code.CONFLICT, "2 3 5"),
+    "a fridge holds": (with_edges((FRIDGE, "HOLDS_RH", CUP)), Code.BAD_GRAPH, "4 3"),
+    "close one way": (with_edges((CUP, "CLOSE", BOX)), Code.BAD_GRAPH, "3 5"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("odd", ODD)
+def test_each_oddity_is_found_once_with_its_nodes(odd):
+    graph, code, ids = ODD[odd]
+    faults = lint(graph, file="odd.json")
+    assert [(fault.code, fault.found, fault.file) for fault in faults] == [(code, ids, "odd.json")]
+
+
+def test_a_room_without_doors_is_found():
+    graph = EnvironmentGraph(
+        (*NODES, Node(9, "bedroom", "Rooms"), Node(10, "bathroom", "Rooms"), Node(11, "door", "Doors", (), ("OPEN",))),
+        (*INSIDE, Edge(11, "INSIDE", ROOM), Edge(11, "BETWEEN", ROOM), Edge(11, "BETWEEN", 9)),
+    )
+    (fault,) = lint(graph)
+    assert (fault.code, fault.found) == (Code.NO_PATH, "10")
+
+
+def test_sound_graphs_have_no_faults():
+    assert lint(SOUND) == ()
+    # A cup in a box in the fridge may say both.
+    assert lint(with_edges((CUP, "INSIDE", BOX), (CUP, "INSIDE", FRIDGE), (BOX, "INSIDE", FRIDGE))) == ()
+
+
+@pytest.mark.parametrize("name", catalog.names())
+def test_our_homes_lint_clean(name):
+    assert lint(catalog.load_graph(name)) == ()
+
+
+def test_every_check_is_tried():
+    tried = {check for graph, _, _ in ODD.values() for check, run in CHECKS.items() if list(run(view_of(graph)))}
+    assert tried == set(CHECKS)
+
+
+def view_of(graph):
+    from hearth.kb.knowledge import default
+    from hearth.simulation.homes.lint import View
+
+    return View(graph, default())
+
+
+def test_the_releases_homes_have_the_faults_they_are_known_for(real_data):
+    faults = lint(catalog.load_graph("TrimmedTestScene1_graph", real_data / "homes"))
+    assert {fault.code for fault in faults} == {Code.CONDITION_UNMET, Code.LOOP}
+    assert any("curtain (23) INSIDE curtain (24)" in fault.message for fault in faults)

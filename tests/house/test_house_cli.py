@@ -1,0 +1,156 @@
+"""The command line as a whole: help with examples, JSON everywhere, errors without tracebacks, exit statuses."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from hearth import __version__, cli
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def call(*arguments, **options):
+    return CliRunner().invoke(cli.app, [str(argument) for argument in arguments], **options)
+
+
+def every_command():
+    """The words of each command that does something: `("kb", "show")`."""
+    for name in cli.COMMANDS_BY_NAME:
+        names = getattr(cli.load(name), "commands", None)
+        yield from [(name, sub) for sub in names] if names else [(name,)]
+
+
+COMMANDS = list(every_command())
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_help_shows_an_example_and_json(words):
+    result = call(*words, "--help")
+    assert result.exit_code == 0, result.output
+    assert f"python cli.py {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
+    assert "--json" in result.output
+    assert "\b" not in result.output
+
+
+def test_help_has_a_line_for_every_command():
+    result = call("--help")
+    assert result.exit_code == 0
+    for name, entry in cli.COMMANDS_BY_NAME.items():
+        assert f"  {name} " in result.output
+        assert entry.line.endswith(".")
+
+
+def test_no_command_shows_the_help_and_is_a_usage_error():
+    result = call()
+    assert result.exit_code == 2
+    assert "check" in result.output and "Traceback" not in result.output
+
+
+def test_version():
+    assert call("--version").output.startswith(f"hearth {__version__} ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["chekc"], "Did you mean `check`?"),
+        (["nothing-like-it"], "There is no command `nothing-like-it`."),
+        (["check"], "Missing argument"),
+        (["check", "--nope", "x"], "--nope"),
+        (["run", "x", "--seed", "many"], "many"),
+    ],
+)
+def test_wrong_usage_is_status_2(arguments, said):
+    result = call(*arguments)
+    assert result.exit_code == 2
+    assert said in result.output
+    assert "Traceback" not in result.output
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Makes `doctor` fail in a chosen way."""
+
+    def make(error):
+        def doctor(as_json: bool = typer.Option(False, "--json")) -> None:
+            raise error
+
+        single = typer.Typer(add_completion=False, rich_markup_mode=None)
+        single.command("doctor")(doctor)
+        monkeypatch.setattr(cli, "load", lambda name: typer.main.get_command(single))
+
+    return make
+
+
+def test_bad_input_is_printed_and_status_1(failing):
+    failing(HearthError.of(Code.BAD_ARCHIVE, "not a zip", file="a.zip", suggestion="get it again"))
+    result = call("doctor")
+    assert result.exit_code == 1
+    assert result.output == "error[BAD_ARCHIVE]: not a zip\n   --> a.zip\n    = get it again\n"
+
+
+def test_bad_input_is_json_where_json_was_asked_for(failing):
+    failing(HearthError.of(Code.BAD_ARCHIVE, "not a zip", file="a.zip"))
+    result = call("doctor", "--json")
+    assert result.exit_code == 1
+    (fault,) = json.loads(result.stdout)["errors"]
+    assert (fault["code"], fault["file"]) == ("BAD_ARCHIVE", "a.zip")
+
+
+@pytest.mark.parametrize("error", [FileNotFoundError(2, "No such file", "gone.txt"), PermissionError(13, "No", "x")])
+def test_a_file_of_the_user_that_cannot_be_opened_is_bad_input(failing, error):
+    failing(error)
+    result = call("doctor")
+    assert result.exit_code == 1
+    assert result.output.startswith("error[") and error.filename in result.output
+
+
+def test_a_fault_of_ours_says_so_and_how_to_see_more(failing):
+    failing(KeyError("walk"))
+    result = call("doctor")
+    assert result.exit_code == 1
+    assert "KeyError: 'walk'" in result.output and "--debug" in result.output
+    assert "Traceback" not in result.output
+
+
+def test_debug_lets_the_error_through(failing):
+    failing(KeyError("walk"))
+    assert isinstance(call("--debug", "doctor").exception, KeyError)
+
+
+def script(*command, cwd):
+    return subprocess.run(
+        [sys.executable, *map(str, command)], cwd=cwd, capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+def test_the_script_works_from_anywhere_whatever_is_in_the_way(tmp_path):
+    """A module of the user's that is named as one of ours does not disturb it."""
+    (tmp_path / "schemas.py").write_text("raise SystemExit('the wrong schemas')\n")
+    result = script(ROOT / "cli.py", "--version", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.startswith("hearth ")
+
+
+def test_the_script_says_what_to_do_where_nothing_is_set_up(tmp_path):
+    (tmp_path / "cli.py").write_text((ROOT / "cli.py").read_text())
+    result = script("-S", tmp_path / "cli.py", "--version", cwd=tmp_path)
+    assert result.returncode == 1
+    assert "make setup" in result.stderr and "Traceback" not in result.stderr
+
+
+def test_the_script_goes_on_under_the_environment_beside_it(tmp_path):
+    (tmp_path / "cli.py").write_text((ROOT / "cli.py").read_text())
+    python = tmp_path / ".venv/bin/python"
+    python.parent.mkdir(parents=True)
+    python.write_text("#!/bin/sh\necho went on with: $(basename $1) $2\n")
+    python.chmod(0o755)
+    result = script("-S", tmp_path / "cli.py", "--version", cwd=tmp_path)
+    assert result.stdout == "went on with: cli.py --version\n"

@@ -1,0 +1,248 @@
+"""The Makefile and the set-up script, with a Python that only writes down what it was asked to do."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from hearth.pipelines.stages import STAGES, stage
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("schemas", "kb", "simulation", "grounding", "rendering", "pipelines", "data_raw")
+FILES = ("Makefile", "setup.sh", "requirements.lock", "pyproject.toml", "version.py", "cli.py")
+NAMES = list(STAGES)
+
+PYTHON = """#!/bin/bash
+# Stands in for .venv/bin/python: notes each command and, for a stage, writes its manifest.
+echo "$@" >> calls
+case "$2" in
+    ingest|validate|sample|augment|render|publish) mkdir -p "$4/$2" && echo "{}" > "$4/$2/manifest.json" ;;
+    build) echo "the funnel" ;;
+    doctor) echo -n "$LACKING" ;;
+esac
+"""
+
+
+def empty_copy(source, target):
+    """The files of a folder by name and time, without their content: all that make looks at."""
+    for path in source.rglob("*"):
+        if path.is_file() and "__pycache__" not in path.parts:
+            copy = target / path.relative_to(source)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.touch()
+            os.utime(copy, (1_000_000_000, 1_000_000_000))
+
+
+def executable(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    path.chmod(0o755)
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """A tree that looks like the project to make, set up and not yet built."""
+    for folder in FOLDERS:
+        empty_copy(ROOT / folder, tmp_path / folder)
+    for file in FILES:
+        shutil.copy(ROOT / file, tmp_path / file)
+        os.utime(tmp_path / file, (1_000_000_000, 1_000_000_000))
+    (tmp_path / "pipelines/augment.py").touch(); os.utime(tmp_path / "pipelines/augment.py", (1, 1))
+    executable(tmp_path / ".venv/bin/python", PYTHON)
+    (tmp_path / ".venv/.ready").touch()
+    return tmp_path
+
+
+def make(tree, *arguments, **environment):
+    """Run make; its output, and the stages it ran."""
+    calls = tree / "calls"
+    calls.unlink(missing_ok=True)
+    variables = {**os.environ, "MAKEFLAGS": "", "MAKELEVEL": "", **environment}
+    done = subprocess.run(
+        ["make", *arguments], cwd=tree, env=variables, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    lines = calls.read_text().splitlines() if calls.exists() else []
+    return done.stdout, [line.split()[1] for line in lines if line.split()[1] in NAMES]
+
+
+def age(tree):
+    """Let everything that was built be older than what is touched next."""
+    for number, name in enumerate(NAMES):
+        os.utime(tree / f"data_out/{name}/manifest.json", (1_500_000_000 + number, 1_500_000_000 + number))
+
+
+def touch(path):
+    os.utime(path, (1_600_000_000, 1_600_000_000))
+
+
+def test_make_runs_all_stages_in_order_ends_with_the_funnel_and_then_does_nothing(tree):
+    shown, ran = make(tree)
+    assert ran == NAMES
+    assert shown.endswith("the funnel\n")
+    shown, ran = make(tree)
+    assert ran == []
+    assert "Nothing to be done" in shown
+
+
+@pytest.mark.parametrize(
+    ("raw", "first"),
+    [
+        ("data_raw/crowd/programs.csv", "ingest"),
+        ("data_raw/crowd/descriptions.csv", "ingest"),
+        ("data_raw/homes/maple.yaml", "sample"),
+        ("kb/actions.yaml", "validate"),
+        ("rendering/looks.yaml", "render"),
+        ("pipelines/publish.py", "publish"),
+        ("README.md", None),
+    ],
+)
+def test_touching_a_file_rebuilds_only_what_follows_from_it(tree, raw, first):
+    make(tree)
+    age(tree)
+    if first is None:
+        (tree / raw).touch()
+    else:
+        touch(tree / raw)
+    assert make(tree)[1] == (NAMES[NAMES.index(first) :] if first else [])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_stage_depends_on_all_that_it_says_it_uses(tree, name):
+    make(tree)
+    for used in stage(name).uses:
+        age(tree)
+        path = tree / used
+        touch(path if path.is_file() else next(file for file in sorted(path.rglob("*")) if file.suffix == ".py"))
+        assert name in make(tree)[1], used
+    age(tree)
+    (tree / f"data_out/{name}/manifest.json").unlink()
+    assert make(tree)[1] == NAMES[NAMES.index(name) :]
+
+
+def test_a_stage_by_its_name_stops_there(tree):
+    assert make(tree, "sample")[1] == NAMES[:3]
+
+
+def test_clean_removes_what_was_built_and_nothing_else(tree):
+    make(tree, "OUT=data_out")
+    (tree / "data_out/mine.txt").touch()
+    make(tree, "clean")
+    assert [path.name for path in (tree / "data_out").iterdir()] == ["mine.txt"]
+    assert (tree / ".venv/bin/python").exists() and (tree / "data_raw/crowd/programs.csv").exists()
+
+
+def test_help_explains_every_target(tree):
+    shown, _ = make(tree, "help")
+    phony = next(line for line in (ROOT / "Makefile").read_text().splitlines() if line.startswith(".PHONY"))
+    for target in phony.split()[1:]:
+        if target != "$(STAGES)":
+            assert f"  {target} " in shown, target
+
+
+def test_continuous_integration_runs_what_a_contributor_runs():
+    lines = [line for line in (ROOT / ".ci/run").read_text().splitlines() if line and not line.startswith("#")]
+    assert lines[-1] == "exec make test"
+
+
+SYSTEM_PYTHON = """#!/bin/bash
+# Stands in for python3: a version that fits, and an empty virtual environment.
+if [ "$1" = "-m" ] && [ "$2" = "venv" ]; then
+    mkdir -p .venv/bin && cp fake .venv/bin/python
+fi
+"""
+
+
+@pytest.fixture
+def bare(tree):
+    """A tree that is not set up, on a machine with a `python3`, and an `id` that says who one is."""
+    (tree / ".venv/bin/python").rename(tree / "fake")
+    shutil.rmtree(tree / ".venv")
+    executable(tree / "bin/python3", SYSTEM_PYTHON)
+    executable(tree / "bin/id", "#!/bin/sh\necho $USER_ID\n")
+    executable(tree / "bin/apt-get", "#!/bin/sh\necho apt-get $* >> calls\n")
+    for tool in ("bash", "sh", "cp", "mkdir", "touch", "rm", "tr", "dirname", "env", "timeout", "cat"):
+        (tree / "bin" / tool).symlink_to(shutil.which(tool))
+    return tree
+
+
+def set_up(tree, **environment):
+    variables = {"PATH": str(tree / "bin"), "HOME": str(tree), "USER_ID": "1000", "LACKING": "", **environment}
+    done = subprocess.run(
+        ["bash", "setup.sh"], cwd=tree, env=variables, capture_output=True, text=True, check=False, timeout=60
+    )
+    return done, (tree / "calls").read_text() if (tree / "calls").exists() else ""
+
+
+def test_set_up_uses_pip_and_the_lock(bare):
+    done, calls = set_up(bare)
+    assert done.returncode == 0, done.stderr
+    assert "--no-deps -r requirements.lock" in calls and "--no-deps --no-build-isolation -e ." in calls
+    assert (bare / ".venv/.ready").exists()
+    assert "apt-get" not in calls + done.stderr
+
+
+def test_set_up_prefers_uv(bare):
+    executable(bare / "bin/uv", "#!/bin/sh\necho uv $* >> calls\nmkdir -p .venv/bin && cp fake .venv/bin/python\n")
+    done, calls = set_up(bare)
+    assert done.returncode == 0, done.stderr
+    assert "uv venv" in calls and "uv pip install" in calls and "-m pip" not in calls
+
+
+def test_set_up_falls_back_on_pip_where_uv_fails(bare):
+    executable(bare / "bin/uv", "#!/bin/sh\nexit 1\n")
+    done, calls = set_up(bare)
+    assert done.returncode == 0, done.stderr
+    assert "-m pip install" in calls
+
+
+def test_set_up_prints_the_one_line_to_run_where_it_may_not_install_libraries(bare):
+    done, calls = set_up(bare, LACKING="libgl1\nlibegl1\n")
+    assert done.returncode == 0, done.stderr
+    assert "sudo apt-get install libgl1 libegl1" in done.stderr
+    assert "apt-get" not in calls
+    assert (bare / ".venv/.ready").exists()
+
+
+def test_set_up_installs_libraries_where_it_may(bare):
+    done, calls = set_up(bare, LACKING="libgl1\nlibegl1\n", USER_ID="0")
+    assert done.returncode == 0, done.stderr
+    assert "apt-get install -y -qq --no-install-recommends libgl1 libegl1" in calls
+    assert "sudo" not in done.stderr
+
+
+def test_set_up_goes_on_when_apt_fails(bare):
+    executable(bare / "bin/apt-get", "#!/bin/sh\nexit 100\n")
+    done, _ = set_up(bare, LACKING="libgl1\n", USER_ID="0")
+    assert done.returncode == 0
+    assert "sudo apt-get install libgl1" in done.stderr
+
+
+def test_set_up_says_which_python_is_needed(bare):
+    executable(bare / "bin/python3", "#!/bin/sh\nexit 1\n")
+    done, _ = set_up(bare)
+    assert done.returncode == 1
+    assert "Python 3.11 to 3.14" in done.stderr
+    assert not (bare / ".venv/.ready").exists()
+
+
+def test_set_up_says_what_debian_leaves_out(bare):
+    executable(
+        bare / "bin/python3",
+        '#!/bin/bash\n[ "$2" = venv ] && exit 1\n[[ "$2" == *print* ]] && echo python3.11-venv\nexit 0\n',
+    )
+    done, _ = set_up(bare)
+    assert done.returncode == 1
+    assert "sudo apt-get install python3.11-venv" in done.stderr
+    assert not (bare / ".venv").exists()
+
+
+def test_the_lock_pins_everything_and_says_nothing_of_where_it_came_from():
+    lines = [line for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#")]
+    assert len(lines) > 50
+    for line in lines:
+        name, exact, rest = line.partition("==")
+        assert exact and name and rest[0].isdigit(), line
+        assert "://" not in line and "@" not in line and not line.startswith("-")
