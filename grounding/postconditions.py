@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from hearth.grounding.conditions import CHARACTER, Key
+from hearth.grounding.conditions import Key
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
 from hearth.simulation import rows
@@ -49,13 +49,22 @@ def achieved(execution: Execution) -> Postconditions:
     A room counts where it is the point: for a character, when the last walk was to that room itself; for a thing, when
     it lies in a room that the program walked to and on or in none of its objects.
     """
-    program = execution.program
-    nodes = nodes_of(program, execution.worlds[0])
+    world = execution.final
+    nodes = nodes_of(execution.program, world)
     before = frozenset(_facts(execution.worlds[0], nodes))
-    new = [fact for fact in _facts(execution.final, nodes) if fact not in before]
-    meant = _rooms_meant(program)
-    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in meant}
-    return tuple(sorted((fact for fact in new if _is_meant(fact, meant, placed, execution.final, nodes)), key=_order))
+    new = [fact for fact in _facts(world, nodes) if fact not in before]
+    walked = _walked(execution.program)
+    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and not _is_room(fact.target, nodes, world)}
+    held = {fact.target for fact in _facts(world, nodes) if fact.name == "HOLDS"}
+
+    def is_meant(fact: Fact) -> bool:
+        if fact.name != "INSIDE" or not _is_room(fact.target, nodes, world):
+            return True
+        if fact.subject[0] == CHARACTER_CLASS:
+            return bool(walked) and fact.target == walked[-1]
+        return fact.target in walked and fact.subject not in placed and fact.subject not in held
+
+    return tuple(sorted(filter(is_meant, new), key=_order))
 
 
 def missing(facts: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
@@ -124,23 +133,10 @@ def _facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
             yield from (Fact(name, subject, target) for name, target in found)
 
 
-def _rooms_meant(program: Program) -> dict[Key, bool]:
-    """The objects that are walked to, and whether the last walk was to them."""
-    walked = [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
-    return {key: key == walked[-1] for key in walked}
+def _walked(program: Program) -> list[Key]:
+    """What is walked to, in order."""
+    return [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
 
 
-def _is_meant(fact: Fact, walked: Mapping[Key, bool], placed: set[Key], world: World, nodes: Mapping[Key, int]) -> bool:
-    if fact.name != "INSIDE" or fact.target is None:
-        return True
-    room = world.home.index[nodes[fact.target]]
-    if not world.home.rooms >> room & 1:
-        return True
-    if fact.subject[0] == CHARACTER_CLASS:
-        return walked.get(fact.target, False)
-    i = world.home.index[nodes[fact.subject]]
-    held = any(agent.held >> i & 1 for agent in world.agents)
-    return not held and fact.target in walked and fact.subject not in placed
-
-
-__all__ = ["CHARACTER", "Fact", "Postconditions", "achieved", "holds", "missing", "nodes_of", "reached"]
+def _is_room(key: Key | None, nodes: Mapping[Key, int], world: World) -> bool:
+    return key is not None and bool(world.home.rooms >> world.home.index[nodes[key]] & 1)

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from hearth.grounding.base import Base, prepared
 from hearth.grounding.checking import unmet
-from hearth.grounding.conditions import Condition
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.perturbing import PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
 from hearth.grounding.postconditions import Postconditions, achieved
 from hearth.grounding.sampling import Environment, Size, draw, sample
-from hearth.pipelines.repairing import Attempt, repair
+from hearth.pipelines.repairing import TRIES, Attempt, repair
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
@@ -26,6 +26,23 @@ DRAWS = 3
 """Environments drawn for one perturbation before it is given up."""
 
 CHANCES_FILE = Path(__file__).with_name("augment.yaml")
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a program is augmented.
+
+    Attributes:
+        count: perturbed environments at most; there are fewer when no more distinct ones are found.
+        tries: repairs of one program in one environment.
+        chances: how likely perturbations are; those of augment.yaml when None.
+        rules: for the runs.
+    """
+
+    count: int = 5
+    tries: int = TRIES
+    chances: Chances | None = None
+    rules: Rules = DEFAULT
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +73,11 @@ class Augmented:
     """Everything that came of one program in one home.
 
     Attributes:
-        environment, execution: the original's own.
+        execution: the original's own.
         goal: what it achieves there.
         pairs: the perturbed environments, in the order in which they were drawn.
     """
 
-    environment: Environment
     execution: Execution
     goal: Postconditions
     pairs: tuple[Pair, ...]
@@ -72,10 +88,8 @@ def augment(
     home: Home,
     seed: int,
     record_id: str = "",
-    count: int = 5,
-    chances: Chances | None = None,
-    rules: Rules = DEFAULT,
-    original: tuple[Environment, Execution] | None = None,
+    options: Options = Options(),
+    original: tuple[Preconditions, Execution] | None = None,
 ) -> Augmented | Failure:
     """Repaired versions of a program for environments in which something it relies on is otherwise.
 
@@ -83,30 +97,29 @@ def augment(
         program: with instances as counters.
         home: any home.
         seed, record_id: all the randomness there is.
-        count: perturbed environments at most; there are fewer when no more distinct ones are found.
-        chances: how likely perturbations are; those of augment.yaml when None.
-        rules: for the runs.
-        original: its own environment and execution; sampled when None.
+        options: how many environments, and how they are perturbed and programs repaired.
+        original: what it needs, and its execution in its own environment; sampled when None.
 
     Returns:
         Every pair, successful or not. A pair that needed no repair fails as UNPERTURBED, one whose program came up
         before as DUPLICATE. A failure when the original itself can't be sampled.
     """
-    first = original if original is not None else sample(program, home, seed, record_id, rules=rules)
-    if isinstance(first, Failure):
-        return first
-    environment, execution = first
-    goal = achieved(execution)
     base = prepared(home)
-    case = Case(program, environment.conditions, base)
-    generator = rng(seed, "perturb", home.name, record_id)
-    versions = distinct(case, chances or default_chances(), generator, count)
+    if original is None:
+        sampled = sample(program, home, seed, record_id, rules=options.rules)
+        if isinstance(sampled, Failure):
+            return sampled
+        original = sampled[0].conditions, sampled[1]
+    conditions, execution = original
+    goal = achieved(execution)
+    chances = options.chances or default_chances()
+    generator = rng(seed, "perturb", base.home.name, record_id)
     seen: set[object] = {_shape(program)}
     pairs: list[Pair] = []
-    for number, perturbed in enumerate(versions):
+    for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, options.count)):
         drawn = _drawn(program, base, perturbed, seed, f"{record_id}/{number}")
-        pairs.append(_judged(_pair(number, perturbed, drawn, goal, rules), seen))
-    return Augmented(environment, execution, goal, tuple(pairs))
+        pairs.append(_judged(_pair(number, perturbed, drawn, goal, options), seen))
+    return Augmented(execution, goal, tuple(pairs))
 
 
 @lru_cache(maxsize=8)
@@ -165,7 +178,7 @@ def _pair(
     perturbed: Perturbed,
     drawn: Environment | tuple[Environment, Condition],
     goal: Postconditions,
-    rules: Rules,
+    options: Options,
 ) -> Pair:
     """A perturbed environment's program, repaired."""
     if isinstance(drawn, tuple):
@@ -173,7 +186,7 @@ def _pair(
         failure = Failure(Code.CONDITION_UNMET, expected=str(condition), actual=f"not so in {DRAWS} environments drawn")
         program, execution = environment.program, Execution(environment.program, (environment.world,), failure)
         return Pair(number, perturbed.perturbations, environment, program, execution, (), failure)
-    done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, rules)
+    done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, options.rules, tries=options.tries)
     return Pair(number, perturbed.perturbations, drawn, done.program, done.execution, done.attempts, done.failure)
 
 
