@@ -222,7 +222,14 @@ def test_the_repairs_of_table_a4(knowledge):
 
 
 def test_every_failure_of_a_check_that_can_be_mended_has_a_repair(knowledge):
-    hopeless = {Code.NOT_AFFORDED, Code.NO_ROOM, Code.NO_ORIGIN, Code.NOT_OPENABLE_STATE, Code.NOT_WORN, Code.NOTHING_TO_EAT}
+    hopeless = {
+        Code.NOT_AFFORDED,
+        Code.NO_ROOM,
+        Code.NO_ORIGIN,
+        Code.NOT_OPENABLE_STATE,
+        Code.NOT_WORN,
+        Code.NOTHING_TO_EAT,
+    }
     for action in knowledge.actions.values():
         for check in action.preconditions:
             assert check.code in hopeless or knowledge.repairs_for(check.code, action.name), (action.name, check.code)

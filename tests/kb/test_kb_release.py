@@ -43,7 +43,7 @@ def test_the_grammar_accepts_every_pair_of_the_release_and_rejects_most_at_rando
 
 
 def test_the_literals_alone_reproduce_the_release(knowledge, real_data):
-    for name, text, graphs in programs(real_data, 27):
+    for name, text, graphs in programs(real_data, 54):
         start, final = from_release(graphs["init_graph"]), from_release(graphs["final_graph"])
         world = run(knowledge, HashOrdered.made(start), text, name)
         assert world.edges() == edge_set(final.edges), name
