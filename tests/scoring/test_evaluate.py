@@ -47,6 +47,11 @@ def test_scores_by_name(scored, metric, expected):
     assert tuple(values(scored, metric).values()) == expected
 
 
+def test_a_missing_prediction_scores_nothing_even_where_an_empty_one_is_right(knowledge):
+    missing, empty = evaluate([pair("a", None, ()), pair("b", [], ())], knowledge)
+    assert (missing.lcs.mean, empty.lcs.mean) == (0, 1)
+
+
 def test_f1_is_nothing_without_a_final_graph_and_not_asked_without_a_reference(scored):
     found = values(scored, "f1")
     assert found["same"] == 1

@@ -18,6 +18,7 @@ def test_a_named_node_stays(flat, knowledge):
 
 def test_the_references_objects_are_meant_by_their_names(flat, knowledge):
     assert bound("[Grab] <cup> (1)", flat, knowledge, "[Grab] <cup> (1.21)") == ["[Grab] <cup> (1.21)"]
+    assert bound("[Grab] <cup> (20)", flat, knowledge, "[Grab] <cup> (20.21)") == ["[Grab] <cup> (20.21)"]
 
 
 def test_a_number_may_be_a_nodes_id(flat, knowledge):
