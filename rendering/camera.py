@@ -116,27 +116,27 @@ def look_at(name: str, eye: Point, target: Point, width: int = 320, height: int 
     return Camera(name, eye, target, width, height, fov)
 
 
-CORNER_FOV = 68.0
-CORNER_HEIGHT = 2.15
-CORNER_INSET = 0.25
+ROOM_FOV = 68.0
+ROOM_HEIGHT = 2.05
+ROOM_INSET = 0.25
 
 
-def corner_cameras(room: Box, name: str, width: int = 320, height: int = 240) -> tuple[Camera, ...]:
-    """One camera in each of a room's four corners, under the ceiling, looking at the middle of the opposite half."""
+def room_cameras(room: Box, name: str, width: int = 320, height: int = 240) -> tuple[Camera, ...]:
+    """Eight cameras that stay in a room: in its corners, then at the middles of its walls, under the ceiling."""
     (x, y, z), (w, h, d) = room.center, room.size
     floor = y - h / 2
-    up = floor + min(CORNER_HEIGHT, h - 0.15)
+    up = floor + min(ROOM_HEIGHT, h - 0.15)
     cameras = []
-    for number, (i, j) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1)), 1):
-        eye = (x + i * (w / 2 - CORNER_INSET), up, z + j * (d / 2 - CORNER_INSET))
+    for number, (i, j) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)), 1):
+        eye = (x + i * (w / 2 - ROOM_INSET), up, z + j * (d / 2 - ROOM_INSET))
         target = (x - i * w * 0.12, floor + 0.75, z - j * d * 0.12)
-        cameras.append(Camera(f"{name}.corner.{number}", eye, target, width, height, CORNER_FOV))
+        cameras.append(Camera(f"{name}.{number}", eye, target, width, height, ROOM_FOV))
     return tuple(cameras)
 
 
 def follow(name: str, position: Point, yaw: float, width: int = 320, height: int = 240) -> Camera:
-    """Third person: behind and above someone who stands at `position` (on the floor) and faces `yaw` degrees."""
+    """Third person: behind and above someone who stands at `position` (on the floor), looking along `yaw` degrees."""
     forward = np.array((np.sin(radians(yaw)), 0.0, np.cos(radians(yaw))))
-    eye = np.array(position) - forward * 1.9 + (0.0, 2.1, 0.0)
-    target = np.array(position) + forward * 0.6 + (0.0, 0.9, 0.0)
+    eye = np.array(position) - forward * 1.7 + (0.0, 1.9, 0.0)
+    target = np.array(position) + forward * 0.5 + (0.0, 0.9, 0.0)
     return Camera(name, tuple(map(float, eye)), tuple(map(float, target)), width, height, 65.0)

@@ -50,6 +50,8 @@ BODIES: dict[str, Body] = {
 }
 """Bodies by name. To add one: a row here."""
 
+STILL = Stance()
+
 CHILD = Body(1.2, 0.95, "#e0b08e", "#8a5a30", "#4fa05c", "#4a6f9a", "#c8463c", "short", "stripes", False, 0.4)
 
 
@@ -58,7 +60,7 @@ class Figure:
     """Someone doing something."""
 
     body: Body
-    stance: Stance = Stance()
+    stance: Stance = STILL
 
     def joints(self) -> Joints:
         """Where the joints are, in the figure's own frame (metres)."""
@@ -151,7 +153,7 @@ def _sleeved(a: Vector, b: Vector, c: Vector, cover: float, radii: Point, cloth:
 
 def _shoe(ankle: Vector, toe: Vector, h: float, paint: Paint) -> Mesh:
     """A shoe around ankle and toe."""
-    heel = ankle + (0, -0.02 * h, 0)
+    heel = ankle - np.array((0, 0.02 * h, 0))
     front = ball(_point(toe - (toe - ankle) * 0.12), (0.03 * h, 0.022 * h, 0.036 * h), paint, 4)
     back = ball(_point(heel), (0.028 * h, 0.027 * h, 0.032 * h), paint, 4)
     return join(

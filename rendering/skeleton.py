@@ -62,7 +62,7 @@ def joints(stance: Stance, height: float) -> Joints:
 
 
 def _bend(stance: Stance, height: float) -> tuple[float, float]:
-    """(metres the hips sink, degrees the back leans) so that the hands reach what they are to reach; the least of both."""
+    """(metres the hips sink, degrees the back leans), the least of both with which the hands reach their targets."""
     targets = [np.array(t) for t in (stance.right, stance.left) if t is not None]
     base = -4.0 if stance.posture == "sitting" else 0.0
     if not targets:

@@ -11,8 +11,8 @@ from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.figure import Figure
 from hearth.rendering.lights import Daylight, Light, daylight, lamp, window
 from hearth.rendering.meshes.catalog import RECIPES
-from hearth.rendering.meshes.look import Size
-from hearth.rendering.models import choice_of, model_of
+from hearth.rendering.meshes.look import Look, Size
+from hearth.rendering.models import Model, choice_of, model_of
 from hearth.rendering.scene import Scene, Thing
 from hearth.rendering.shell import walls_of
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
@@ -44,6 +44,9 @@ LIQUIDS = {
     "milkshake": "#e9c3cc",
 }
 """Classes that fill what they are INSIDE, and their colours."""
+
+SURFACE = 0.004
+"""Height of the box of a liquid in a vessel: only its surface is drawn."""
 
 STRENGTH = {"ceiling_lamp": 2.3, "ceiling_fan": 1.8, "floor_lamp": 1.4, "candle": 0.15, "fireplace": 1.2}
 """How bright a lamp is by its recipe; others 0.7."""
@@ -92,9 +95,10 @@ class Stage:
         found = {}
         for edge in self.graph.edges:
             source, target = nodes.get(edge.source), nodes.get(edge.target)
-            if edge.relation in ("ON", "INSIDE") and source and target and source.box and target.box:
-                if source.class_name == "sink" and choice_of(target.class_name, self.knowledge).recipe == "counter":
-                    found[target.id] = source.box
+            if edge.relation not in ("ON", "INSIDE") or not (source and target and source.box and target.box):
+                continue
+            if source.class_name == "sink" and choice_of(target.class_name, self.knowledge).recipe == "counter":
+                found[target.id] = source.box
         return found
 
     @cached_property
@@ -150,8 +154,11 @@ class Stage:
             more["kind"] = "bare"
         elif choice.recipe == "counter" and node.id in self.sunk:
             more["hole"] = _local_hole(self.sunk[node.id], box, yaw)
+        poured = node.class_name in LIQUIDS and size[1] <= SURFACE
         seed = derive(self.seed, "look", room.id, "walls") if building and room else self.seed_of(node)
         model = model_of(node.class_name, size, frozenset(node.states), seed, self.knowledge, **more)
+        if poured:
+            model = Model("liquid", Look(size, color=LIQUIDS[node.class_name]))
         (x, y, z), h = box.center, box.size[1]
         above = choice.recipe in ("ceiling", "ceiling_lamp", "ceiling_fan")
         shining = RECIPES[choice.recipe].lamp is not None and "ON" in node.states
@@ -232,7 +239,7 @@ def liquid(node: Node, vessel: Box) -> Node:
     """A liquid's node with the box of its surface in a vessel."""
     (x, y, z), (w, h, d) = vessel.center, vessel.size
     side = min(w, d) * 0.72
-    return replace(node, box=Box((x, y + h * 0.24, z), (side, 0.004, side)))
+    return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
 
 
 def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, float, float]:

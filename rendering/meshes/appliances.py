@@ -232,7 +232,7 @@ def blender(look: Look) -> Mesh:
         look.tint(DARK, ("#2e3035", "#b8433a", "#d8d8d4")),
         16,
     )
-    fill = Paint(look.fill or ("#c85a7a" if look.on else "#c9dfe6"), shine=0.8)
+    fill = Paint("#c85a7a" if look.on else "#c9dfe6", shine=0.8)
     jug = shift(lathe([(0, 0), (r * 0.5, 0), (r * 0.85, h * 0.6), (0, h * 0.6)], fill, 16), y=h * 0.29)
     lid = cylinder((0, h * 0.89, 0), r * 0.86, h * 0.06, DARK) + cylinder((0, h * 0.95, 0), r * 0.3, h * 0.05, DARK)
     grip = tube(

@@ -65,7 +65,7 @@ def toilet(look: Look) -> Mesh:
 
 
 def bathtub(look: Look) -> Mesh:
-    """A bathtub: apron, rim, basin; water when it is filled."""
+    """A bathtub: apron, rim, basin, tap."""
     w, h, d = look.size
     rim, t = 0.07, 0.5
     long_ = w >= d
@@ -79,9 +79,8 @@ def bathtub(look: Look) -> Mesh:
     x, z = a / 2 - rim, b / 2 - rim
     top_ = top_board(a, b, h - 0.03, h, ENAMEL, (-x, x, -z, z))
     walls = _basin(x, z, h - 0.03, h * 0.22, ENAMEL, t)
-    water = [block(-x * 0.98, x * 0.98, h * 0.6, h * 0.62, -z * 0.98, z * 0.98, WATER)] if look.fill else []
     tap = shift(_spout(0.16, 0.14), -a / 2 + rim / 2 + 0.02, h, 0)
-    whole = join([apron, top_, walls, tap, *water])
+    whole = join([apron, top_, walls, tap])
     return whole if long_ else turn(whole, "y", 90)
 
 
@@ -124,11 +123,7 @@ def sink(look: Look) -> Mesh:
     bowl = shift(_basin(x, z - 0.015, h - 0.005, h - depth, paint, 0.8), z=0.015)
     outer = shift(_basin_outside(w, d, h, depth, paint), z=0)
     drain = shift(cylinder((0, 0, 0), 0.025, 0.004, DARK, sides=12), 0, h - depth + 0.001, 0.02)
-    water = (
-        [block(-x * 0.9, x * 0.9, h - depth * 0.45, h - depth * 0.44, -z * 0.85, z * 0.9, WATER)]
-        if look.fill or look.on
-        else []
-    )
+    water = [block(-x * 0.9, x * 0.9, h - depth * 0.45, h - depth * 0.44, -z * 0.85, z * 0.9, WATER)] if look.on else []
     post = [cylinder((0, 0, -d * 0.05), w * 0.14, h - depth, paint, w * 0.17)] if tall else []
     return join([board, bowl, outer, drain, *water, *post])
 

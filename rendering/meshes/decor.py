@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -73,7 +74,7 @@ def plant(look: Look) -> Mesh:
     stems, blossoms = [], []
     for s in (-1, 1):
         points = [(s * r * 0.1, tall, 0.0), (s * r * 0.3, h * 0.75, 0.02), (s * r * 0.7, h * 0.93, 0.04)]
-        stems += [rod(a, b, 0.004, LEAF, sides=5) for a, b in zip(points, points[1:], strict=False)]
+        stems += [rod(a, b, 0.004, LEAF, sides=5) for a, b in pairwise(points)]
         for t in (0.25, 0.6, 0.95):
             x, y = s * r * (0.3 + 0.4 * t), h * (0.75 + 0.17 * t)
             blossoms += [

@@ -84,14 +84,13 @@ def ceiling_lamp(look: Look) -> Mesh:
             )
             + ball((0, h * 0.14, 0), w * 0.12, paint, 3)
         )
-    bowl = stretch(
+    return stretch(
         lathe(
             [(0, 0), (0.3, h * 0.12), (0.46, h * 0.45), (0.5, h * 0.82), (0.5, h * 0.82), (0.38, h), (0, h)], paint, 24
         ),
         x=w,
         z=d,
     )
-    return bowl
 
 
 def wall_lamp(look: Look) -> Mesh:

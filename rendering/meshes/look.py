@@ -25,7 +25,6 @@ class Look:
         states: names of `vocabulary.STATES`.
         color: overrides the main colour.
         kind: overrides what is special to a class (`apple`, `lemon`); recipes say which they know.
-        fill: colour of the liquid in it, or "".
         level: height in metres at which things stand on it, if known (a seat's, a mattress's); 0 for the recipe's own.
         hole: (x0, x1, z0, z1) cut out of its top for what is sunk into it, in its own frame.
     """
@@ -36,7 +35,6 @@ class Look:
     states: frozenset[str] = frozenset()
     color: str = ""
     kind: str = ""
-    fill: str = ""
     level: float = 0.0
     hole: tuple[float, float, float, float] | None = None
 

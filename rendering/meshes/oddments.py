@@ -88,8 +88,7 @@ def saucepan(look: Look) -> Mesh:
         22,
     )
     grip = rod((0, h * 0.74, r * 0.95), (0, h * 0.9, d - r - 0.01), 0.012, DARK, sides=8)
-    fill = [shift(lathe([(r * 0.93, 0), (0, 0.001)], Paint(look.fill, shine=0.6), 16), y=h * 0.6)] if look.fill else []
-    return shift(join([body, grip, *fill]), z=-d / 2 + r)
+    return shift(join([body, grip]), z=-d / 2 + r)
 
 
 def donut(look: Look) -> Mesh:

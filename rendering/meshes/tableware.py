@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.rendering.meshes.look import Look, Recipe, Region, over, top
+from hearth.rendering.meshes.look import Look, Recipe, Region, nowhere, over, top
 from hearth.rendering.meshes.mesh import Mesh, join, shift, stretch, turn
 from hearth.rendering.meshes.paint import (
     BLACK,
@@ -25,8 +25,11 @@ from hearth.rendering.meshes.storage import bottom
 GLAZES = (*SOFT_COLORS, "#b8433a", "#3f6f95", "#e0b04a", "#6a8f6a")
 
 
-def _liquid(look: Look, radius: float, height: float) -> list[Mesh]:
-    return [shift(lathe([(radius, 0), (0, 0.001)], Paint(look.fill, shine=0.8), 16), y=height)] if look.fill else []
+def liquid(look: Look) -> Mesh:
+    """The surface of what is poured into a vessel."""
+    w, h, d = look.size
+    surface = Paint(look.color or look.kind or "#a9d2e6", shine=0.85)
+    return stretch(lathe([(0.5, 0), (0.5, h), (0, h)], surface, 18), x=w, z=d)
 
 
 def mug(look: Look) -> Mesh:
@@ -79,7 +82,7 @@ def mug(look: Look) -> Mesh:
         if saucer
         else []
     )
-    return shift(join([body, grip, *dish, *_liquid(look, r * 0.9, h * 0.86)]), -r * 0.25 if not saucer else 0)
+    return shift(join([body, grip, *dish]), -r * 0.25 if not saucer else 0)
 
 
 def glass(look: Look) -> Mesh:
@@ -101,9 +104,9 @@ def glass(look: Look) -> Mesh:
             (r * 0.9, h * 0.74),
             (0, h * 0.55),
         ]
-        return join([lathe(profile, pale, 18), *_liquid(look, r * 0.93, h * 0.78)])
+        return join([lathe(profile, pale, 18)])
     profile = [(0, 0), (r * 0.74, 0), (r * 0.74, 0), (r, h), (r * 0.94, h), (r * 0.7, 0.012), (0, 0.012)]
-    return join([lathe(profile, pale, 18), *_liquid(look, r * 0.88, h * 0.8)])
+    return join([lathe(profile, pale, 18)])
 
 
 def bowl(look: Look) -> Mesh:
@@ -130,7 +133,7 @@ def bowl(look: Look) -> Mesh:
         22,
     )
     grips = [box((s * r * 0.98, h * 0.9, 0), (r * 0.16, h * 0.1, r * 0.4), STEEL) for s in (-1, 1)] if sieve else []
-    return join([body, *grips, *_liquid(look, r * 0.82, h * 0.66)])
+    return join([body, *grips])
 
 
 def plate(look: Look) -> Mesh:
@@ -147,7 +150,7 @@ def plate(look: Look) -> Mesh:
 
 
 def pot(look: Look) -> Mesh:
-    """A cooking pot with two handles, and a lid unless it is open or shows what is in it."""
+    """A cooking pot with two handles, and a lid unless it is open."""
     w, h, d = look.size
     steel = look.tint(STEEL, ("#b9bcc0", "#a8342e", "#3a4a55"))
     r = min(w * 0.4, d / 2)
@@ -184,7 +187,7 @@ def pot(look: Look) -> Mesh:
         )
         for s in (-1, 1)
     ]
-    return join([body, *([] if look.open or look.fill else lid), *grips, *_liquid(look, r * 0.94, h * 0.6)])
+    return join([body, *([] if look.open else lid), *grips])
 
 
 def pan(look: Look) -> Mesh:
@@ -481,6 +484,7 @@ def dish_place(look: Look) -> tuple[Region, ...]:
 
 
 RECIPES = {
+    "liquid": Recipe(liquid, (0.06, 0.004, 0.06), 1, nowhere),
     "mug": Recipe(mug, (0.12, 0.1, 0.085), inside=bottom, kinds=("", "cup")),
     "glass": Recipe(glass, (0.075, 0.13, 0.075), inside=bottom, kinds=("", "wine")),
     "bowl": Recipe(bowl, (0.18, 0.08, 0.18), 1, dish_place, dish_place, ("", "colander")),

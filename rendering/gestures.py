@@ -1,0 +1,80 @@
+"""What a body does during an action: which hand goes where, where it looks, how the legs stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Gesture:
+    """The picture of an action.
+
+    Attributes:
+        hand: where the acting hand goes: `object`, `second`, `mouth`, `chest`, `carry`, `wave`, or "" (stays).
+        both: whether both hands go there.
+        gaze: `object`, `second`, or "" (ahead).
+        stride: how far the legs are apart.
+        near: whether one must be within arm's reach of the object.
+    """
+
+    hand: str = ""
+    both: bool = False
+    gaze: str = "object"
+    stride: float = 0.0
+    near: bool = False
+
+
+REACH = Gesture("object", near=True)
+PUT = Gesture("object", near=True)
+LOOK = Gesture()
+MOUTH = Gesture("mouth")
+STILL = Gesture(gaze="")
+
+GESTURES: dict[str, Gesture] = {
+    "Walk": Gesture(stride=0.75),
+    "Run": Gesture(stride=1.0),
+    "Find": LOOK,
+    "LookAt": LOOK,
+    "TurnTo": LOOK,
+    "Watch": LOOK,
+    "PointAt": REACH,
+    "Grab": Gesture("carry", near=True),
+    "PutBack": PUT,
+    "PutIn": PUT,
+    "PutObjBack": PUT,
+    "Drop": LOOK,
+    "Release": LOOK,
+    "Open": REACH,
+    "Close": REACH,
+    "SwitchOn": REACH,
+    "SwitchOff": REACH,
+    "PlugIn": REACH,
+    "PlugOut": REACH,
+    "Touch": REACH,
+    "Push": Gesture("object", both=True, near=True),
+    "Pull": Gesture("object", both=True, near=True),
+    "Move": Gesture("object", both=True, near=True),
+    "Wipe": REACH,
+    "Wash": Gesture("object", both=True, near=True),
+    "Rinse": Gesture("object", both=True, near=True),
+    "Scrub": Gesture("object", both=True, near=True),
+    "Squeeze": Gesture("object", near=True),
+    "Cut": REACH,
+    "Pour": Gesture("second", gaze="second", near=True),
+    "Type": Gesture("object", both=True, near=True),
+    "Read": Gesture("chest", both=True),
+    "Drink": MOUTH,
+    "Eat": MOUTH,
+    "PutOn": Gesture("chest", both=True, gaze=""),
+    "PutOff": Gesture("chest", both=True, gaze=""),
+    "Greet": Gesture("wave"),
+    "Sit": STILL,
+    "Lie": STILL,
+    "StandUp": STILL,
+    "Sleep": STILL,
+    "WakeUp": STILL,
+}
+"""The gesture of each action; those without an entry only look."""
+
+ASLEEP_AFTER = frozenset({"Sleep"})
+"""Actions after which the eyes stay shut, until the next action."""

@@ -1,0 +1,172 @@
+"""Pictures of a recorded execution: one moment a tick, from cameras that stay or that are chosen by what they see."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import NDArray
+
+from hearth.kb.knowledge import Knowledge, default
+from hearth.rendering.acting import Actor, carried, cast, moved, posed
+from hearth.rendering.camera import Camera, top_view
+from hearth.rendering.ground import Ground
+from hearth.rendering.modalities import render
+from hearth.rendering.places import Places
+from hearth.rendering.scene import Scene
+from hearth.rendering.staging import Stage, stage
+from hearth.rendering.viewpoints import best_view, home_box, room_views
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Step
+from hearth.schemas.vocabulary import ROOM_CATEGORY
+from hearth.simulation.engine import Execution
+
+AUTO = "auto"
+TOP = "top"
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """One tick of an execution, ready to be pictured.
+
+    Attributes:
+        tick: 0 before the first step, then 1 after it, ...
+        steps: what was done in this tick; none at the start.
+        scene: what there is.
+        actors: the characters.
+        places: where everything is.
+    """
+
+    tick: int
+    steps: tuple[Step, ...]
+    scene: Scene
+    actors: tuple[Actor, ...]
+    places: Places
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """Pictures of one moment by one camera.
+
+    Attributes:
+        tick, steps: as of the moment.
+        camera: it was taken with.
+        pictures: modality -> array, as `modalities.render` gives them.
+        seen: share of the objects the steps name, and the character, that are visible (None without instance ids).
+    """
+
+    tick: int
+    steps: tuple[Step, ...]
+    camera: Camera
+    pictures: Mapping[str, NDArray[Any]]
+    seen: float | None = None
+
+
+def moments(
+    execution: Execution,
+    home: EnvironmentGraph,
+    *,
+    seed: int = 0,
+    hour: float = 10.0,
+    knowledge: Knowledge | None = None,
+) -> Iterator[Moment]:
+    """The scene at the start and after each tick of an execution.
+
+    Args:
+        execution: a recorded run; what its environment adds to the home, or has moved, is placed by its relations.
+        home: the home's graph as it was built, with boxes.
+        seed: decides bodies, colours and designs.
+        hour: of the day.
+        knowledge: Hearth's own by default.
+
+    Raises:
+        HearthError: the home has no geometry.
+    """
+    if not any(node.box and node.category == "Rooms" for node in home.nodes):
+        raise HearthError.of(
+            Code.NOT_RENDERED, "the home has no geometry: no room has a box", suggestion="a designed home"
+        )
+    known = knowledge or default()
+    prepared = stage(home, seed=seed, hour=hour, knowledge=known)
+    ground = Ground.of(prepared.rooms.values(), home.nodes)
+    graph = execution.worlds[0].graph()
+    places = Places.start(home, known).settled(graph)
+    actors = cast(graph, ground, places, seed)
+    actors = tuple(posed(actor, graph, places, None) for actor in actors)
+    yield Moment(0, (), _scene(prepared, places, actors), actors, places)
+    for tick, steps in enumerate(list(execution.program.ticks())[: len(execution.worlds) - 1], 1):
+        graph = execution.worlds[tick].graph()
+        actors, places = _advanced(actors, places, graph, ground, steps)
+        yield Moment(tick, steps, _scene(prepared, places, actors), actors, places)
+
+
+def _advanced(
+    actors: tuple[Actor, ...], places: Places, graph: EnvironmentGraph, ground: Ground, steps: tuple[Step, ...]
+) -> tuple[tuple[Actor, ...], Places]:
+    """Everyone and everything after a tick."""
+    by_agent = {step.agent: step for step in steps}
+    after: list[Actor] = []
+    # People first go where they act, then things are put down near them, then hands go to where the things are.
+    for number, actor in enumerate(actors):
+        others = [a.spot for a in (*after, *actors[number + 1 :])]
+        known = replace(places, graph=graph)
+        after.append(moved(actor, graph, known, ground, by_agent.get(number), others))
+    near = {actor.node.id: actor.position for actor in after}
+    settled = places.settled(graph, near)
+    return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
+
+
+def _scene(prepared: Stage, places: Places, actors: tuple[Actor, ...]) -> Scene:
+    held = carried(actors, places)
+    nodes = [replace(n, box=held[n.id].box, yaw=held[n.id].yaw) if n.id in held else n for n in places.nodes()]
+    figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
+    return prepared.scene(nodes, figures)
+
+
+def snapshots(
+    execution: Execution,
+    home: EnvironmentGraph,
+    cameras: Sequence[Camera | str] = (TOP, AUTO),
+    modalities: Iterable[str] = ("rgb", "instance_ids"),
+    *,
+    size: tuple[int, int] = (320, 240),
+    quality: str = "draft",
+    seed: int = 0,
+    hour: float = 10.0,
+    knowledge: Knowledge | None = None,
+) -> Iterator[Snapshot]:
+    """Pictures of every moment of an execution by every camera.
+
+    Args:
+        execution, home, seed, hour, knowledge: as of `moments`.
+        cameras: cameras that stay; `top` is a bird's eye over the home, `auto` the camera of the character's room
+            that sees best what the step names.
+        modalities, quality: as of `modalities.render`.
+        size: width and height for `top` and `auto`.
+
+    Raises:
+        HearthError: the home has no geometry, open3d is missing, or a modality is unknown.
+    """
+    wanted = tuple(modalities)
+    views = room_views(home, *size)
+    rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
+    last: Camera | None = None
+    for moment in moments(execution, home, seed=seed, hour=hour, knowledge=knowledge):
+        named = tuple(ref.node for step in moment.steps for ref in step.objects if ref.node and ref.node not in rooms)
+        for choice in cameras:
+            camera = choice if isinstance(choice, Camera) else top_view(home_box(home), TOP, *size)
+            if choice == AUTO:
+                actor = moment.actors[0]
+                camera = last = best_view(moment.scene, views, actor, named, last, rooms.get(actor.room))
+            pictures = render(moment.scene, camera, wanted, quality=quality)
+            seen = _seen(pictures["instance_ids"], named) if "instance_ids" in pictures else None
+            yield Snapshot(moment.tick, moment.steps, camera, pictures, seen)
+
+
+def _seen(ids: NDArray[Any], named: tuple[int, ...]) -> float:
+    """Share of the nodes that have a pixel."""
+    found = [bool((ids == node_id).any()) for node_id in dict.fromkeys(named)]
+    return sum(found) / len(found) if found else 1.0
