@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from hearth.schemas.errors import HearthError
-from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
@@ -37,17 +34,15 @@ class Change:
 def between(before: World, after: World) -> Change:
     """What must be done to `before` to get `after`.
 
-    Both are worlds of one home, or of homes of which one has the other's nodes and more behind them (see
-    `edit.extended`): new nodes are not told, but their edges and states are. Cost follows what differs, except between
-    homes that do not know of each other.
-
-    Raises:
-        HearthError: BAD_GRAPH, when the homes have other nodes.
+    Nodes that only one of them has are not told, but their edges and states are. Cost follows what differs between
+    worlds of one home and of homes derived from one another (see `edit`); other homes are compared whole.
     """
     ids = before.home.ids
     extra = 0
     if before.home is not after.home:
-        ids = _common_ids(before.home, after.home)
+        ids, other = sorted((ids, after.home.ids), key=len, reverse=True)
+        if ids[: len(other)] != other:
+            return _of_sets(before, after)
         extra = _home_differences(before.home, after.home)
     added: set[Edge] = set()
     removed: set[Edge] = set()
@@ -61,11 +56,18 @@ def between(before: World, after: World) -> Change:
     return Change(tuple(sorted(added)), tuple(sorted(removed)), tuple(sorted(entered)), tuple(sorted(left)))
 
 
-def _common_ids(one: Home, other: Home) -> list[int]:
-    shorter, longer = sorted((one.ids, other.ids), key=len)
-    if longer[: len(shorter)] != shorter:
-        raise HearthError.of(Code.BAD_GRAPH, "worlds of homes with other nodes cannot be compared")
-    return longer
+def _of_sets(before: World, after: World) -> Change:
+    past, now = set(before.edges()), set(after.edges())
+    left, entered = (
+        {(world.home.ids[i], name) for name, row in zip(STATES, world.states, strict=True) for i in indices(row)}
+        for world in (before, after)
+    )
+    return Change(
+        tuple(sorted(now - past)),
+        tuple(sorted(past - now)),
+        tuple(sorted(entered - left)),
+        tuple(sorted(left - entered)),
+    )
 
 
 def _home_differences(one: Home, other: Home) -> int:
@@ -97,7 +99,10 @@ def _state_changes(before: World, after: World, ids: list[int]) -> tuple[list[St
 
 
 def _edge_changes(before: World, after: World, extra: int) -> Iterator[tuple[int, str, int, bool]]:
-    for old, new in zip_longest(before.agents, after.agents):
+    olds = {agent.index: agent for agent in before.agents}
+    news = {agent.index: agent for agent in after.agents}
+    for i in olds | news:
+        old, new = olds.get(i), news.get(i)
         if old is not new:
             past = set(rows.agent_edges(old)) if old else set()
             now = set(rows.agent_edges(new)) if new else set()

@@ -1,181 +1,196 @@
-"""Making a home into another one that has a little more, or a little else, in O(what is different).
+"""Making a home, or a world in the middle of an execution, into another one in O(what is different).
 
-For many environments of one home: rows are shared by copying lists of references, so that what is not touched costs a
-few nanoseconds a node.
+`extended` is for many environments of one home, `edit` for worlds; what `edit` changes is checked as sampling does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import pairwise
-from operator import attrgetter
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from hearth.schemas.errors import HearthError
-from hearth.schemas.failures import Code
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.building import CHARACTER_PROPERTIES, agent_row
-from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home
+from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
+from hearth.simulation import fitting, overlay, rows
+from hearth.simulation import moved as kinds
+from hearth.simulation.agent import Agent
+from hearth.simulation.building import agent_row
+from hearth.simulation.change import Change
+from hearth.simulation.derived import added_nodes, extended, without
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
 
-_NO_STATES: Mapping[int, Iterable[str]] = MappingProxyType({})
+__all__ = ["added_nodes", "apply", "edit", "extended", "free_id"]
+
+_NO_PLACES: Mapping[int, tuple[str, int]] = MappingProxyType({})
 
 
-def extended(
-    home: Home,
-    nodes: Sequence[Node] = (),
-    edges: Sequence[Edge] = (),
-    removed_edges: Sequence[Edge] = (),
-    states: Mapping[int, Iterable[str]] = _NO_STATES,
-) -> Home:
-    """A home with more nodes, more and fewer edges, and other states; the given home stays as it is.
-
-    Nothing is checked against the knowledge: what is given is taken as it is.
+def edit(
+    world: World,
+    *,
+    add: Sequence[Node] = (),
+    remove: Iterable[int] = (),
+    place: Mapping[int, tuple[str, int]] = _NO_PLACES,
+    link: Iterable[Edge] = (),
+    unlink: Iterable[Edge] = (),
+    set: Iterable[tuple[int, str]] = (),
+    clear: Iterable[tuple[int, str]] = (),
+    check: bool = True,
+) -> World | Failure:
+    """Another world, in which these things are different; done in the order of the arguments.
 
     Args:
-        home: to start from. Many homes may be derived from one.
-        nodes: new ones, characters included. Fast when their ids are above all that the home has.
-        edges: new ones; either end may be a new node. CLOSE is symmetric: one direction is enough.
-        removed_edges: taken away before `edges` are added; one that is not there is no error.
-        states: node id -> the simulated states it is in, instead of those it had; new nodes bring their own.
+        world: to start from, at any moment of an execution.
+        add: new nodes, each with its states; see `free_id`. They are nowhere until placed.
+        remove: ids of nodes that vanish, with all their edges, out of all hands and memories.
+        place: node id -> (`ON` or `INSIDE`, id of the place): it leaves hands and all it was ON, INSIDE and CLOSE to,
+            both ways, and is in the place's room, ON or INSIDE the place, and CLOSE to it.
+        link: edges that come; of BETWEEN only those of new nodes.
+        unlink: edges that go; one that is not there is no error.
+        set: (node id, state): it enters the state and leaves the opposite.
+        clear: (node id, state): it leaves the state.
+        check: whether `place`, `link` and `set` must fit the knowledge: placements, seat limits, possible states.
+
+    Returns:
+        The world, or NO_PLACE, OCCUPIED or NOT_AFFORDED for the first thing that does not fit.
 
     Raises:
-        HearthError: BAD_GRAPH, when an id is used twice or an edge or state names a node that there is not.
+        HearthError: BAD_GRAPH, when an id is used twice or names a node that there is not.
     """
-    if nodes:
-        if len(nodes) > 1:
-            nodes = sorted(nodes, key=attrgetter("id"))
-        if home.ids and nodes[0].id <= home.ids[-1]:
-            return _rebuilt(home, nodes, edges, removed_edges, states)
-    new = home.copy()
     try:
-        for node in nodes:
-            _append(new, node)
-        touched = -1 << len(home)
-        touched |= _each(new, removed_edges, _clear) | _each(new, edges, _put)
-        _restate(new, states)
+        if add:
+            world = _with_nodes(world, add)
+        for node_id in remove:
+            world = _without_node(world, world.home.index[node_id])
+        for node_id, (relation, target) in place.items():
+            i, j = world.home.index[node_id], world.home.index[target]
+            failure = fitting.unfit(world, i, relation, j) if check else None
+            if failure is not None:
+                return failure
+            world = _placed(world, i, relation, j)
+        linked = _linked(world, link, check)
+        if isinstance(linked, Failure):
+            return linked
+        world = overlay.unlinked(linked, _numbered(linked.home, unlink))
+        return _with_states(world, set, clear, check)
     except KeyError as error:
-        raise HearthError.of(Code.BAD_GRAPH, f"no node has the id {error.args[0]}") from None
-    new.derive(home, touched & new.everything)
-    return new
+        raise _no_node(error) from None
 
 
-def added_nodes(base: Home, home: Home) -> tuple[Node, ...]:
-    """The nodes that `home` has and `base` has not, in id order."""
-    known = base.index
-    return tuple(home.node(i) for i, node_id in enumerate(home.ids) if node_id not in known)
+def apply(world: World, change: Change) -> World:
+    """The world after a change: what was there is taken away, what came is added.
+
+    Raises:
+        HearthError: BAD_GRAPH, when it names a node that there is not.
+    """
+    try:
+        world = overlay.unlinked(world, _numbered(world.home, change.removed))
+    except KeyError as error:
+        raise _no_node(error) from None
+    after = edit(world, link=change.added, clear=change.cleared_states, set=change.set_states, check=False)
+    assert isinstance(after, World)
+    return after
 
 
-def _rebuilt(
-    home: Home,
-    nodes: Sequence[Node],
-    edges: Sequence[Edge],
-    removed_edges: Sequence[Edge],
-    states: Mapping[int, Iterable[str]],
-) -> Home:
-    """The slow way, for ids that belong between the home's: everything anew, in id order."""
-    every = sorted([*map(home.node, range(len(home))), *nodes], key=attrgetter("id"))
-    for one, other in pairwise(every):
-        if one.id == other.id:
-            raise _twice(one.id)
-    from hearth.simulation.world import World
-
-    whole = Home(every, World.start(home).edges(), home.name, home.knowledge)
-    return extended(whole, (), edges, removed_edges, states)
+def free_id(home: Home, first: int = FIRST_ADDED_ID) -> int:
+    """The next id for a new node: `first` or more, and above all the home has, which is fast."""
+    return max(first, home.ids[-1] + 1) if home.ids else first
 
 
-def _twice(node_id: int) -> HearthError:
-    return HearthError.of(Code.BAD_GRAPH, f"two nodes have the id {node_id}")
+def _with_nodes(world: World, nodes: Sequence[Node]) -> World:
+    home = extended(world.home, nodes)
+    if home.base is None or home.base[0] is not world.home:
+        return _moved_over(world, home)
+    rest = world.home.everything
+    states = tuple(now | new & ~rest for now, new in zip(world.states, home.states, strict=True))
+    came = (Agent(i, 1 << i, *row) for i, row in zip(home.agents, home.agent_rows, strict=True))
+    agents = (*world.agents, *(agent for agent in came if not rest & agent.bit))
+    return World(home, states, agents, world.moved)
 
 
-def _append(home: Home, node: Node) -> None:
-    index = len(home.ids)
-    node_id, name = node.id, node.class_name
-    if node_id in home.index:
-        raise _twice(node_id)
-    bit = 1 << index
-    home.index[node_id] = index
-    home.ids.append(node_id)
-    home.classes.append(name)
-    home.nodes.append(node)
-    home.by_class[name] = home.by_class.get(name, 0) | bit
-    if name == CHARACTER_CLASS:
-        home.agents = (*home.agents, index)
-        home.agent_rows.append((0,) * 9)
-    elif node.category == ROOM_CATEGORY:
-        home.rooms |= bit
-    for prop in node.properties:
-        if name != CHARACTER_CLASS or prop in CHARACTER_PROPERTIES:
-            home.properties[prop] = home.properties.get(prop, 0) | bit
-    for rows in home.rows:
-        rows.append(0)
-    if node.states:
-        home.states = _entered(home.states, bit, node.states)
+def _moved_over(world: World, home: Home) -> World:
+    """The world in a home with other indices: edges and states anew, memories by id."""
+    start = World.start(home)
+    before = World.start(world.home)
+    there = apply(start, world.changes(before))
+    old, new = world.home.ids, home.index
+    agents = tuple(
+        there_agent._replace(origins=tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins))
+        for agent, there_agent in zip(world.agents, there.agents, strict=False)
+    )
+    return World(home, there.states, (*agents, *there.agents[len(agents) :]), there.moved)
 
 
-def _entered(states: tuple[int, ...], bit: int, names: Iterable[str]) -> tuple[int, ...]:
-    """Of two states that exclude each other the one said first holds."""
-    new = list(states)
-    for name in names:
-        number = STATE_ID.get(name)
-        if number is not None and not new[number ^ 1] & bit:
-            new[number] |= bit
-    return tuple(new)
+def _without_node(world: World, i: int) -> World:
+    home = without(world.home, i)
+    bit = 1 << i
+    extra = dict(world.moved.extra)
+    kinds.unlink_all(extra, i, tuple(range(7)))
+    agents = []
+    for agent in world.agents:
+        if agent.index != i:
+            memory = tuple(entry for entry in agent.origins if i not in entry[:2])
+            agents.append(Agent(agent.index, agent.bit, *agent_row(row & ~bit for row in agent[2:11]), memory))
+    states = tuple(row & ~bit for row in world.states)
+    return World(home, states, tuple(agents), world.moved._replace(extra=extra))
 
 
-def _restate(home: Home, states: Mapping[int, Iterable[str]]) -> None:
-    for node_id, names in states.items():
-        bit = 1 << home.index[node_id]
-        home.restated |= bit
-        home.states = _entered(tuple([row & ~bit for row in home.states]), bit, names)
+def _placed(world: World, i: int, relation: str, j: int) -> World:
+    """Take i out of where it is and put it there, without asking whether it fits."""
+    bit = 1 << i
+    room = rows.room_of(world, j)
+    moved = world.moved
+    agents = list(world.agents)
+    for number, agent in enumerate(agents):
+        if agent.index == i:
+            agents[number] = agent._replace(close=0, inside=0, on=0)
+        else:
+            close, _facing, _faced, inside, contents, on, worn, right, left = (row & ~bit for row in agent[2:11])
+            agents[number] = Agent(
+                agent.index, agent.bit, close, agent.facing, agent.faced, inside, contents, on, worn, right, left,
+                agent.origins,
+            )  # fmt: skip
+    edges = [(i, relation, j)]
+    if j != room:
+        edges.append((i, "CLOSE", j))
+    if room >= 0 and j != room:
+        edges.append((i, "INSIDE", room))
+    if not world.home.characters & bit:
+        moved = kinds.lift(moved, i, -1)
+    return overlay.linked(World(world.home, world.states, tuple(agents), moved), edges)
 
 
-def _put(row: int, bit: int) -> int:
-    return row | bit
+def _linked(world: World, edges: Iterable[Edge], check: bool) -> World | Failure:
+    for i, relation, j in _numbered(world.home, edges):
+        failure = fitting.unfit(world, i, relation, j) if check and relation in ("ON", "INSIDE") else None
+        if failure is not None:
+            return failure
+        world = overlay.linked(world, [(i, relation, j)])
+    return world
 
 
-def _clear(row: int, bit: int) -> int:
-    return row & ~bit
+def _with_states(
+    world: World, entered: Iterable[tuple[int, str]], left: Iterable[tuple[int, str]], check: bool
+) -> World | Failure:
+    states = list(world.states)
+    index = world.home.index
+    for node_id, name in left:
+        states[STATE_ID[name]] &= ~(1 << index[node_id])
+    for node_id, name in entered:
+        failure = fitting.impossible(world.home, index[node_id], name) if check else None
+        if failure is not None:
+            return failure
+        number, bit = STATE_ID[name], 1 << index[node_id]
+        states[number] |= bit
+        states[number ^ 1] &= ~bit
+    return World(world.home, tuple(states), world.agents, world.moved)
 
 
-def _each(home: Home, edges: Iterable[Edge], change: Callable[[int, int], int]) -> int:
-    """Change both rows of every edge; the nodes whose rows changed."""
+def _numbered(home: Home, edges: Iterable[Edge]) -> list[tuple[int, str, int]]:
     index = home.index
-    characters = home.characters
-    tables = home.tables
-    touched = 0
-    for source, relation, target in edges:
-        i, j = index[source], index[target]
-        a, b = 1 << i, 1 << j
-        touched |= a | b
-        if relation not in tables or (a | b) & characters:
-            _each_agent(home, (i, relation, j), change)
-            continue
-        forward, backward = tables[relation]
-        forward[i] = change(forward[i], b)
-        backward[j] = change(backward[j], a)
-    return touched
+    return [(index[source], relation, index[target]) for source, relation, target in edges]
 
 
-def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, int], int]) -> None:
-    """The same for an edge that a character has, or that takes no part in the simulation."""
-    i, relation, j = edge
-    part = False
-    for me, fields, other in ((i, AGENT_OUT, j), (j, AGENT_IN, i)):
-        field = fields.get(relation)
-        if field is None or me not in home.agents:
-            continue
-        if part and relation != "CLOSE":
-            break  # between two characters it stays with the one it goes out from
-        part = True
-        number = home.agents.index(me)
-        row = list(home.agent_rows[number])
-        row[field] = change(row[field], 1 << other)
-        home.agent_rows[number] = agent_row(row)
-    if not part and relation == "BETWEEN":
-        home.between[i] = change(home.between[i], 1 << j)
-    elif not part:
-        raw = (home.ids[i], relation, home.ids[j])
-        home.others = [other for other in home.others if other != raw]
-        if change(0, 1):
-            home.others.append(raw)
+def _no_node(error: KeyError) -> HearthError:
+    return HearthError.of(Code.BAD_GRAPH, f"there is no node or state {error.args[0]}")

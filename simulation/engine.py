@@ -47,8 +47,8 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
     """Run a bound program from a world, stopping at the first tick that can't be done."""
     worlds = [world]
     failure: Failure | None = None
-    for number, tick in enumerate(_ticks(program)):
-        result = act(world, tick, rules) if isinstance(tick, Step) else _together(world, tick, rules)
+    for number, steps in enumerate(_ticks(program)):
+        result = act(world, steps, rules) if isinstance(steps, Step) else _together(world, steps, rules)
         if isinstance(result, Failure):
             failure = replace(result, tick=number)
             break
@@ -59,8 +59,8 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Only the end of a run, for who needs no trace."""
-    for number, tick in enumerate(_ticks(program)):
-        result = act(world, tick, rules) if isinstance(tick, Step) else _together(world, tick, rules)
+    for number, steps in enumerate(_ticks(program)):
+        result = act(world, steps, rules) if isinstance(steps, Step) else _together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
         world = result
@@ -68,11 +68,9 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
 
 
 def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT) -> World | Failure:
-    """One tick: agent number -> its instruction; None, like no entry, is doing nothing."""
-    steps = [replace(s, agent=agent) for agent, s in sorted(instructions.items()) if s is not None]
-    if not steps:
-        return world
-    return act(world, steps[0], rules) if len(steps) == 1 else _together(world, steps, rules)
+    """One tick, done by the rule of `tick`, or, if one agent fails, not at all."""
+    now, failures = tick(world, instructions, rules)
+    return failures[min(failures)] if failures else now
 
 
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
@@ -97,28 +95,64 @@ def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:
     """Single steps as they are; only what happens together is grouped."""
     if not any(step.joins for step in program.steps):
         return program.steps
-    return (tick[0] if len(tick) == 1 else tick for tick in program.ticks())
+    return (steps[0] if len(steps) == 1 else steps for steps in program.ticks())
+
+
+def tick(
+    world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT
+) -> tuple[World, dict[int, Failure]]:
+    """What several agents make of one tick, each failing for itself.
+
+    The rule: each instruction must be possible in the world as the tick begins; those that are, are done in order of
+    agent number, and one that an earlier agent's change has made impossible is a CONFLICT. So of two who grab one cup
+    the lower number gets it; who walks to another arrives where that one has gone.
+
+    Args:
+        world: as the tick begins.
+        instructions: agent number -> its instruction; None, like no entry, is doing nothing.
+        rules: how actions are to be read.
+
+    Returns:
+        The world after what could be done, and for the others why not.
+    """
+    failures: dict[int, Failure] = {}
+    now = world
+    for agent, instruction in sorted(instructions.items()):
+        if instruction is None:
+            continue
+        mine = instruction if instruction.agent == agent else replace(instruction, agent=agent)
+        result = act(world, mine, rules)
+        if isinstance(result, World) and now is not world:
+            result = _after_others(act(now, mine, rules), mine.action)
+        if isinstance(result, Failure):
+            failures[agent] = result
+        else:
+            now = result
+    return now, failures
+
+
+def _after_others(result: World | Failure, action: str) -> World | Failure:
+    if isinstance(result, World):
+        return result
+    actual = f"{result.code} after what the other did in this tick"
+    return replace(result, code=Code.CONFLICT, expected=f"{action} still possible", actual=actual)
 
 
 def _together(world: World, steps: Iterable[Step], rules: Rules) -> World | Failure:
-    """Several agents' instructions in one tick.
+    """Several agents' instructions in one tick of a program: by the rule of `tick`, or, if one fails, not at all."""
+    instructions: dict[int, Step | None] = {}
+    for instruction in steps:
+        if instruction.agent in instructions:
+            return _twice(instruction)
+        instructions[instruction.agent] = instruction
+    now, failures = tick(world, instructions, rules)
+    return failures[min(failures)] if failures else now
 
-    The rule: each must be possible in the world as the tick begins; then they are done in order of agent number, and
-    one that an earlier agent's change has made impossible is a CONFLICT. A failed tick changes nothing.
-    """
-    ordered = sorted(steps, key=lambda s: s.agent)
-    for instruction in ordered:
-        alone = act(world, instruction, rules)
-        if isinstance(alone, Failure):
-            return alone
-    now = world
-    for instruction in ordered:
-        result = act(now, instruction, rules)
-        if isinstance(result, Failure):
-            actual = f"{result.code} after what the other did in this tick"
-            return replace(result, code=Code.CONFLICT, expected=f"{instruction.action} still possible", actual=actual)
-        now = result
-    return now
+
+def _twice(instruction: Step) -> Failure:
+    names = tuple(ref.name for ref in instruction.objects)
+    expected, found = "one instruction an agent and tick", "two"
+    return Failure(Code.CONFLICT, 0, instruction.agent, instruction.action, (), names, expected, found)
 
 
 def _refused(world: World, instruction: Step) -> Failure:

@@ -55,6 +55,7 @@ class Home:
         others: edges that take no part in the simulation, kept for printing.
         nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
         restated: nodes whose states at the start are others than the node says.
+        absent: indices of nodes that were taken away by `edit`: nothing refers to them any more.
         base: the home this one was derived from, and the nodes whose rows differ from it; None of a home of its own.
     """
 
@@ -67,7 +68,7 @@ class Home:
     ) -> None:
         self.name = name
         self.knowledge = knowledge or default()
-        self.restated = 0
+        self.restated = self.absent = 0
         self.base: tuple[Home, int] | None = None
         read = building.read_nodes(nodes)
         self.nodes, self.ids, self.index, self.classes = read.nodes, read.ids, read.index, read.classes
@@ -105,7 +106,7 @@ class Home:
         return len(self.ids)
 
     def __repr__(self) -> str:
-        return f"Home({self.name!r}, {len(self)} nodes)"
+        return f"Home({self.name!r}, {len(self.index)} nodes)"
 
     def node(self, index: int) -> Node:
         """The node as it was given, in the states of the start."""
@@ -117,7 +118,7 @@ class Home:
         """A home of equal content whose rows may be written to until somebody else sees it."""
         new: Home = object.__new__(Home)
         new.name, new.knowledge, new.states, new.agents = self.name, self.knowledge, self.states, self.agents
-        new.rooms, new.restated, new.base = self.rooms, self.restated, self.base
+        new.rooms, new.restated, new.absent, new.base = self.rooms, self.restated, self.absent, self.base
         new.others, new.nodes, new.ids, new.classes = self.others, self.nodes[:], self.ids[:], self.classes[:]
         new.index, new.by_class, new.properties = self.index.copy(), self.by_class.copy(), self.properties.copy()
         new.on, new.bears, new.inside, new.contents = self.on[:], self.bears[:], self.inside[:], self.contents[:]
@@ -172,7 +173,7 @@ class Home:
     @cached_property
     def everything(self) -> int:
         """All nodes."""
-        return (1 << len(self.ids)) - 1
+        return (1 << len(self.ids)) - 1 & ~self.absent
 
     @cached_property
     def characters(self) -> int:

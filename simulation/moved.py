@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from hearth.simulation.bits import indices
 
-ON, BEARS, INSIDE, CONTENTS, CLOSE = range(5)
+ON, BEARS, INSIDE, CONTENTS, CLOSE, FACING, FACED = range(7)
 """Kinds of extra rows; row (i, kind) has the key 8 * i + kind."""
 
-_INVERSE = (BEARS, ON, CONTENTS, INSIDE, CLOSE)
+_INVERSE = (BEARS, ON, CONTENTS, INSIDE, CLOSE, FACED, FACING)
 
 
 class Moved(NamedTuple):
@@ -52,6 +52,16 @@ def unlink_all(extra: dict[int, int], i: int, kinds: tuple[int, ...]) -> None:
                 del extra[key]
 
 
+def unlink(extra: dict[int, int], i: int, kind: int, j: int) -> None:
+    """Drop an extra edge and its inverse, if there is one, from a dict that nobody else holds yet."""
+    for key, bit in ((8 * i + kind, 1 << j), (8 * j + _INVERSE[kind], 1 << i)):
+        rest = extra.get(key, 0) & ~bit
+        if rest:
+            extra[key] = rest
+        else:
+            extra.pop(key, None)
+
+
 def lift(moved: Moved, i: int, room: int) -> Moved:
     """Take node i out of all it is ON, INSIDE and CLOSE to, both ways, and put it INSIDE a room (or nowhere)."""
     bit = 1 << i
@@ -67,10 +77,11 @@ def carry(moved: Moved, i: int, room: int) -> Moved:
     bit = 1 << i
     extra = moved.extra
     settled = moved.inside & moved.close & moved.facing & bit
-    if settled and extra.get(8 * i + INSIDE) == 1 << room and not (8 * i + CONTENTS in extra or 8 * i + CLOSE in extra):
+    loose = (8 * i + CONTENTS, 8 * i + CLOSE, 8 * i + FACING, 8 * i + FACED)
+    if settled and extra.get(8 * i + INSIDE) == 1 << room and not any(key in extra for key in loose):
         return moved
     extra = dict(extra)
-    unlink_all(extra, i, (INSIDE, CONTENTS, CLOSE))
+    unlink_all(extra, i, (INSIDE, CONTENTS, CLOSE, FACING, FACED))
     link(extra, i, INSIDE, room)
     return Moved(moved.on, moved.inside | bit, moved.close | bit, moved.facing | bit, extra)
 

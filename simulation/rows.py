@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
-from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, INSIDE, NOTHING, ON
+from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
 
 if TYPE_CHECKING:
     from hearth.simulation.world import World
@@ -45,14 +45,12 @@ def close(world: World, i: int) -> int:
 
 def facing(world: World, i: int) -> int:
     """The things that i is FACING."""
-    gone = world.moved.facing
-    return 0 if gone >> i & 1 else world.home.facing[i] & ~gone
+    return _row(world.home.facing[i], world.moved.facing, world.moved.extra, i, FACING)
 
 
 def faced(world: World, i: int) -> int:
     """The things that are FACING i."""
-    gone = world.moved.facing
-    return 0 if gone >> i & 1 else world.home.faced[i] & ~gone
+    return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
 
 
 def _row(row: int, gone: int, extra: dict[int, int], i: int, kind: int) -> int:
@@ -171,10 +169,10 @@ def held_indices(agent: Agent) -> Iterator[int]:
     yield from indices(agent.left & ~agent.right)
 
 
-def thing_edges(world: World) -> Iterator[Numbered]:
-    """Every edge between things, as (index, relation, index)."""
+def thing_edges(world: World, among: int = -1) -> Iterator[Numbered]:
+    """Every edge between things (of these), as (index, relation, index)."""
     home = world.home
-    for i in range(len(home)):
+    for i in indices(among & home.everything):
         for relation, row in (
             ("ON", on(world, i)),
             ("INSIDE", inside(world, i)),
@@ -182,7 +180,7 @@ def thing_edges(world: World) -> Iterator[Numbered]:
             ("FACING", facing(world, i)),
             ("BETWEEN", home.between[i]),
         ):
-            for j in indices(row):
+            for j in indices(row & among):
                 yield i, relation, j
 
 
@@ -214,8 +212,8 @@ def difference(world: World) -> frozenset[tuple[int, int, int]]:
             (INSIDE, inside(world, i), home.inside[i]),
             (CONTENTS, contents(world, i), home.contents[i]),
             (CLOSE, close(world, i), home.close[i]),
-            (5, facing(world, i), home.facing[i]),
-            (6, faced(world, i), home.faced[i]),
+            (FACING, facing(world, i), home.facing[i]),
+            (FACED, faced(world, i), home.faced[i]),
         ):
             if now != before:
                 found.add((i, kind, now))

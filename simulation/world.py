@@ -8,6 +8,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent, replaced
+from hearth.simulation.bits import indices
 from hearth.simulation.change import Change, between
 from hearth.simulation.home import Home
 from hearth.simulation.moved import NOTHING, Moved
@@ -50,21 +51,23 @@ class World:
         """Whether a node is in a state."""
         return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
 
-    def graph(self) -> EnvironmentGraph:
-        """The whole graph, rebuilt: nodes in id order, edges sorted."""
+    def graph(self, among: int = -1) -> EnvironmentGraph:
+        """The graph, rebuilt, or the part of it among these nodes: nodes in id order, edges sorted."""
         home = self.home
-        nodes = tuple(with_states(home.node(i), i, self.states) for i in range(len(home)))
-        return EnvironmentGraph(nodes, tuple(sorted(self.edges())))
+        nodes = tuple(with_states(home.node(i), i, self.states) for i in indices(among & home.everything))
+        return EnvironmentGraph(nodes, tuple(sorted(self.edges(among))))
 
-    def edges(self) -> list[Edge]:
-        """Every edge, each once, in no particular order."""
+    def edges(self, among: int = -1) -> list[Edge]:
+        """Every edge (among these nodes), each once, in no particular order."""
         home = self.home
-        ids = home.ids
-        found = {Edge(ids[i], relation, ids[j]) for i, relation, j in rows.thing_edges(self)}
+        ids, index = home.ids, home.index
+        found = {Edge(ids[i], relation, ids[j]) for i, relation, j in rows.thing_edges(self, among)}
         for agent in self.agents:
-            found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in rows.agent_edges(agent))
-        known = home.index
-        found.update(Edge(*edge) for edge in home.others if edge[0] in known and edge[2] in known)
+            pairs = ((i, r, j) for i, r, j in rows.agent_edges(agent) if among >> i & 1 and among >> j & 1)
+            found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in pairs)
+        for source, relation, target in home.others:
+            if among >> index[source] & 1 and among >> index[target] & 1:
+                found.add(Edge(source, relation, target))
         return list(found)
 
     def changes(self, since: World) -> Change:

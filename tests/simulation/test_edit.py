@@ -1,16 +1,19 @@
 from __future__ import annotations
 
+import random
+
 import pytest
+from small_worlds import bound_step, node, random_graph, random_step
 
 from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
-from hearth.simulation.edit import added_nodes, extended
+from hearth.schemas.vocabulary import OPPOSITE, STATES
+from hearth.simulation.edit import added_nodes, apply, edit, extended, free_id
+from hearth.simulation.engine import act
 from hearth.simulation.home import Home
+from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world import World
-
-
-def node(node_id: int, name: str, category: str = "Props", properties=(), states=()) -> Node:
-    return Node(node_id, name, category, tuple(properties), tuple(states))
 
 
 def kitchen() -> Home:
@@ -44,7 +47,7 @@ REMOVED = (
     Edge(5, "ON", 4), Edge(4, "CLOSE", 5), Edge(3, "INSIDE", 1), Edge(7, "BETWEEN", 2), Edge(5, "MADE_BY", 6),
     Edge(4, "FACING", 6),
 )  # fmt: skip
-STATES = {4: ["DIRTY"], 6: ["ON"], 3: ["LYING"]}
+NEW_STATES = {4: ["DIRTY"], 6: ["ON"], 3: ["LYING"]}
 
 
 def by_hand(home: Home) -> EnvironmentGraph:
@@ -63,7 +66,7 @@ def by_hand(home: Home) -> EnvironmentGraph:
 def test_an_extended_home_is_the_home_of_the_extended_graph():
     home = kitchen()
     before = World.start(home).graph()
-    new = extended(home, ADDED, EDGES, REMOVED, STATES)
+    new = extended(home, ADDED, EDGES, REMOVED, NEW_STATES)
     assert World.start(new).graph() == by_hand(home)
     fresh = Home.from_graph(by_hand(home))
     for name in ("ids", "classes", "by_class", "properties", "rooms", "states", "agents", "agent_rows", "index"):
@@ -79,7 +82,7 @@ def test_an_extended_home_is_the_home_of_the_extended_graph():
 def test_changes_between_a_home_and_one_derived_from_it_rebuild_the_graph():
     home = kitchen()
     start = World.start(home)
-    after = World.start(extended(home, ADDED, EDGES, REMOVED, STATES))
+    after = World.start(extended(home, ADDED, EDGES, REMOVED, NEW_STATES))
     again = World.start(Home.from_graph(by_hand(home)))
     change = after.changes(start)
     assert change == again.changes(start)
@@ -114,3 +117,161 @@ def test_ids_below_the_homes_own_are_put_in_order():
 def test_what_is_not_there_or_there_twice_is_refused(arguments):
     with pytest.raises(HearthError, match="BAD_GRAPH"):
         extended(kitchen(), *arguments)
+
+
+# Worlds in the middle of an execution
+
+
+def mid_execution(seed: int) -> World:
+    """A world some steps after the start of a random home, with its memories."""
+    rng = random.Random(seed)
+    graph = random_graph(rng, characters=1 + seed % 2)
+    world = World.start(Home.from_graph(graph))
+    for _ in range(30):
+        result = act(world, random_step(rng, graph, rng.randrange(len(world.agents))), DEFAULT)
+        world = world if isinstance(result, Failure) else result
+    return world
+
+
+def facts(world: World) -> tuple[set, set]:
+    graph = world.graph()
+    return {tuple(e) for e in graph.edges}, {(n.id, s) for n in graph.nodes for s in n.states}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_edges_and_states_come_and_go_one_by_one(seed):
+    world = mid_execution(seed)
+    rng = random.Random(seed)
+    ids = world.home.ids
+    edges, states = facts(world)
+    for _ in range(40):
+        edge = Edge(rng.choice(ids), rng.choice(("ON", "INSIDE", "CLOSE", "FACING")), rng.choice(ids))
+        if edges and rng.random() < 0.5:
+            edge = Edge(*rng.choice(sorted(e for e in edges)))
+        if edge.relation in ("BETWEEN", "HOLDS_RH", "HOLDS_LH"):
+            continue
+        both = {tuple(edge), (edge.target, "CLOSE", edge.source)} if edge.relation == "CLOSE" else {tuple(edge)}
+        if rng.random() < 0.5:
+            world, edges = edit(world, link=[edge], check=False), edges | both
+        else:
+            world, edges = edit(world, unlink=[edge]), edges - both
+        node_id, state = rng.choice(ids), rng.choice(STATES)
+        if rng.random() < 0.5:
+            world = edit(world, set=[(node_id, state)], check=False)
+            states = states - {(node_id, OPPOSITE[state])} | {(node_id, state)}
+        else:
+            world, states = edit(world, clear=[(node_id, state)]), states - {(node_id, state)}
+        assert facts(world) == (edges, states), edge
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_an_edited_world_goes_on_like_one_built_from_its_graph(seed):
+    world = mid_execution(seed)
+    new = node(1000, "cup", states=["CLEAN"])
+    room = next(n.id for n in world.graph().nodes if n.category == "Rooms")
+    place = next(n.id for n in world.graph().nodes if n.category in ("Props", "Furniture"))
+    victim = max(i for i in world.home.ids if i not in (room, place) and i not in ids_of_agents(world))
+    edited = edit(world, add=[new], remove=[victim], place={1000: ("ON", place)}, check=False)
+    fresh = World.start(Home.from_graph(edited.graph()))
+    assert edited.graph() == fresh.graph()
+    rng = random.Random(seed)
+    for _ in range(30):
+        step = random_step(rng, edited.graph(), rng.randrange(len(world.agents)))
+        one, other = act(edited, step, DEFAULT), act(fresh, step, DEFAULT)
+        if step.action == "PutObjBack":
+            continue  # only the edited world remembers what was grabbed before
+        assert isinstance(one, Failure) == isinstance(other, Failure), step
+        if isinstance(one, World):
+            edited, fresh = one, other
+            assert facts(edited) == facts(fresh), step
+    assert victim not in edited.home.index
+    assert all(victim not in {edited.home.ids[i] for i in entry[:2]} for a in edited.agents for entry in a.origins)
+
+
+def ids_of_agents(world: World) -> set[int]:
+    return {world.home.ids[a.index] for a in world.agents}
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_applying_the_changes_between_two_worlds_gives_the_other(seed):
+    before = mid_execution(seed)
+    after = before
+    rng = random.Random(seed)
+    for _ in range(20):
+        result = act(after, random_step(rng, before.graph()), DEFAULT)
+        after = after if isinstance(result, Failure) else result
+    assert facts(apply(before, after.changes(before))) == facts(after)
+    assert facts(apply(after, before.changes(after))) == facts(before)
+    start = World.start(before.home)
+    assert facts(apply(start, after.changes(start))) == facts(after)
+
+
+def test_memories_and_hands_survive_an_edit():
+    home = kitchen()
+    world = World.start(home)
+    world = act(act(world, bound_step("Walk", [home.node(4)])), bound_step("Grab", [home.node(4)]))
+    assert world.holding() == {0: (5,)}
+    edited = edit(world, add=[node(1000, "cup")], link=[Edge(1000, "INSIDE", 1)], remove=[6], set=[(5, "DIRTY")])
+    assert edited.holding() == {0: (5,)}
+    back = act(edited, bound_step("PutObjBack", [home.node(4)]))
+    assert Edge(5, "ON", 4) in back.edges()
+    assert Edge(1000, "INSIDE", 1) in back.edges()
+    in_between = edit(world, add=[node(0, "sponge")])
+    assert in_between.home.ids[0] == 0
+    back = act(in_between, bound_step("PutObjBack", [home.node(4)]))
+    assert Edge(5, "ON", 4) in back.edges()
+
+
+def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
+    home = kitchen()
+    world = act(act(World.start(home), bound_step("Walk", [home.node(4)])), bound_step("Grab", [home.node(4)]))
+    placed = edit(world, place={5: ("ON", 4)})
+    assert placed.holding() == {0: ()}
+    mine = {tuple(e) for e in placed.edges() if 5 in (e.source, e.target)}
+    assert mine == {(5, "ON", 4), (5, "CLOSE", 4), (4, "CLOSE", 5), (5, "INSIDE", 1), (5, "MADE_BY", 6)}
+    moved = edit(world, place={3: ("INSIDE", 2)})
+    assert moved.holding() == {0: (5,)}
+    assert {tuple(e) for e in moved.edges() if e.source == 3} == {(3, "INSIDE", 2), (3, "HOLDS_RH", 5)}
+
+
+@pytest.mark.parametrize(
+    ("code", "change"),
+    [
+        ("NO_PLACE", {"place": {5: ("ON", 7)}}),
+        ("NO_PLACE", {"link": [Edge(4, "INSIDE", 5)]}),
+        ("NO_PLACE", {"place": {5: ("ON", 3)}}),
+        ("NOT_AFFORDED", {"set": [(4, "ON")]}),
+        ("NOT_AFFORDED", {"set": [(4, "SITTING")]}),
+        ("NOT_AFFORDED", {"set": [(3, "ON")]}),
+    ],
+)
+def test_what_does_not_fit_is_said_and_can_be_forced(code, change):
+    world = World.start(kitchen())
+    assert edit(world, **change).code == code
+    assert isinstance(edit(world, **change, check=False), World)
+
+
+def test_a_seat_bears_no_more_than_its_limit():
+    nodes = [node(1, "kitchen"), node(2, "chair"), node(3, "character")]
+    pillows = [node(10 + i, "pillow") for i in range(3)]
+    home = Home.from_graph(EnvironmentGraph((*nodes, *pillows), (Edge(3, "INSIDE", 1),)))
+    one = edit(World.start(home), place={10: ("ON", 2)})
+    assert isinstance(one, World)
+    assert edit(one, place={11: ("ON", 2)}).code == "OCCUPIED"
+    assert edit(one, place={3: ("ON", 2)}).code == "OCCUPIED"
+    assert isinstance(edit(one, place={10: ("ON", 2)}), World)
+
+
+def test_free_ids_are_above_all_others():
+    home = kitchen()
+    assert free_id(home) == 1000
+    assert free_id(home, 2000) == 2000
+    assert free_id(extended(home, ADDED)) == 2001
+
+
+def test_removing_a_character_frees_what_it_held():
+    home = extended(kitchen(), ADDED, EDGES)
+    world = edit(World.start(home), remove=[2000])
+    assert world.holding() == {0: ()}
+    assert 2000 not in {i for e in world.edges() for i in (e.source, e.target)}
+    assert World.start(world.home).graph() == world.graph()

@@ -1,0 +1,134 @@
+"""Interactive mode: agents that act tick by tick and see what they can."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.program import Step
+from hearth.schemas.rng import rng
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
+from hearth.simulation import engine
+from hearth.simulation.bits import indices
+from hearth.simulation.change import Change
+from hearth.simulation.edit import edit, free_id
+from hearth.simulation.home import Home
+from hearth.simulation.legal import Legal, legal
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.views import Deed, View, view
+from hearth.simulation.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """One tick of an episode.
+
+    Attributes:
+        instructions: what each agent tried, by number; who did nothing is not named.
+        failures: why, for those who could not.
+        world: after it.
+        change: what is different from before it.
+    """
+
+    instructions: Mapping[int, Step]
+    failures: Mapping[int, Failure]
+    world: World
+    change: Change
+
+
+class Env:
+    """A home in which agents act. Worlds stay values: `env.world` may be kept, and put back with `env.restore`.
+
+    Attributes:
+        rules: how actions are read.
+        partial: whether agents see only what is around them.
+        world: as it is now.
+        ticks: what happened since `reset`.
+    """
+
+    world: World
+
+    def __init__(self, rules: Rules = DEFAULT, partial: bool = True) -> None:
+        self.rules = rules
+        self.partial = partial
+        self.ticks: list[Tick] = []
+        self._deeds: dict[int, Deed] = {}
+
+    def reset(self, home: Home | EnvironmentGraph | World, agents: int = 1, seed: int = 0) -> dict[int, View]:
+        """Begin anew.
+
+        Args:
+            home: where; a world is taken up as it stands.
+            agents: how many are wanted at least. Those the home lacks are added, each in a random room.
+            seed: decides the rooms.
+
+        Returns:
+            What each agent sees.
+        """
+        if isinstance(home, EnvironmentGraph):
+            home = Home.from_graph(home)
+        self.restore(with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed))
+        return {number: self.observe(number) for number in range(len(self.world.agents))}
+
+    def restore(self, world: World) -> None:
+        """Go on from a world, as if nothing had happened before."""
+        self.world = world
+        self.ticks = []
+        self._deeds = {}
+
+    def step(self, instructions: Mapping[int, Step | None]) -> Tick:
+        """Let each agent do one instruction; who can't does nothing, and is told why (see `engine.tick`)."""
+        before = self.world
+        self.world, failures = engine.tick(before, instructions, self.rules)
+        tried = {number: step for number, step in sorted(instructions.items()) if step is not None}
+        self._deeds |= {number: Deed(step, failures.get(number)) for number, step in tried.items()}
+        tick = Tick(tried, failures, self.world, self.world.changes(before))
+        self.ticks.append(tick)
+        return tick
+
+    def observe(self, agent: int = 0) -> View:
+        """What an agent sees now.
+
+        Raises:
+            HearthError: UNKNOWN_AGENT.
+        """
+        self._check(agent)
+        return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))
+
+    def legal(self, agent: int = 0, *, only_visible: bool | None = None, only_reachable: bool = False) -> Legal:
+        """What an agent could do now; by default only with what it sees, when it does not see everything.
+
+        Raises:
+            HearthError: UNKNOWN_AGENT.
+        """
+        self._check(agent)
+        seen = self.partial if only_visible is None else only_visible
+        return legal(self.world, agent, self.rules, only_visible=seen, only_reachable=only_reachable)
+
+    def _check(self, agent: int) -> None:
+        if not 0 <= agent < len(self.world.agents):
+            raise HearthError.of(Code.UNKNOWN_AGENT, f"no agent {agent}; there are {len(self.world.agents)}, from 0")
+
+
+def with_agents(world: World, count: int, seed: int = 0) -> World:
+    """A world with at least that many characters: those it lacks are added, standing in random rooms.
+
+    Raises:
+        HearthError: NO_ROOM, when there is no room to put them in.
+    """
+    missing = count - len(world.agents)
+    if missing <= 0:
+        return world
+    home = world.home
+    rooms = [home.ids[i] for i in indices(home.rooms)]
+    if not rooms:
+        raise HearthError.of(Code.NO_ROOM, f"{home!r} has no room for a character")
+    first = free_id(home, 1)
+    chooser = rng(seed, "agents", home.name)
+    nodes = [Node(first + n, CHARACTER_CLASS, CHARACTER_CATEGORY, ("PERSON",)) for n in range(missing)]
+    more = edit(world, add=nodes, link=[Edge(node.id, "INSIDE", chooser.choice(rooms)) for node in nodes])
+    assert isinstance(more, World)
+    return more
