@@ -79,9 +79,10 @@ class _Checker:
         return replace(step, action=action.name, objects=tuple(objects)), []
 
     def affordances(self, step: Step, line: int) -> Iterator[Diagnostic]:
-        for position, ref in enumerate(step.objects):
+        action = self.knowledge.actions[step.action]
+        for position, ref in enumerate(step.objects[: action.arity]):
             if not self.knowledge.affords(step.action, position, ref.name):
-                requirement = self.knowledge.actions[step.action].grammar[position]
+                requirement = action.grammar[position]
                 yield self._fault(
                     Code.NOT_AFFORDED, f"[{step.action}] can't be done to", ref.name, line, f"it takes {requirement}"
                 )
