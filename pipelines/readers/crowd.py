@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
+import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -124,8 +125,9 @@ class _Rows(Iterator[tuple[int, str]]):
             cells = _cells(text, header) if _even(taken) or len(taken) == 1 else None
             if len(taken) > 1 and (cells is None or len(cells) != len(header.columns)):
                 # A quote left open swallows the records after it: give back from where one is whole again.
-                keep = next((k for k in range(1, len(taken)) if _whole(taken[k:], header)), len(taken))
-                self._again.extend(reversed(taken[keep:]))
+                ahead = [*taken, *itertools.islice(self, _LOOK_AHEAD)]
+                keep = next((k for k in range(1, len(taken)) if _whole(ahead[k:], header)), len(taken))
+                self._again.extend(reversed(ahead[keep:]))
                 text = "\n".join(piece for _, piece in taken[:keep])
                 cells = None
             yield number, text, cells
