@@ -113,8 +113,11 @@ def in_room(world: World, room: int) -> int:
 
 
 def visible(world: World, agent: Agent) -> int:
-    """What a character sees: what is in its room and not inside something closed, what it holds and wears, itself."""
-    seen = agent.held | agent.worn | agent.bit
+    """What a character sees: what is in its room and not inside something closed, what it holds and wears, itself.
+
+    It also knows which other rooms there are, or it could never ask to go to one.
+    """
+    seen = agent.held | agent.worn | agent.bit | world.home.rooms
     room = rows.agent_room(world, agent)
     if room < 0:
         return seen
