@@ -153,7 +153,13 @@ def _check_kept_free(things: Sequence[Thing], shell: Shell, faults: Faults) -> N
 
 
 def _check_reach(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faults) -> None:
-    """All rooms join on foot, and whoever is in a room gets to the front of what has one."""
+    """All rooms join on foot, and whoever is in a room gets to the front of what has one.
+
+    Where rooms or doors are at fault, or a thing itself, this would only say so again.
+    """
+    faulty = {fault.line for fault in faults}
+    if faulty & {part.line for part in (*plan.rooms, *plan.doorways)}:
+        return
     floor = grid(plan, shell, things)
     regions = floor.regions()
     main = _main_region(regions)
@@ -162,7 +168,7 @@ def _check_reach(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faul
             faults.add(Code.NO_PATH, f"furniture leaves no way into {room.name}", room.line,
                        "clear half a metre from its door")  # fmt: skip
     for thing in things:
-        if thing.front and thing.mount == "floor" and thing.yaw is not None:
+        if thing.front and thing.mount == "floor" and thing.yaw is not None and thing.line not in faulty:
             front = front_of(thing.yaw)
             start, end = span(footprint(thing.box), front)
             zone = strip(footprint(thing.box), front, start, end, -max(thing.front, REACH))

@@ -50,7 +50,9 @@ def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
             yield Edge(me, "INSIDE", ids[thing.inside])
         if thing.mount != "room":
             yield Edge(me, "INSIDE", ids[thing.room])
-        for room in thing.between:
+        # Where a door hangs it is the door that is between the rooms, as in the release, not its jamb.
+        has_door = thing.class_name == "doorjamb" and thing.name.removesuffix("jamb") in ids
+        for room in () if has_door else thing.between:
             yield Edge(me, "BETWEEN", ids[room])
 
 

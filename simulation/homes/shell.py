@@ -193,7 +193,7 @@ def _door_things(plan: Plan, door: Doorway, wall: str, begin: float, finish: flo
     yaw = facing_from(wall)
     passage = rooms if len(rooms) == 2 else ()
     yield Thing(f"{base}/doorjamb", "doorjamb", room.name, box_over(hole, 0, DOOR_HEIGHT), yaw, "door",
-                between=() if door.leaf else passage, line=door.line)  # fmt: skip
+                between=passage, line=door.line)  # fmt: skip
     if not door.leaf:
         return
     into = plan.room(door.into) if door.into in rooms else room

@@ -32,8 +32,11 @@ def test_show_says_what_is_in_each_room_and_draws(tmp_path):
 
 def test_lint_ends_with_1_where_something_is_wrong(tmp_path):
     assert run("lint", "maple").exit_code == 0
-    odd = {"nodes": [{"id": 1, "class_name": "kitchen", "category": "Rooms"}, {"id": 2, "class_name": "cup", "category": "Props"}],
-           "edges": [{"from_id": 2, "relation_type": "INSIDE", "to_id": 7}]}  # fmt: skip
+    nodes = [
+        {"id": 1, "class_name": "kitchen", "category": "Rooms"},
+        {"id": 2, "class_name": "cup", "category": "Props"},
+    ]
+    odd = {"nodes": nodes, "edges": [{"from_id": 2, "relation_type": "INSIDE", "to_id": 7}]}
     (tmp_path / "odd.json").write_text(json.dumps(odd))
     result = run("lint", tmp_path / "odd.json", "--json")
     assert result.exit_code == 1

@@ -31,7 +31,7 @@ def with_node(node):
 
 
 ODD = {
-    "two nodes of one id": (with_node(Node(CUP, "cup", "Props")), Code.DUPLICATE, "3"),
+    "two nodes of one id": (replace(SOUND, nodes=(*NODES, Node(CUP, "cup", "Props"))), Code.DUPLICATE, "3"),
     "unknown category": (with_node(Node(9, "cup", "Spaceship")), Code.BAD_GRAPH, "9"),
     "unknown class": (with_node(Node(9, "warpdrive", "Props")), Code.UNKNOWN_OBJECT, "9"),
     "unknown state": (with_node(Node(9, "cup", "Props", (), ("ENCHANTED",))), Code.BAD_GRAPH, "9"),
@@ -44,12 +44,18 @@ ODD = {
     "sits and lies": (with_node(Node(9, "character", "Characters", (), ("SITTING", "LYING"))), Code.CONTRADICTION, "9"),
     "no state": (with_node(Node(9, "oven", "Appliances", ("CAN_OPEN",))), Code.CONDITION_UNMET, "9"),
     "two rooms": (
-        EnvironmentGraph((*NODES, Node(9, "bedroom", "Rooms")), (*INSIDE, Edge(CUP, "INSIDE", 9))), Code.BAD_GRAPH, "3 1 9",
+        EnvironmentGraph((*NODES, Node(9, "bedroom", "Rooms")), (*INSIDE, Edge(CUP, "INSIDE", 9))),
+        Code.BAD_GRAPH,
+        "3 1 9",
     ),
     "two containers": (with_edges((CUP, "INSIDE", FRIDGE), (CUP, "INSIDE", BOX)), Code.BAD_GRAPH, "3 4 5"),
     "no room for it": (replace(SOUND, edges=INSIDE[:1] + INSIDE[2:]), Code.NO_ROOM, "3"),
     "no room at all": (EnvironmentGraph(), Code.NO_ROOM, ""),
-    "room in a box": (with_edges((ROOM, "INSIDE", BOX)), Code.BAD_GRAPH, "1"),
+    "room in a box": (
+        EnvironmentGraph((*NODES, Node(9, "bedroom", "Rooms")), (*INSIDE, Edge(9, "INSIDE", BOX))),
+        Code.BAD_GRAPH,
+        "9",
+    ),
     "circle": (with_edges((FRIDGE, "INSIDE", BOX), (BOX, "INSIDE", FRIDGE)), Code.LOOP, "4 5"),
     "circle of three": (
         with_edges((CUP, "ON", FRIDGE), (FRIDGE, "ON", BOX), (BOX, "ON", CUP)), Code.LOOP, "3 4 5",
