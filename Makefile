@@ -26,10 +26,11 @@ NOTEBOOK := asttokens attrs configargparse executing fastjsonschema ipython ipyt
 tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.csv' -o -name '*.json' -o -name '*.sql' \) 2>/dev/null)
 manifest = $(OUT)/$(1)/manifest.json
 
-BASE     := version.py $(call tree,schemas) pipelines/stage.py pipelines/parts.py pipelines/rejects.py
-KNOWN    := $(BASE) $(call tree,kb)
-WORLD    := $(KNOWN) $(call tree,simulation data_raw/homes)
-GROUNDED := $(WORLD) $(call tree,grounding)
+# What decides a stage's output. Generous: a stage that runs without need finds by digests that nothing changed.
+SHARED   := version.py $(call tree,schemas) \
+            $(filter-out $(STAGES:%=pipelines/%.py),$(wildcard pipelines/*.py pipelines/*.sql pipelines/*.yaml))
+KNOWN    := $(SHARED) $(call tree,kb)
+WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
 
 .PHONY: all setup test test-all lint bench lock wheel clean distclean help $(STAGES)
 
@@ -42,23 +43,27 @@ $(READY): requirements.lock pyproject.toml setup.sh
 
 $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up to date
 
-$(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
-	@$(HEARTH) ingest --out $(OUT) --seed $(SEED) --workers $(JOBS)
+# Progress goes to the terminal; the table that each command prints is only wanted at the end.
+RUN = @$(HEARTH) $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
+
+$(call manifest,ingest): $(SHARED) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
+	$(RUN) >/dev/null
 
 $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)
-	@$(HEARTH) validate --out $(OUT) --seed $(SEED) --workers $(JOBS)
+	$(RUN) >/dev/null
 
-$(call manifest,sample): $(call manifest,validate) $(GROUNDED) pipelines/sample.py | $(READY)
-	@$(HEARTH) sample --out $(OUT) --seed $(SEED) --workers $(JOBS)
+$(call manifest,sample): $(call manifest,validate) $(WORLD) pipelines/sample.py | $(READY)
+	$(RUN) --seed $(SEED) >/dev/null
 
-$(call manifest,augment): $(call manifest,sample) $(GROUNDED) $(call tree,pipelines/handlers) pipelines/augment.py | $(READY)
-	@$(HEARTH) augment --out $(OUT) --seed $(SEED) --workers $(JOBS)
+$(call manifest,augment): $(call manifest,sample) $(WORLD) $(call tree,pipelines/handlers) pipelines/augment.py | $(READY)
+	$(RUN) --seed $(SEED) >/dev/null
 
 $(call manifest,render): $(call manifest,augment) $(WORLD) $(call tree,rendering) pipelines/render.py | $(READY)
-	@$(HEARTH) render --out $(OUT) --seed $(SEED) --workers $(JOBS)
+	$(RUN) >/dev/null
 
-$(call manifest,publish): $(call manifest,render) $(GROUNDED) pipelines/publish.py | $(READY)
-	@$(HEARTH) publish --out $(OUT) --seed $(SEED) --workers $(JOBS)
+$(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py | $(READY)
+	$(RUN) --seed $(SEED) >/dev/null
+	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) 2>/dev/null
 
 test: $(READY)  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) -m "not slow"

@@ -72,14 +72,14 @@ COMMANDS: dict[str, dict[str, Entry]] = {
 }
 """Every command. To add one: a function in `commands/`, and a row here."""
 
-_ENTRIES = {name: entry for section in COMMANDS.values() for name, entry in section.items()}
+COMMANDS_BY_NAME = {name: entry for section in COMMANDS.values() for name, entry in section.items()}
 
 
 def load(name: str) -> Any:
     """The command of that name; imports its module."""
     import importlib
 
-    module, attribute = _ENTRIES[name].place.split(":")
+    module, attribute = COMMANDS_BY_NAME[name].place.split(":")
     target = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
     if isinstance(target, typer.Typer):
         target.rich_markup_mode = None
@@ -96,18 +96,18 @@ class Commands(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Every name, in the order of the table."""
-        return list(_ENTRIES)
+        return list(COMMANDS_BY_NAME)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of that name, or None."""
-        return load(cmd_name) if cmd_name in _ENTRIES else None
+        return load(cmd_name) if cmd_name in COMMANDS_BY_NAME else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Find the command, or say which name was probably meant."""
-        if args and args[0] not in _ENTRIES and not args[0].startswith("-"):
+        if args and args[0] not in COMMANDS_BY_NAME and not args[0].startswith("-"):
             import difflib
 
-            close = difflib.get_close_matches(args[0], list(_ENTRIES), n=1)
+            close = difflib.get_close_matches(args[0], list(COMMANDS_BY_NAME), n=1)
             ctx.fail(f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""))
         return super().resolve_command(ctx, args)
 
@@ -126,27 +126,36 @@ class Commands(TyperGroup):
         """Run the command; bad input is printed and ends with status 1."""
         try:
             return super().invoke(ctx)
-        except (HearthError, OSError) as error:
-            if ctx.params.get("debug") or isinstance(error, BrokenPipeError):
+        except (BrokenPipeError, typer.Abort, typer.Exit):
+            raise
+        except Exception as error:
+            if ctx.params.get("debug") or _is_of_typer(error):
                 raise
             _fail(error, as_json=ctx.meta["hearth.json"])
 
 
-def _fail(error: HearthError | OSError, *, as_json: bool) -> NoReturn:
+def _is_of_typer(error: Exception) -> bool:
+    """Typer shows its own errors: wrong usage, an option that makes no sense."""
+    return hasattr(error, "format_message")
+
+
+def _fail(error: Exception, *, as_json: bool) -> NoReturn:
+    """Say what was wrong, once for all commands."""
     from hearth.commands import output
 
-    faults = error.diagnostics if isinstance(error, HearthError) else (_of_system(error),)
+    if isinstance(error, HearthError):
+        faults = error.diagnostics
+    elif isinstance(error, OSError):
+        faults = (Diagnostic(Code.MISSING_FILE, str(error.strerror or error).lower(), file=str(error.filename or "")),)
+    else:
+        what = f"{type(error).__name__}: {error}"
+        print(f"A fault of Hearth's, not of yours: {what}\n`--debug` before the command shows where.", file=sys.stderr)
+        raise typer.Exit(output.BAD_INPUT) from error
     if as_json:
         output.emit({"errors": [output.diagnostic_json(fault) for fault in faults]})
     else:
         output.report(faults)
-    raise typer.Exit(output.BAD_INPUT)
-
-
-def _of_system(error: OSError) -> Diagnostic:
-    """A missing, forbidden or full file, as the fault it is to the user."""
-    message = (error.strerror or str(error) or type(error).__name__).lower()
-    return Diagnostic(Code.MISSING_FILE, message, file=str(error.filename or ""))
+    raise typer.Exit(output.BAD_INPUT) from error
 
 
 app = typer.Typer(

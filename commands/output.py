@@ -158,8 +158,8 @@ def _window(source: str, column: int) -> tuple[str, int]:
 
 
 def _underline(source: str, column: int, length: int) -> str:
-    marks = "^" * max(1, min(length or 1, len(source) - column + 1))
-    return " " * (_cells(source[: column - 1])) + marks
+    marks = "^" * max(1, _cells(source[column - 1 : column - 1 + length]))
+    return " " * _cells(source[: column - 1]) + marks
 
 
 def _cells(text: str) -> int:

@@ -29,13 +29,16 @@ def every_command():
 
 COMMANDS = list(every_command())
 
+DOCUMENTS = {("kb", "export")}
+"""Commands that print a document in a format of its own."""
+
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
 def test_help_shows_an_example_and_json(words):
     result = call(*words, "--help")
     assert result.exit_code == 0, result.output
     assert f"python cli.py {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
-    assert "--json" in result.output
+    assert "--json" in result.output or words in DOCUMENTS
     assert "\b" not in result.output
 
 
@@ -64,7 +67,7 @@ def test_version():
         (["nothing-like-it"], "There is no command `nothing-like-it`."),
         (["check"], "Missing argument"),
         (["check", "--nope", "x"], "--nope"),
-        (["run", "x", "--seed", "many"], "many"),
+        (["run", "x", "--seed", "many"], "--seed"),
     ],
 )
 def test_wrong_usage_is_status_2(arguments, said):

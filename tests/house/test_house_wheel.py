@@ -1,0 +1,76 @@
+"""The package as others get it: built, installed into an empty environment, used from somewhere else."""
+
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("schemas", "kb", "simulation", "grounding", "rendering", "scoring", "pipelines", "commands", "data_raw")
+ENDINGS = {".py", ".yaml", ".csv", ".sql"}
+
+pytestmark = pytest.mark.xdist_group("wheel")
+
+
+def run(*command, cwd):
+    done = subprocess.run([*map(str, command)], cwd=cwd, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel, built by way of a source archive, as a release would be."""
+    out = tmp_path_factory.mktemp("dist")
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, ROOT, cwd=out)
+    (file,) = out.glob("*.whl")
+    return file
+
+
+def test_the_wheel_holds_the_package_whole_and_nothing_else(wheel):
+    names = set(zipfile.ZipFile(wheel).namelist())
+    tops = {name.split("/")[0] for name in names}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {"hearth"}
+    wanted = {
+        f"hearth/{path.relative_to(ROOT).as_posix()}"
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.*")
+        if path.suffix in ENDINGS and "__pycache__" not in path.parts
+    }
+    assert len(wanted) > 100
+    assert wanted <= names, sorted(wanted - names)
+    assert {"hearth/py.typed", "hearth/__init__.py", "hearth/cli.py", "hearth/version.py"} <= names
+    code = {name for name in names if name.startswith("hearth/") and name.endswith(".py")}
+    assert not {name for name in code if name.split("/")[1] in ("tests", "benchmarks", "conftest.py", "build")}
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory):
+    """An environment that holds the wheel alone, and sees the libraries of this one."""
+    place = tmp_path_factory.mktemp("installed")
+    run(sys.executable, "-m", "venv", "--without-pip", place / "venv", cwd=place)
+    python = place / "venv/bin/python"
+    run(sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-deps", wheel, cwd=place)
+    (site,) = (place / "venv/lib").glob("python*/site-packages")
+    (site / "libraries.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    return place / "venv/bin"
+
+
+def test_it_is_imported_from_where_it_was_installed(installed, tmp_path):
+    code = "import hearth, hearth.kb.knowledge as kb; print(hearth.__file__); print(len(kb.default().actions))"
+    file, actions = run(installed / "python", "-c", code, cwd=tmp_path).split()
+    assert Path(file).is_relative_to(installed.parent)
+    assert int(actions) == 84
+
+
+def test_its_command_runs_in_any_folder(installed, tmp_path):
+    (tmp_path / "sleep.txt").write_text("Sleep\n\n\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n")
+    assert run(installed / "hearth", "check", "sleep.txt", cwd=tmp_path) == "1 file, 1 program, 2 steps: no faults\n"
+    assert "Usage: hearth " in run(installed / "hearth", "--help", cwd=tmp_path)
+
+
+def test_it_brings_its_homes(installed, tmp_path):
+    assert "maple" in run(installed / "hearth", "home", "list", cwd=tmp_path)
