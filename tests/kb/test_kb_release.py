@@ -9,6 +9,8 @@ import zipfile
 from hearth.kb.compare import compare, rejection
 from hearth.kb.evaluate import changes, first_failure
 from hearth.kb.facts import Facts
+from hearth.kb.release_facts import read_release
+from hearth.kb.views import tables
 from hearth.schemas.graph import edge_set, from_release
 
 STEP = re.compile(r"\[(\w+)\].*")
@@ -21,6 +23,19 @@ def test_every_fact_of_the_release_is_held_or_corrected_with_a_reason(knowledge,
     assert {position: sum(row.values()) for position, row in found.cells.items()} == {"0": 10_061, "1": 320}
     assert all(row["refused"] == 0 and row["rule"] > 40 * row["exception"] for row in found.cells.values())
     assert found.held["properties"] == found.theirs["properties"]
+
+
+def test_the_evidence_of_every_affordance_is_true(knowledge, real_data):
+    matrix = {
+        (knowledge.action(action).name, int(position), knowledge.object_class(name).name)
+        for action, position, name in read_release(real_data / "kb")["affordances"]
+    }
+    said = {
+        (row["action"], row["position"], row["class"])
+        for row in tables(knowledge)["affordances"]
+        if row["evidence"] == "release"
+    }
+    assert said == matrix
 
 
 def test_the_names_of_the_interface_and_the_homes_are_classes(knowledge, real_data):

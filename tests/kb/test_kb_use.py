@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -80,7 +81,7 @@ def test_how_two_things_are_related(knowledge, first, second, chain):
 def test_a_chain_joins_and_an_unknown_name_is_named(knowledge):
     links = path(knowledge, "fork", "lamp")
     assert links[0].source == "fork" and links[-1].target == "lamp"
-    assert all(before.target == after.source for before, after in zip(links, links[1:], strict=False))
+    assert all(before.target == after.source for before, after in pairwise(links))
     with pytest.raises(KeyError, match="frok"):
         path(knowledge, "frok", "lamp")
 
