@@ -91,7 +91,9 @@ def _occupied(draft: Draft, condition: Condition) -> None:
     seat = _node(draft, condition.objects[0])
     name = condition.objects[0][0]
     fixed = _cleared(draft, seat, ~draft.base.home.able("Grab"))
-    limit = max(knowledge.seat_limit(name), knowledge.bed_limit(name))
+    home, i = draft.base.home, draft.base.home.index.get(seat, -1)
+    kind = home.classes[i] if i >= 0 else name
+    limit = max(knowledge.seat_limit(kind), knowledge.bed_limit(kind))
     belongs = [p.object for p in knowledge.holds(name) if p.relation == "ON"] or ["book", "cat", "pillow"]
     small = [n for n in belongs if _graspable(draft, n)] or ["book"]
     for _ in range(limit - draft.crowd(seat) + fixed):

@@ -192,13 +192,18 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
 def _container(case: Case) -> Iterator[Perturbation]:
     """What was on or in something is in something else, which is closed."""
     for condition in case.conditions:
-        if condition.name in ("in", "inside") and _can_be_stowed(case, condition.objects[0]):
-            yield _replaced(case, "container", condition, Condition("stowed", condition.objects[:1], condition.step))
+        if condition.name in ("in", "inside") and _can_be_stowed(case, *condition.objects):
+            yield _replaced(case, "container", condition, Condition("stowed", condition.objects, condition.step))
 
 
-def _can_be_stowed(case: Case, key: Key) -> bool:
+def _can_be_stowed(case: Case, key: Key, now: Key) -> bool:
+    """Whether something other than where it is now could be closed around it."""
+    same = case.knowledge.same_class(now[0])
+    classes = case.base.home.classes
     spots = case.base.spots(key[0]).choices
-    return _is_portable(case, key) and any(closes(case.base, (i, relation)) for _, i, relation in spots)
+    return _is_portable(case, key) and any(
+        classes[i] not in same and closes(case.base, (i, relation)) for _, i, relation in spots
+    )
 
 
 def _location(case: Case) -> Iterator[Perturbation]:

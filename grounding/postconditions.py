@@ -46,19 +46,26 @@ Postconditions = tuple[Fact, ...]
 def achieved(execution: Execution) -> Postconditions:
     """What holds at the end of a run and did not at its start, of the program's objects and the characters.
 
-    A room counts where it is the point: for a character, when the last walk was to that room itself; for a thing, when
-    it lies in a room that the program walked to and on or in none of its objects.
+    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else. A room counts where it
+    is the point: for a character, when the last walk was to that room itself; for a thing, when it lies in a room that
+    the program walked to and on or in none of its objects.
     """
-    world = execution.final
-    nodes = nodes_of(execution.program, world)
+    program, world = execution.program, execution.final
+    nodes = nodes_of(program, world)
+    home = world.home
     before = frozenset(_facts(execution.worlds[0], nodes))
-    new = [fact for fact in _facts(world, nodes) if fact not in before]
-    walked = _walked(execution.program)
-    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and not _is_room(fact.target, nodes, world)}
-    held = {fact.target for fact in _facts(world, nodes) if fact.name == "HOLDS"}
+    now = tuple(_facts(world, nodes))
+    new = [fact for fact in now if fact not in before]
+    rooms = {key for key, node in nodes.items() if home.rooms >> home.index[node] & 1}
+    held = {fact.target for fact in now if fact.name == "HOLDS"}
+    poured = _residues(program, now, held, rooms)
+    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
+    walked = [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
 
     def is_meant(fact: Fact) -> bool:
-        if fact.name != "INSIDE" or not _is_room(fact.target, nodes, world):
+        if fact in poured:
+            return False
+        if fact.name != "INSIDE" or fact.target not in rooms:
             return True
         if fact.subject[0] == CHARACTER_CLASS:
             return bool(walked) and fact.target == walked[-1]
@@ -133,10 +140,15 @@ def _facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
             yield from (Fact(name, subject, target) for name, target in found)
 
 
-def _walked(program: Program) -> list[Key]:
-    """What is walked to, in order."""
-    return [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
-
-
-def _is_room(key: Key | None, nodes: Mapping[Key, int], world: World) -> bool:
-    return key is not None and bool(world.home.rooms >> world.home.index[nodes[key]] & 1)
+def _residues(program: Program, now: tuple[Fact, ...], held: set[Key | None], rooms: set[Key]) -> set[Fact]:
+    """What pouring has left: a thing is INSIDE what it was poured into, although it is held or stands elsewhere."""
+    pours = {(s.objects[0].key, s.objects[1].key) for s in program.steps if s.action == "Pour"}
+    if not pours:
+        return set()
+    poured = {f for f in now if f.name == "INSIDE" and (f.subject, f.target) in pours}
+    placed = {
+        f.subject
+        for f in now
+        if f.name in ("ON", "INSIDE") and f.target is not None and f.target not in rooms and f not in poured
+    }
+    return {fact for fact in poured if fact.subject in held | placed}

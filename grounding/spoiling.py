@@ -40,9 +40,16 @@ def elsewhere(draft: Draft, condition: Condition) -> None:
 
 
 def stowed(draft: Draft, condition: Condition) -> None:
-    """The object is in something closed where it belongs, that the program does not name."""
-    key = condition.objects[0]
-    if _moved(draft, key, lambda spot: closes(draft.base, spot)):
+    """The first object is in something closed where it belongs, other than the second; if possible in nothing that the
+    program names.
+    """
+    key, now = condition.objects
+    ids, here = draft.base.home.ids, draft.binding.get(now, -1)
+
+    def fits(spot: Spot) -> bool:
+        return closes(draft.base, spot) and ids[spot[0]] != here
+
+    if _moved(draft, key, fits) or _moved(draft, key, fits, named=True):
         draft.set_state(draft.where[draft.binding[key]][1], "CLOSED")
 
 
@@ -124,18 +131,26 @@ def _is_open(draft: Draft, spot: Spot) -> bool:
     return spot[1] == "ON" or not draft.base.home.states[0] >> spot[0] & 1
 
 
-def _moved(draft: Draft, key: Key, fits: Callable[[Spot], bool]) -> bool:
-    """Put an object where one of its class belongs and which fits; whether there is such a place."""
+def _moved(draft: Draft, key: Key, fits: Callable[[Spot], bool], named: bool = False) -> bool:
+    """Put an object where one of its class belongs and which fits; whether there is such a place.
+
+    Args:
+        draft, key: the object.
+        fits: which places are wanted.
+        named: take what the program names too.
+    """
     home = draft.base.home
+    shunned = {draft.binding[key]} if named else draft.taken
     good = [
         (i, relation)
         for _, i, relation in draft.base.spots(key[0]).choices
-        if home.ids[i] not in draft.taken and not home.properties["SITTABLE"] >> i & 1 and fits((i, relation))
+        if home.ids[i] not in shunned and not home.properties["SITTABLE"] >> i & 1 and fits((i, relation))
     ]
     if not good:
         return False
     i, relation = draft.rng.choice(good)
-    node_id = _loose(draft, key, home.ids[draft.base.room[i]] if draft.base.room[i] >= 0 else -1)
+    room = draft.base.room[i]
+    node_id = _loose(draft, key, home.ids[room] if room >= 0 else -1)
     draft.put(node_id, relation, home.ids[i])
     return True
 

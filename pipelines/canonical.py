@@ -6,8 +6,9 @@ the character has just walked; nothing is opened only to be closed again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from hearth.grounding.conditions import Key
 from hearth.grounding.postconditions import Fact, Postconditions, nodes_of, reached
 from hearth.schemas.program import Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -15,7 +16,7 @@ from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import World
 
-_UNDOING = {"Open": "Close", "SwitchOn": "SwitchOff", "PlugIn": "PlugOut"}
+_UNDOING = {"Open": "Close", "SwitchOn": "SwitchOff", "PlugIn": "PlugOut", "Grab": "Release"}
 _UNDONE = {**_UNDOING, **{undo: do for do, undo in _UNDOING.items()}}
 
 
@@ -53,23 +54,28 @@ def trim(
         rules: for the runs.
     """
     kept = goal + _hands(execution)
+    nodes = {**nodes_of(original, execution.final), **nodes_of(execution.program, execution.final)}
     marks = list(own)
     while True:
-        smaller = next(_smaller(original, execution, marks, kept, rules), None)
+        smaller = next(_smaller(original, execution, marks, (kept, nodes), rules), None)
         if smaller is None:
             return execution
         execution, marks = smaller
 
 
 def _smaller(
-    original: Program, execution: Execution, own: list[bool], goal: Postconditions, rules: Rules
+    original: Program,
+    execution: Execution,
+    own: list[bool],
+    goal: tuple[Postconditions, Mapping[Key, int]],
+    rules: Rules,
 ) -> Iterator[tuple[Execution, list[bool]]]:
     """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
     for start, end in _candidates(original, execution.program.steps, own):
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])
         shorter = resume(execution, program, start, rules)
-        if shorter.failure is None and reached(goal, nodes_of(program, shorter.final), shorter.final):
+        if shorter.failure is None and reached(*goal, shorter.final):
             yield shorter, own[:start] + own[end:]
 
 
@@ -87,7 +93,11 @@ def _candidates(original: Program, steps: tuple[Step, ...], own: list[bool]) -> 
 
 
 def _undo(one: Step, other: Step) -> bool:
-    return one.objects == other.objects and one.agent == other.agent and _UNDONE.get(one.action) == other.action
+    if one.agent != other.agent:
+        return False
+    if other.action == "StandUp":
+        return one.action in ("Sit", "Lie")
+    return one.objects == other.objects and _UNDONE.get(one.action) == other.action
 
 
 def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int) -> bool:

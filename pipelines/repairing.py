@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
+from hearth.grounding.conditions import Key
 from hearth.grounding.postconditions import Postconditions, missing, nodes_of
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import canonical
@@ -60,7 +62,16 @@ class Repaired:
     failure: Failure | None = None
 
 
-@dataclass(slots=True)
+class _Task(NamedTuple):
+    """What a program is repaired for: its goal, said of these nodes."""
+
+    goal: Postconditions
+    nodes: Mapping[Key, int]
+    knowledge: Knowledge
+    rules: Rules
+
+
+@dataclass(frozen=True, slots=True)
 class _Draft:
     """A program under repair. `own` says of each step whether the original had it."""
 
@@ -93,10 +104,11 @@ def repair(
         repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
     """
     draft = _Draft(program, (True,) * len(program.steps), run(world, program, rules))
+    task = _Task(goal, nodes_of(program, world), knowledge, rules)
     attempts: list[Attempt] = []
     seen = {program.steps}
     while True:
-        trouble = _trouble(draft, goal, knowledge, rules)
+        trouble = _trouble(draft, task)
         if trouble is None:
             break
         if len(attempts) == tries:
@@ -117,19 +129,19 @@ def repair(
     return Repaired(trimmed.program, trimmed, tuple(attempts), len(draft.own) - len(trimmed.program.steps))
 
 
-def _trouble(draft: _Draft, goal: Postconditions, knowledge: Knowledge, rules: Rules) -> Trouble | None:
+def _trouble(draft: _Draft, task: _Task) -> Trouble | None:
     """The first thing wrong with a program: a step that fails, or a goal that is missed."""
     execution = draft.execution
-    if execution.failure is not None:
-        at = _failing(draft.program, execution.failure)
-        return Trouble(draft.program, at, execution.failure, execution.final, knowledge, rules, goal)
-    lost = missing(goal, nodes_of(draft.program, execution.final), execution.final)
-    if not lost:
-        return None
-    end = len(draft.program.steps)
-    wanted = "; ".join(map(str, lost))
-    failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
-    return Trouble(draft.program, end, failure, execution.final, knowledge, rules, goal)
+    failure, at = execution.failure, len(draft.program.steps)
+    if failure is not None:
+        at = _failing(draft.program, failure)
+    else:
+        lost = missing(task.goal, task.nodes, execution.final)
+        if not lost:
+            return None
+        wanted = "; ".join(map(str, lost))
+        failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
+    return Trouble(draft.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes)
 
 
 def _failing(program: Program, failure: Failure) -> int:

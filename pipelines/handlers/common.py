@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from hearth.grounding.conditions import Key
 from hearth.grounding.postconditions import Postconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
@@ -33,6 +34,7 @@ class Trouble:
         world: the world as the step is tried.
         knowledge, rules: what the world goes by.
         goal: what the program has to reach (thesis eq. A.1).
+        nodes: the nodes of the objects that the goal speaks of.
     """
 
     program: Program
@@ -42,6 +44,7 @@ class Trouble:
     knowledge: Knowledge
     rules: Rules
     goal: Postconditions = ()
+    nodes: Mapping[Key, int] = field(default_factory=dict)
 
     @property
     def step(self) -> Step:

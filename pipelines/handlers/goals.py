@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.grounding.conditions import Key
-from hearth.grounding.postconditions import Fact, missing, nodes_of
+from hearth.grounding.postconditions import Fact, missing
 from hearth.pipelines.handlers.common import Edit, Splice, Trouble
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -22,10 +21,9 @@ STATE_ACTIONS: dict[str, str] = {
 
 def goal_lost(trouble: Trouble) -> Edit | None:
     """Bring about the first thing that is missing, things before where the character ends up."""
-    nodes = nodes_of(trouble.program, trouble.world)
-    lost = sorted(missing(trouble.goal, nodes, trouble.world), key=_rank)
+    lost = sorted(missing(trouble.goal, trouble.nodes, trouble.world), key=_rank)
     for fact in lost:
-        steps = _steps(trouble, fact, nodes)
+        steps = _steps(trouble, fact)
         if steps:
             return Edit("goal_lost", (Splice(len(trouble.program.steps), 0, steps),))
     return None
@@ -37,10 +35,10 @@ def _rank(fact: Fact) -> tuple[bool, bool, bool]:
     return (resting, fact.name == "HOLDS", fact.target is not None)
 
 
-def _steps(trouble: Trouble, fact: Fact, nodes: dict[Key, int]) -> tuple[Step, ...]:
-    index = trouble.world.home.index
+def _steps(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
+    index, nodes = trouble.world.home.index, trouble.nodes
     if fact.subject[0] == CHARACTER_CLASS:
-        return _of_character(trouble, fact, nodes)
+        return _of_character(trouble, fact)
     if fact.subject not in nodes or (fact.target is not None and fact.target not in nodes):
         return ()
     i = index[nodes[fact.subject]]
@@ -64,16 +62,16 @@ def _putting(trouble: Trouble, fact: Fact, thing: ObjectRef, place: ObjectRef) -
     return "Pour" if pours else "PutIn"
 
 
-def _of_character(trouble: Trouble, fact: Fact, nodes: dict[Key, int]) -> tuple[Step, ...]:
+def _of_character(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
     """Rest on the seat of the goal, take what it holds, or go to the room where it ends."""
     agent = fact.subject[1] - 1
     target = fact.target
     if fact.name in ("SITTING", "LYING", "ON"):
         seats = [f.target for f in trouble.goal if f.name == "ON" and f.subject == fact.subject]
         target = seats[0] if seats else None
-    if target is None or target not in nodes:
+    if target is None or target not in trouble.nodes:
         return ()
-    thing = trouble.ref(trouble.world.home.index[nodes[target]])
+    thing = trouble.ref(trouble.world.home.index[trouble.nodes[target]])
     walk = Step("Walk", (thing,), agent)
     if fact.name == "HOLDS":
         return (walk, Step("Grab", (thing,), agent))

@@ -55,8 +55,12 @@ def _is_tool(trouble: Trouble, thing: ObjectRef) -> bool:
 
 def _idleness(trouble: Trouble, thing: ObjectRef) -> tuple[bool, int]:
     """How little a thing is missed: what the program is to end up holding most, then what it needs soonest."""
-    wanted = any(fact.name == "HOLDS" and fact.target == thing.key for fact in trouble.goal)
-    return (not wanted, _needed_in(trouble, thing))
+    return (not _is_wanted(trouble, thing), _needed_in(trouble, thing))
+
+
+def _is_wanted(trouble: Trouble, thing: ObjectRef) -> bool:
+    """Whether the program is to end up holding the thing."""
+    return any(fact.name == "HOLDS" and fact.target == thing.key for fact in trouble.goal)
 
 
 def _needed_in(trouble: Trouble, thing: ObjectRef) -> int:
@@ -68,13 +72,14 @@ def _needed_in(trouble: Trouble, thing: ObjectRef) -> int:
 def _hand_is_free(trouble: Trouble, thing: ObjectRef) -> int | None:
     """Number of the step after which the thing can be taken up again; None when it can't.
 
-    That is the failing step, unless it fills the hand; then the step that empties it if the program needs the thing
-    later, else the last one if a hand is empty and the character on its feet by then.
+    That is the failing step, unless it fills the hand; then the step that empties it if the thing is of use, else the
+    last one if a hand is empty and the character on its feet by then.
     """
     if trouble.step.action != "Grab":
         return trouble.at
     needed = trouble.at + _needed_in(trouble, thing)
     steps = trouble.program.steps
+    useful = needed <= len(steps) or _is_wanted(trouble, thing)
     last = len(steps) - 1
     filled, resting = 0, trouble.resting
     for number in range(trouble.at, len(steps)):
@@ -83,7 +88,7 @@ def _hand_is_free(trouble: Trouble, thing: ObjectRef) -> int | None:
             continue
         filled += (step.action == "Grab") - (step.action in HAND_FREEING)
         resting = step.action in ("Sit", "Lie") or (resting and step.action != "StandUp")
-        if filled <= 0 and needed <= len(steps):
+        if filled <= 0 and useful:
             return number if number < needed else None
     return last if filled <= 0 and not resting else None
 

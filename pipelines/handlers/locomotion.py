@@ -8,7 +8,6 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation import rows
 
 _POSTURE = frozenset({"Sit", "Lie", "StandUp", "Walk", "Run"})
-_APPROACH = frozenset({"Walk", "Run", "Find", "TurnTo", "LookAt"})
 
 
 def not_close(trouble: Trouble) -> Edit | None:
@@ -35,7 +34,7 @@ def gone_to(trouble: Trouble, name: str, target: ObjectRef, *there: Step) -> Edi
 
     Who sits or lies gets up for it. If the program had the character take that seat, it returns to it when what has to
     be done beside the target is done; where the seat is too small to be taken twice (who has sat on it stays ON it, as
-    in the release), all of that is done before sitting down.
+    in the release), it is only taken then.
     """
     walk = trouble.does("Walk", target)
     if not trouble.resting:
@@ -46,21 +45,12 @@ def gone_to(trouble: Trouble, name: str, target: ObjectRef, *there: Step) -> Edi
     if seat is None or trouble.step.action in _POSTURE or _leaves_anyway(trouble, last):
         return before(trouble, name, *going)
     number, action, place = seat
+    back = trouble.does("Walk", place)
     index = trouble.world.home.index[place.node] if place.node is not None else -1
-    limit = trouble.world.home.limit(index, action == "Lie")
-    if rows.bearing(trouble.world, index).bit_count() < limit:
-        return around(trouble, name, going, last, (trouble.does("Walk", place), trouble.does(action, place)))
-    return _done_before(trouble, name, number, last, (walk, *there))
-
-
-def _done_before(trouble: Trouble, name: str, seated: int, last: int, first: tuple[Step, ...]) -> Edit:
-    """Move the failing step and those up to `last` to before the approach to the seat taken in step `seated`."""
-    steps = trouble.program.steps
-    place = steps[seated].objects
-    while seated > 0 and steps[seated - 1].action in _APPROACH and steps[seated - 1].objects == place:
-        seated -= 1
-    errand = steps[trouble.at : last + 1]
-    return Edit(name, (Splice(seated, 0, (*first, *errand)), Splice(trouble.at, len(errand))))
+    if rows.bearing(trouble.world, index).bit_count() < trouble.world.home.limit(index, action == "Lie"):
+        return around(trouble, name, going, last, (back, trouble.does(action, place)))
+    later = around(trouble, name, (walk, *there), last, (back, trouble.program.steps[number]))
+    return Edit(name, (Splice(number, 1), *later.splices))
 
 
 def _end_of_errand(trouble: Trouble, target: ObjectRef) -> int:
