@@ -21,6 +21,9 @@ CREASE = 40.0
 def triangles(corners: Floats, paint: Paint, normals: Floats | None = None, uvs: Floats | None = None) -> Mesh:
     """A mesh of the (T, 3, 3) corners; flat normals and flat texture coordinates where none are given."""
     corners = np.asarray(corners, np.float32).reshape(-1, 3, 3)
+    if normals is None and uvs is None:
+        # Triangles without an area have no side that could be seen.
+        corners = corners[np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])).max(1) > 1e-14]
     if normals is None:
         normals = np.repeat(face_normals(corners)[:, None, :], 3, axis=1)
     if uvs is None:

@@ -211,7 +211,7 @@ def bin_(look: Look) -> Mesh:
     w, h, d = look.size
     paint = look.tint(STEEL, ("#b9bcc0", "#5f6a70", "#3a3d42", "#d8d4ca"))
     r = 0.5
-    if look.variant % 2 == 0:
+    if look.variant % 2:
         profile = [
             (0, 0),
             (r * 0.78, 0),

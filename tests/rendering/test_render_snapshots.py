@@ -116,7 +116,7 @@ def test_new_things_find_places_in_and_on_others():
         Node(1001, "fridge", "Appliances", ("CAN_OPEN", "CONTAINERS"), ("CLOSED",)),
         Node(1002, "milk", "Food", ("GRABBABLE",)),
     )
-    edges = (Edge(1000, "ON", TABLE), Edge(1001, "INSIDE", ROOM), Edge(1002, "INSIDE", 1001), Edge(1002, "INSIDE", ROOM))
+    edges = (Edge(1000, "ON", TABLE), Edge(1001, "INSIDE", ROOM), Edge(1002, "INSIDE", 1001))
     fuller = EnvironmentGraph(graph.nodes + added, graph.edges + edges)
     places = Places.start(graph, default()).settled(fuller)
     plate, fridge, milk = (places.poses[i].box for i in (1000, 1001, 1002))
@@ -142,6 +142,7 @@ def test_pictures_by_two_cameras_show_person_and_cup():
 
 
 def test_a_home_without_geometry_is_told():
-    graph = EnvironmentGraph(tuple(Node(n.id, n.class_name, n.category, n.properties) for n in flat().nodes), flat().edges)
+    nodes = tuple(Node(n.id, n.class_name, n.category, n.properties) for n in flat().nodes)
+    graph = EnvironmentGraph(nodes, flat().edges)
     with pytest.raises(HearthError, match="geometry"):
         next(iter(snapshots(execution(graph), graph)))

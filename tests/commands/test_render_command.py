@@ -1,0 +1,23 @@
+"""`render-program` and `render-sheet`, through typer's runner."""
+
+import pytest
+
+pytest.importorskip("open3d")
+
+from typer.testing import CliRunner
+
+from hearth.commands.render import app
+from hearth.rendering import png
+
+
+@pytest.mark.slow
+def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
+    file = tmp_path / "sit.txt"
+    file.write_text("Sit\nRest\n\n\n[Walk] <couch> (1)\n[Sit] <couch> (1)\n")
+    result = CliRunner().invoke(app, ["program", str(file), "--out", str(tmp_path / "out"), "--width", "64"])
+    assert result.exit_code == 0, result.output
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert len(names) == 3 * 2 * 2 + 1
+    assert "002.auto.instance_ids.png" in names
+    assert png.decode((tmp_path / "out/001.top.rgb.png").read_bytes()).shape == (48, 64, 3)
+    assert png.decode((tmp_path / "out/sheet.png").read_bytes()).shape[1] > 3 * 64
