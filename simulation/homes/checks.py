@@ -158,7 +158,7 @@ def _check_reach(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faul
     Where rooms or doors are at fault, or a thing itself, this would only say so again.
     """
     faulty = {fault.line for fault in faults}
-    if faulty & {part.line for part in (*plan.rooms, *plan.doorways)}:
+    if faulty & ({room.line for room in plan.rooms} | {door.line for door in plan.doorways}):
         return
     floor = grid(plan, shell, things)
     regions = floor.regions()

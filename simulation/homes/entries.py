@@ -260,7 +260,7 @@ class _Reader:
         return self._piece(class_name, count, fields, line, furniture) if class_name else None
 
     def _piece(self, class_name: str, count: int, fields: Any, line: int, furniture: bool) -> Piece:
-        keys = {"name": word, "on": list, "in": list, **SIZE_KEYS, **PLACE_KEYS}
+        keys = {"name": word, "on": list, "in": list, "lay": list, **SIZE_KEYS, **PLACE_KEYS}
         found = self.fields(fields, keys, f"`{class_name}`", line=line)
         place = {key: found[key] for key in PLACE_KEYS if key in found}
         anchors = [key for key in ANCHORS if key in place]
@@ -278,6 +278,7 @@ class _Reader:
             (found.get("width"), found.get("height"), found.get("depth")),
             self.pieces(found.get("on", ())),
             self.pieces(found.get("in", ())),
+            self.pieces(found.get("lay", ())),
             line,
         )
 

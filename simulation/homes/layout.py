@@ -16,13 +16,15 @@ from hearth.simulation.homes.floor import CELL, Floor, grid
 from hearth.simulation.homes.forms import form
 from hearth.simulation.homes.geometry import Rect, box_over, facing_from, footprint
 from hearth.simulation.homes.packing import contents
-from hearth.simulation.homes.placing import Furnishing, furnish, shape
+from hearth.simulation.homes.placing import Furnishing, furnish
 from hearth.simulation.homes.plan import Faults, Plan, Room
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
 
 PERSON = (0.45, 1.7, 0.35)
 """Width, height and depth of a character."""
 SWITCH_FROM_DOOR = 0.12
+SEATS = frozenset({"chair", "stool", "bench", "high_chair"})
+"""What one eats from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,10 +100,11 @@ def arrange(plan: Plan, knowledge: Knowledge, faults: Faults) -> Layout:
     for room in plan.rooms:
         furnished = furnish(room, plan.height, knowledge, faults)
         things.extend(_implied(plan, room, built, furnished, knowledge))
+        seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
         for placed in furnished.placed:
             thing = _standing(placed.thing, built, furnished)
             things.append(thing)
-            things.extend(contents(thing, placed.piece, shape(placed.piece, knowledge), knowledge, faults))
+            things.extend(contents(thing, placed.piece, knowledge, faults, seats))
     return Layout(plan, built, tuple(things))
 
 

@@ -12,6 +12,7 @@ from hearth.schemas.graph import Box
 from hearth.simulation.homes.entries import ON_TOP
 from hearth.simulation.homes.forms import Form, form
 from hearth.simulation.homes.geometry import Rect, bottom, box_over, footprint, top, wall_of
+from hearth.simulation.homes.laying import places, setting
 from hearth.simulation.homes.placing import NoPlaceError, shape
 from hearth.simulation.homes.plan import Faults, Piece
 from hearth.simulation.homes.shell import Thing
@@ -83,43 +84,69 @@ class Support:
         return self.apart == 0
 
 
-def contents(thing: Thing, piece: Piece, shaped: Form, knowledge: Knowledge, faults: Faults) -> Iterator[Thing]:
-    """What stands on and in a thing, and on and in that, as the plan's entry says.
+def contents(
+    thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
+) -> Iterator[Thing]:
+    """What stands on and in a thing, and on and in that, as the plan's entry says; `seats` are those of its room.
 
     What finds no room is noted as NO_PLACE and left out.
     """
     numbers: dict[str, int] = {}
+    shaped = shape(piece, knowledge)
+    laid = list(_settings(thing, piece.lay, seats, numbers, knowledge))
     for relation, pieces in (("on", piece.on), ("inside", piece.inside)):
         named = [(entry, _names(entry, numbers)) for entry in pieces]
         # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
         named.sort(key=lambda pair: _rank(pair[0], knowledge))
-        if named:
-            for entry, stood in _arranged(thing, shaped, relation, named, knowledge=knowledge, faults=faults):
+        fixed = laid if relation == "on" else []
+        if named or fixed:
+            standing, missed = _arranged(thing, shaped, relation, (named, fixed), knowledge)
+            for entry, stood in standing:
                 yield stood
-                yield from contents(stood, entry, shape(entry, knowledge), knowledge, faults)
+                yield from contents(stood, entry, knowledge, faults)
+            for entry, why in missed:
+                where = f"{'on' if relation == 'on' else 'in'} `{thing.name}`"
+                faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {why}", entry.line,
+                           "take something away, or make it larger")  # fmt: skip
+
+
+def _settings(
+    table: Thing, lay: Sequence[Piece], seats: Sequence[Thing], numbers: dict[str, int], knowledge: Knowledge
+) -> Iterator[tuple[Piece, str, Rect]]:
+    """What is laid on a table for each seat at it: the entry, its name and where it lies."""
+    sizes = [shape(entry, knowledge).size for entry in lay]
+    for place in places(table, seats) if lay else ():
+        rects = setting(place, [(width, depth) for width, _, depth in sizes])
+        for entry, rect in zip(lay, rects, strict=True):
+            yield entry, _names(entry, numbers)[0], rect
 
 
 def _arranged(
-    thing: Thing, shaped: Form, relation: str, named: Sequence[Named], *, knowledge: Knowledge, faults: Faults
-) -> list[tuple[Piece, Thing]]:
-    """Everything in its place: well apart if it can be, closer together if it must."""
-    found: list[tuple[Piece, Thing]] = []
+    thing: Thing,
+    shaped: Form,
+    relation: str,
+    wanted: tuple[Sequence[Named], Sequence[tuple[Piece, str, Rect]]],
+    knowledge: Knowledge,
+) -> tuple[list[tuple[Piece, Thing]], list[tuple[Piece, str]]]:
+    """Everything in its place, well apart if it can be, closer together if it must; and what has none, with why."""
+    named, laid = wanted
     for apart in (FAR, FAR / 3, 0.0):
         support = _support(thing, shaped, relation, knowledge, apart)
+        found: list[tuple[Piece, Thing]] = []
         missed: list[tuple[Piece, str]] = []
-        found = []
+        for entry, name, rect in laid:
+            try:
+                found.append((entry, _lay(support, entry, name, rect, knowledge)))
+            except NoPlaceError as why:
+                missed.append((entry, str(why)))
         for entry, names in named:
             try:
                 found.extend((entry, stood) for stood in _stand(support, entry, names, relation, knowledge))
             except NoPlaceError as why:
                 missed.append((entry, str(why)))
-        if not missed or support.apart == 0:
+        if not missed or support.tidy:
             break
-    for entry, reason in missed:
-        where = f"{'on' if relation == 'on' else 'in'} `{thing.name}`"
-        faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {reason}", entry.line,
-                   "take something away, or make it larger")  # fmt: skip
-    return found
+    return found, missed
 
 
 def _names(piece: Piece, numbers: dict[str, int]) -> list[str]:
@@ -171,24 +198,34 @@ def _stand(
         NoPlaceError: there is none for one of them.
     """
     shaped = shape(piece, knowledge)
-    owner = support.thing
     for name in names:
         level, local, height, turned = _find(support, piece, shaped)
         level.taken.append((name, local))
         under = level.piles.get(local, 0.0)
         level.piles[local] = under + height
         box = _box(support, level, local, (under - SINK if shaped.mount == "sunk" else under), height)
-        yield Thing(
-            f"{owner.name}/{name}",
-            piece.class_name,
-            owner.room,
-            box,
-            ((owner.yaw or 0.0) + (90 if turned else 0)) % 360,
-            "item",
-            on=owner.name if relation == "on" else "",
-            inside=owner.name if relation == "inside" else "",
-            line=piece.line,
-        )
+        yield _item(support.thing, piece, name, box, relation=relation, turned=turned)
+
+
+def _lay(support: Support, piece: Piece, name: str, rect: Rect, knowledge: Knowledge) -> Thing:
+    """Put a thing at a given place on the top.
+
+    Raises:
+        NoPlaceError: something else lies there, or it would stick out.
+    """
+    level, height = support.levels[-1], shape(piece, knowledge).size[1]
+    local = _local(support, rect)
+    _check(support, level, local)
+    level.taken.append((name, local))
+    level.piles[local] = height
+    return _item(support.thing, piece, name, box_over(rect, level.y, level.y + height), relation="on")
+
+
+def _item(owner: Thing, piece: Piece, name: str, box: Box, *, relation: str, turned: bool = False) -> Thing:
+    yaw = ((owner.yaw or 0.0) + (90 if turned else 0)) % 360
+    on, inside = (owner.name, "") if relation == "on" else ("", owner.name)
+    full = f"{owner.name}/{name}"
+    return Thing(full, piece.class_name, owner.room, box, yaw, "item", on=on, inside=inside, line=piece.line)
 
 
 def _find(support: Support, piece: Piece, shaped: Form) -> tuple[Level, Local, float, bool]:
@@ -343,3 +380,16 @@ def _box(support: Support, level: Level, local: Local, under: float, height: flo
     else:
         over = Rect(rect.x0 + v0, rect.z0 + u0, rect.x0 + v1, rect.z0 + u1)
     return box_over(over, level.y + under, level.y + under + height)
+
+
+def _local(support: Support, rect: Rect) -> Local:
+    """A rectangle of the room in the support's own axes: the inverse of what `_box` does."""
+    over = footprint(support.thing.box)
+    wall = wall_of(support.thing.yaw or 0.0)
+    if wall in ("north", "south"):
+        u0, u1 = rect.x0 - over.x0, rect.x1 - over.x0
+        v0, v1 = (over.z1 - rect.z1, over.z1 - rect.z0) if wall == "north" else (rect.z0 - over.z0, rect.z1 - over.z0)
+    else:
+        u0, u1 = rect.z0 - over.z0, rect.z1 - over.z0
+        v0, v1 = (over.x1 - rect.x1, over.x1 - rect.x0) if wall == "east" else (rect.x0 - over.x0, rect.x1 - over.x0)
+    return u0 - support.rim, v0 - support.rim, u1 - support.rim, v1 - support.rim

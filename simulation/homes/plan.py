@@ -49,6 +49,7 @@ class Piece:
         place: how it is placed: key -> value, as `entries.PLACE_KEYS` reads them.
         size: width, height and depth as far as the plan says so.
         on, inside: what stands on it and in it.
+        lay: what is laid for everyone who sits at it.
         line: in the plan.
     """
 
@@ -59,6 +60,7 @@ class Piece:
     size: tuple[float | None, float | None, float | None] = (None, None, None)
     on: tuple[Piece, ...] = ()
     inside: tuple[Piece, ...] = ()
+    lay: tuple[Piece, ...] = ()
     line: int = 0
 
     def has(self, key: str) -> bool:

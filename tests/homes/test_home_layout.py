@@ -104,6 +104,17 @@ def test_walls_have_holes_where_doors_and_windows_are(layout):
             assert all(intrusion(thing.box, wall) < 1e-3 for wall in walls), thing.name
 
 
+def test_a_table_is_laid_before_every_chair(layout):
+    chairs = [t for t in layout.things if t.class_name == "chair"]
+    laid = [t for t in layout.things if t.class_name == "plate" and t.on and "table" in t.on and "rack" not in t.on]
+    assert laid
+    for plate in laid:
+        gaps = [
+            max(abs(c.box.center[0] - plate.box.center[0]), abs(c.box.center[2] - plate.box.center[2])) for c in chairs
+        ]
+        assert min(gaps) < 0.6, plate.name
+
+
 ITEMS = ("plate", "cup", "book", "television", "pillow", "pen", "milk", "towel", "microwave", "clothes_shirt", "vase")
 SUPPORTS = ("table", "desk", "bookshelf", "bed", "coffee_table", "shoe_rack")
 HOLDERS = ("fridge", "closet", "nightstand", "cupboard", "basket_for_clothes")
