@@ -56,8 +56,8 @@ def _first(item: Item, seen: set[bytes]) -> Item:
     for twin, what in ((item.record_id, "this id"), (_answer(item), "this answer of the same worker")):
         digest = twin and _short(twin)
         if digest and digest in seen:
-            reject = Reject.of(Code.DUPLICATE, f"{what} was read before", file=item.place, found=item.record_id)
-            return Item(item.record_id, "refused", item.place, refused(item.place, reject).value)
+            told = {"file": item.place, "line": item.line, "found": item.record_id}
+            return refused(item.place, Reject.of(Code.DUPLICATE, f"{what} was read before", **told), item.record_id)
         if digest:
             seen.add(digest)
     return item
@@ -98,7 +98,9 @@ def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[t
 
 
 def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:
-    told = [[source, item.record_id, item.reader, item.place, item.value, item.version] for source, item in share]
+    told = [
+        [source, item.record_id, item.reader, item.place, item.line, item.value, item.version] for source, item in share
+    ]
     return Partition(number, value_digest(told), share, len(share))
 
 

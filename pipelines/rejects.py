@@ -42,10 +42,10 @@ class Reject:
         return cls(tuple(fault if fault.file or not file else fault.at(file) for fault in faults))
 
     @classmethod
-    def failed(cls, failure: Failure, file: str = "", line: int = 0) -> Reject:
-        """A reject for a failure of the engine or of grounding."""
-        found = " ".join(failure.names)
-        return cls((Diagnostic(failure.code, failure.message(), file, line, found=found),))
+    def failed(cls, failure: Failure, file: str = "", line: int = 0, where: str = "") -> Reject:
+        """A reject for a failure of the engine or of grounding; `where` tells in which home or environment."""
+        message = f"{failure.message()}, {where}" if where else failure.message()
+        return cls((Diagnostic(failure.code, message, file, line, found=" ".join(failure.names)),))
 
     @classmethod
     def caused(cls, error: Exception, file: str = "") -> Reject:

@@ -68,7 +68,7 @@ def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
 def _sampled(record: Record, program: Program, name: str, context: Context) -> Row | Reject:
     drawn = sample(program, context.homes.home(name), context.seed, record["program_id"])
     if isinstance(drawn, Failure):
-        return failed(drawn, program, record["place"], f" in {name}")
+        return failed(drawn, program, record["place"], f"in {name}")
     environment, execution = drawn
     return {
         **_row(record, name),
@@ -83,7 +83,7 @@ def failed(failure: Failure, program: Program, place: str, where: str = "") -> R
     """A reject for a program that does not run, at the line of the step where that shows."""
     steps = [number for number, tick in enumerate(program.ticks()) for _ in tick]
     step = steps.index(failure.tick) if failure.tick in steps else 0
-    return Reject.failed(failure, place + where, program.line(step))
+    return Reject.failed(failure, place, program.line(step), where)
 
 
 def _stored(record: Record, grounding: Row, context: Context) -> Row:

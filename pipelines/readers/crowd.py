@@ -85,14 +85,13 @@ def scan(path: Path, place: str) -> Iterator[Item]:
 
 def _answers(rows: _Rows, header: Header, place: str) -> Iterator[Item]:
     for line, raw, cells in rows.parsed(header):
-        where = f"{place}:{line}"
         fault = _row_fault(line, raw, cells, header, place)
         if fault:
-            yield refused(where, Reject((fault,)))
+            yield refused(place, Reject((fault,)), line=line)
         elif cells:
             values = dict(zip(header.columns, cells, strict=False))
-            record_id = f"{NAME}:{values['HITId'].strip() or where}"
-            yield Item(record_id, NAME, where, {"stage": header.stage, "line": line, "cells": values})
+            record_id = f"{NAME}:{values['HITId'].strip() or f'{place}:{line}'}"
+            yield Item(record_id, NAME, place, {"stage": header.stage, "cells": values}, line=line)
 
 
 def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, place: str) -> Diagnostic | None:
@@ -170,7 +169,8 @@ def read(item: Item, salt: str) -> dict[str, Any] | Reject:
     cells = item.value["cells"]
     status = cells["AssignmentStatus"].strip()
     if status.lower() not in _ACCEPTED:
-        return Reject.of(Code.REJECTED_ANSWER, f"the assignment is {status}", file=item.place, found=status)
+        message = f"the assignment is {status}"
+        return Reject.of(Code.REJECTED_ANSWER, message, file=item.place, line=item.line, found=status)
     return _description(item, cells, salt) if item.value["stage"] == 1 else _program(item, cells, salt)
 
 
@@ -204,7 +204,7 @@ def _program(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | R
         "rooms": _quantities(cells["Answer.rooms"]),
         "props": _quantities(cells["Answer.props"]),
         "text": text if text.endswith("\n") else text + "\n",
-        "line": item.value["line"] - 1,
+        "line": item.line - 1,
     }
 
 
@@ -212,14 +212,14 @@ def _common(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]:
     worker = cells["WorkerId"].strip()
     return {
         "origin": NAME,
-        "place": item.place.rsplit(":", 1)[0],
+        "place": item.place,
         "worker": hashlib.blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest() if worker else None,
         "platform": next((cells[name].strip() for name in ("Platform", "platform") if cells.get(name)), None),
     }
 
 
 def _empty(item: Item, columns: list[str]) -> Reject:
-    return Reject.of(Code.EMPTY, f"an empty answer: {', '.join(columns)}", file=item.place)
+    return Reject.of(Code.EMPTY, f"an empty answer: {', '.join(columns)}", file=item.place, line=item.line)
 
 
 def _quantities(text: str) -> list[dict[str, Any]]:

@@ -29,10 +29,11 @@ class Item:
     Attributes:
         record_id: stable, unique within a build.
         reader: the name of the reader that found it and will read it.
-        place: source, file inside it, and line.
+        place: source and file inside it.
         value: what the reader needs; JSON values only.
         version: changes when the content behind `value` does.
         path: where the source is on this machine, for readers that go back to it; decides nothing.
+        line: where it begins in its file, from 1; 0 where it is the whole file.
     """
 
     record_id: str
@@ -41,6 +42,7 @@ class Item:
     value: Any
     version: str = ""
     path: str = ""
+    line: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +53,12 @@ class Source:
     path: Path
 
 
-def refused(place: str, reject: Reject) -> Item:
-    """An item of which only the fault is known."""
+def refused(place: str, reject: Reject, record_id: str = "", line: int = 0) -> Item:
+    """An item of which only the fault is known; without an id of its own it goes by its place."""
     faults = [
         [str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics
     ]
-    return Item(place, "refused", place, faults)
+    return Item(record_id or (f"{place}:{line}" if line else place), "refused", place, faults, line=line)
 
 
 def read_refused(item: Item) -> Reject:

@@ -56,9 +56,9 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
         yield _named_file(path, label)
         return
     files = [file.relative_to(path).as_posix() for file in walk(path)]
-    if any(release.names_it(f"{path.name}/{name}") for name in files):
+    if any(map(release.names_it, files)):
         yield Recognised(path, label, release.NAME)
-        files = [name for name in files if not release.names_it(f"{path.name}/{name}")]
+        files = [name for name in files if not release.names_it(name)]
         yield from _folder(path, label, files)
         return
     found = list(_folder(path, label, files))

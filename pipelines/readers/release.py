@@ -93,7 +93,7 @@ def _item(path: Path, place: str, key: str, members: dict[str, Any], version: st
     if "collected" not in members and "grounded" not in members:
         have = " and ".join(sorted(members))
         fault = Diagnostic(Code.MISSING_FILE, f"{have} of a program that is in no other folder", where)
-        return Item(f"{NAME}:{key}", "refused", where, refused(where, Reject((fault,))).value)
+        return refused(where, Reject((fault,)), f"{NAME}:{key}")
     return Item(f"{NAME}:{key}", NAME, where, {"label": place, "key": key, **members}, version, str(path))
 
 
@@ -101,7 +101,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
     """Names of files, and what tells versions of them apart."""
     if path.is_dir():
         for file in walk(path):
-            yield f"{path.name}/{file.relative_to(path).as_posix()}", file_digest(file)[:16]
+            yield file.relative_to(path).as_posix(), file_digest(file)[:16]
     else:
         for info in archive(path).infolist():
             if not info.is_dir():
@@ -133,7 +133,7 @@ def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
     place = f"{value['label']}/{name}"
     try:
         if path.is_dir():
-            return (path / name.split("/", 1)[1]).read_bytes()
+            return (path / name).read_bytes()
         info = archive(path).getinfo(name)
         if info.file_size > LARGEST_FILE:
             message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"

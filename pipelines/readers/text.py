@@ -46,7 +46,7 @@ def _item(block: _Block, record_id: str, place: str) -> Item:
     text = "\n".join(block.lines)
     fault = fault_of(text, place, block.first)
     if fault:
-        return _named(refused(place, Reject((fault,))), record_id)
+        return refused(place, Reject((fault,)), record_id, block.first)
     if block.longest > MAX_LINE:
         long = next(number for number, line in enumerate(block.lines) if len(line) > MAX_LINE)
         reject = Reject.of(
@@ -57,12 +57,8 @@ def _item(block: _Block, record_id: str, place: str) -> Item:
             found=block.lines[long][:60],
             suggestion=f"at most {MAX_LINE:,}",
         )
-        return _named(refused(place, reject), record_id)
+        return refused(place, reject, record_id, block.first)
     return Item(record_id, NAME, place, {"text": text + "\n", "line": block.first - 1})
-
-
-def _named(item: Item, record_id: str) -> Item:
-    return Item(record_id, item.reader, item.place, item.value)
 
 
 def _blocks(path: Path) -> Iterator[_Block]:

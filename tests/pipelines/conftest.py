@@ -76,3 +76,9 @@ def release(tmp_path) -> Path:
 def inputs() -> Path:
     """The golden tests' input."""
     return INPUT
+
+
+@pytest.fixture(scope="session")
+def build_folder():
+    """A way to run stages over sources, into any folder."""
+    return Built

@@ -151,10 +151,10 @@ def test_answers_that_are_not_used(write):
     found = read(write("d.csv", batch(*lines)))
     assert [row["program_id"] for row in rows(found)] == ["crowd:D3", "crowd:D5"]
     assert faults(found) == [
-        ("REJECTED_ANSWER", "d.csv:2", 0),
-        ("EMPTY", "d.csv:3", 0),
-        ("DUPLICATE", "d.csv:5", 0),  # the same answer of the same worker
-        ("DUPLICATE", "d.csv:6", 0),  # the same id
+        ("REJECTED_ANSWER", "d.csv", 2),
+        ("EMPTY", "d.csv", 3),
+        ("DUPLICATE", "d.csv", 5),  # the same answer of the same worker
+        ("DUPLICATE", "d.csv", 6),  # the same id
     ]
 
 
@@ -269,7 +269,7 @@ def test_a_bad_graph_costs_its_own_grounding(release, content, code):
     path.write_bytes(content)
     found = read(release)
     assert [len(row["groundings"]) for row in rows(found)] == [1, 0, 1]
-    assert faults(found)[0][:2] == (code, f"release/release/{path.relative_to(release).as_posix()}")
+    assert faults(found)[0][:2] == (code, f"release/{path.relative_to(release).as_posix()}")
 
 
 def test_a_damaged_member_costs_its_own_program(release, tmp_path):
