@@ -181,24 +181,29 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
     return result
 
 
-_TERMS = frozenset({"object", "second", "container", "door", "held", "each", "seat"})
+_TERMS = frozenset({"object", "second", "container", "door", "held", "each", "seat", "food", "place"})
+_ALONE = frozenset({"remove", "undo", "split"})
+_WITH_ACTION = frozenset({"before", "after", "replace", "append"})
 
 
 def _repair_steps(
     texts: Iterable[str], actions: Mapping[str, Action], at: Entry, faults: Faults
 ) -> Iterator[RepairStep]:
-    """Read `remove`, `before Action term ...` and `after Action term ...`."""
+    """Read `remove`, `before Action term ...` and their like."""
     for text in texts:
         kind, *words = text.split()
-        if kind == "remove" and not words:
-            yield RepairStep("remove")
-        elif (
-            kind in ("before", "after")
-            and words
-            and words[0] in actions
-            and len(words) - 1 == actions[words[0]].arity
-            and _TERMS.issuperset(words[1:])
-        ):
+        if kind in _ALONE and not words:
+            yield RepairStep(kind)
+        elif text == "append achiever":
+            yield RepairStep("append")
+        elif kind in _WITH_ACTION and _is_step(words, actions):
             yield RepairStep(kind, words[0], tuple(words[1:]))
         else:
-            faults.at(at, f"`{text}` is no repair step", "`remove`, or `before` or `after`, an action and its objects")
+            faults.at(at, f"`{text}` is no repair step", "`remove`, or `before`, ... with an action and its objects")
+
+
+def _is_step(words: list[str], actions: Mapping[str, Action]) -> bool:
+    """Whether the words are an action with as many known terms as it takes objects."""
+    if not words or words[0] not in actions:
+        return False
+    return len(words) - 1 == actions[words[0]].arity and _TERMS.issuperset(words[1:])

@@ -209,10 +209,12 @@ class RepairStep(NamedTuple):
     """One edit of a program at the step that failed.
 
     Attributes:
-        kind: `remove` the step, or insert an action `before` or `after` it.
+        kind: `remove` the step, `undo` an earlier one, `split` a tick; insert an action `before` or `after` the step,
+            `replace` it, or `append` one at the end (an empty action: whichever achieves what is missing).
         action: what is inserted.
         objects: what it is done to: `object` or `second` of the step, the closed `container` around the object, the
-            closed `door` on the way, a thing `held`, a `seat`, or `each` thing on the object in turn.
+            closed `door` on the way, a thing `held`, a `seat`, `each` thing on the object in turn, some `food`, or the
+            `place` where the object belongs.
     """
 
     kind: str

@@ -239,3 +239,9 @@ def test_every_failure_of_a_check_that_can_be_mended_has_a_repair(knowledge):
     for action in knowledge.actions.values():
         for check in action.preconditions:
             assert check.code in hopeless or knowledge.repairs_for(check.code, action.name), (action.name, check.code)
+
+
+def test_repairs_and_handlers_are_for_the_same_failures(knowledge):
+    from hearth.pipelines.handlers.registry import HANDLERS
+
+    assert {repair.code for repair in knowledge.repairs.values()} == set(HANDLERS)
