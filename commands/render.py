@@ -81,14 +81,13 @@ def sheet(out: OutFile, fine: Fine = False) -> None:
 
 
 def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Execution:
-    from hearth.commands.run import _home, _program
+    from hearth.commands.inputs import read_home, read_knowledge, read_program
     from hearth.grounding.trial import attempt
-    from hearth.kb import knowledge
     from hearth.schemas.errors import HearthError
     from hearth.schemas.failures import Failure
 
-    known = knowledge.default()
-    trial = attempt(_program(file, known), _home(home, None, homes, known), seed)
+    known = read_knowledge(None)
+    trial = attempt(read_program(file, known), read_home(home, None, homes, known), seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, trial.message(), file=str(file))
     return trial.execution

@@ -24,7 +24,8 @@ def test_bones_keep_their_lengths(name):
     for side in "rl":
         for a, b, length in (("hip", "knee", THIGH), ("knee", "ankle", SHIN), ("shoulder", "elbow", UPPER_ARM),
                              ("elbow", "wrist", FOREARM)):  # fmt: skip
-            assert np.linalg.norm(found[f"{a}_{side}"] - found[f"{b}_{side}"]) == pytest.approx(length * HEIGHT, rel=0.01)
+            bone = found[f"{a}_{side}"] - found[f"{b}_{side}"]
+            assert np.linalg.norm(bone) == pytest.approx(length * HEIGHT, rel=0.01)
 
 
 @pytest.mark.parametrize("name", STANCES)
