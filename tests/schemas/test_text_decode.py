@@ -1,0 +1,37 @@
+"""Bytes that people's editors write."""
+
+import pytest
+
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.text import decode
+
+TEXT = "Café\n“Sit”\n\n[Walk] <bed> (1)\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_encodings_and_line_ends(encoding, end):
+    assert decode(TEXT.replace("\n", end).encode(encoding)) == TEXT
+
+
+@pytest.mark.parametrize(
+    ("data", "line"),
+    [
+        (b"one\ntwo\n\xff\xfe\xfd", 3),
+        (b"\x89PNG\r\n\x1a\n", 1),
+        ("Café".encode("latin-1"), 1),
+        (b"one\ntw\x00o\n", 2),
+        (b"\xff\xfeo", 1),
+        (b"PK\x03\x04\x00\x00", 1),
+    ],
+)
+def test_what_is_no_text_is_a_fault_with_its_line(data, line):
+    fault = decode(data, "a.txt")
+    assert isinstance(fault, Diagnostic)
+    assert (fault.code, fault.file, fault.line) == (Code.NOT_TEXT, "a.txt", line)
+    assert fault.suggestion
+
+
+def test_nothing_is_text():
+    assert decode(b"") == ""
