@@ -62,6 +62,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Try a program": {
         "check": Entry("check:check", "Check program files and underline what is wrong."),
         "run": Entry("run:run", "Run a program in a home and print what happens."),
+        "repair": Entry("repair:repair", "Perturb what a program relies on, and show how it is repaired."),
         "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
     },
     "Look around": {

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from hearth.commands import output
+from hearth.commands.inputs import File, Graph, HomeName, Homes, Kb, read_home, read_knowledge, read_program
 
 if TYPE_CHECKING:
     from hearth.grounding.trial import Trial
-    from hearth.kb.knowledge import Knowledge
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
     from hearth.simulation.change import Change
@@ -21,11 +19,6 @@ if TYPE_CHECKING:
     from hearth.simulation.rules import Rules
     from hearth.simulation.world import World
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file; `-` reads standard input.")]
-HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
-Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
-Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", help="For what has to be added to the home.")]
 AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and leave its states as they are.")]
 Explain = Annotated[bool, typer.Option("--explain", help="Say for each step which checks held, and by what.")]
@@ -54,13 +47,12 @@ def run(
       python cli.py run watch_tv.txt --home maple --explain
     """
     from hearth.grounding.trial import attempt
-    from hearth.kb import knowledge
     from hearth.schemas.failures import Failure
     from hearth.simulation.rules import DEFAULT
 
-    known = knowledge.load(overlay=kb) if kb else knowledge.default()
-    program = _program(file, known)
-    place = _home(home, graph, homes, known)
+    known = read_knowledge(kb)
+    program = read_program(file, known)
+    place = read_home(home, graph, homes, known)
     trial = attempt(program, place, seed, DEFAULT, at_rest=not as_is, add=not as_is)
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
     if as_json:
@@ -69,32 +61,6 @@ def run(
         _print(program, trial, place, explain, DEFAULT)
     if failure is not None:
         raise typer.Exit(output.BAD_INPUT)
-
-
-def _program(file: Path, known: Knowledge) -> Program:
-    from hearth.kb import grammar
-    from hearth.schemas.errors import Diagnostic, HearthError
-    from hearth.schemas.syntax import parse_program
-    from hearth.schemas.text import decode
-
-    data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
-    text = decode(data, str(file))
-    if isinstance(text, Diagnostic):
-        raise HearthError(text)
-    written, faults = parse_program(text, str(file))
-    program, wrong = grammar.check(written, known, str(file), text.splitlines())
-    if faults or wrong:
-        raise HearthError((*faults, *wrong))
-    return program
-
-
-def _home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
-    from hearth.simulation.home import Home
-    from hearth.simulation.homes import catalog
-
-    if graph is not None:
-        return Home.from_graph(catalog.graph_of(graph), graph.stem, known)
-    return Home.from_graph(catalog.load_graph(name, homes), name, known)
 
 
 def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, rules: Rules) -> None:

@@ -44,12 +44,14 @@ class Perturbation:
 
     def claims(self) -> frozenset[tuple[str, Key]]:
         """What it settles, each as (matter, object); two that settle the same exclude each other."""
-        return frozenset(
-            (_MATTER.get(c.name, "place"), c.objects[0]) for c in (*self.dropped, *self.added) if c.objects
-        )
+        settled = ((_MATTER.get(c.name, "place"), c.objects[0]) for c in (*self.dropped, *self.added))
+        off = (("switch", c.objects[0]) for c in self.added if c.name == "unplugged")
+        return frozenset((*settled, *off))
 
     def __str__(self) -> str:
-        return f"{self.kind}: {self.about}" + (f" -> {', '.join(map(str, self.added))}" if self.dropped else "")
+        if not self.dropped:
+            return f"{self.kind}: {', '.join(map(str, self.added))}"
+        return f"{self.kind}: {self.about} -> {', '.join(map(str, self.added)) or 'not so'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,11 +163,12 @@ def _swap(kind: str, pairs: Mapping[str, str]) -> Kind:
 
 
 def _plugged(case: Case) -> Iterator[Perturbation]:
-    """What was plugged in is not, or the reverse, if it has a plug that can be put in."""
+    """What was plugged in and off is not, or the reverse, if it has a plug that can be put in."""
     for one in _swap("plugged", {"plugged": "unplugged", "unplugged": "plugged"})(case):
         home = case.base.home
         lacking = (i for i in case.base.instances(one.about.objects[0][0]) if not home.able("PlugIn") >> i & 1)
-        if next(lacking, -1) < 0 and has(case.knowledge, one.about.objects[0][0], "HAS_PLUG"):
+        runs = one.added[0].name == "unplugged" and case.conditions.has("is_on", *one.about.objects)
+        if not runs and next(lacking, -1) < 0 and has(case.knowledge, one.about.objects[0][0], "HAS_PLUG"):
             yield one
 
 

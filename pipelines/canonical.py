@@ -6,12 +6,10 @@ the character has just walked; nothing is opened only to be closed again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 
-from hearth.grounding.conditions import Key
-from hearth.grounding.postconditions import Fact, Postconditions, nodes_of, reached
+from hearth.grounding.postconditions import Postconditions, nodes_of, reached
 from hearth.schemas.program import Program, Step
-from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import World
@@ -50,14 +48,19 @@ def trim(
         original: the program before any repair.
         execution: of the repaired program, which runs and reaches its goal.
         own: for each of its steps, whether the original had it; those stay, unless repairing made them void.
-        goal: what must stay reached; what the character holds at the start and at the end, it must go on holding.
+        goal: what must stay reached; the characters' hands, too, must end up holding what they hold now.
         rules: for the runs.
     """
-    kept = goal + _hands(execution)
-    nodes = {**nodes_of(original, execution.final), **nodes_of(execution.program, execution.final)}
+    nodes = nodes_of(original, execution.final)
+    hands = _hands(execution.final)
     marks = list(own)
+
+    def suffices(shorter: Execution) -> bool:
+        end = shorter.final
+        return shorter.failure is None and _hands(end) == hands and reached(goal, nodes, end)
+
     while True:
-        smaller = next(_smaller(original, execution, marks, (kept, nodes), rules), None)
+        smaller = next(_smaller(original, execution, marks, suffices, rules), None)
         if smaller is None:
             return execution
         execution, marks = smaller
@@ -67,7 +70,7 @@ def _smaller(
     original: Program,
     execution: Execution,
     own: list[bool],
-    goal: tuple[Postconditions, Mapping[Key, int]],
+    suffices: Callable[[Execution], bool],
     rules: Rules,
 ) -> Iterator[tuple[Execution, list[bool]]]:
     """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
@@ -75,7 +78,7 @@ def _smaller(
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])
         shorter = resume(execution, program, start, rules)
-        if shorter.failure is None and reached(*goal, shorter.final):
+        if suffices(shorter):
             yield shorter, own[:start] + own[end:]
 
 
@@ -120,20 +123,6 @@ def _repeated_walks(original: Program) -> set[Step]:
     return {s for n, s in enumerate(original.steps) if _last_walk(original.steps, n) == s.objects}
 
 
-def _hands(execution: Execution) -> tuple[Fact, ...]:
-    """What the characters hold at the start and at the end, as facts."""
-    first, last = execution.worlds[0], execution.final
-    nodes = nodes_of(execution.program, last)
-    keys = {node: key for key, node in nodes.items() if key[0] != CHARACTER_CLASS}
-    facts = []
-    for number, (old, new) in enumerate(zip(first.agents, last.agents, strict=True), 1):
-        facts += [
-            Fact("HOLDS", (CHARACTER_CLASS, number), key)
-            for node, key in keys.items()
-            if _held(first, node, old.held) and _held(last, node, new.held)
-        ]
-    return tuple(facts)
-
-
-def _held(world: World, node: int, held: int) -> bool:
-    return bool(held >> world.home.index[node] & 1)
+def _hands(world: World) -> tuple[int, ...]:
+    """What each character holds."""
+    return tuple(agent.held for agent in world.agents)

@@ -1,0 +1,67 @@
+"""What several commands read: a program file, and the home it is tried in."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.program import Program
+    from hearth.simulation.home import Home
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file; `-` reads standard input.")]
+HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
+Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
+Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
+Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
+
+
+def read_knowledge(overlay: Path | None) -> Knowledge:
+    """Our knowledge, with a user's own files laid over it.
+
+    Raises:
+        HearthError: every fault of the user's files.
+    """
+    from hearth.kb import knowledge
+
+    return knowledge.load(overlay=overlay) if overlay else knowledge.default()
+
+
+def read_program(file: Path, known: Knowledge) -> Program:
+    """The first program of a file, names canonical.
+
+    Raises:
+        HearthError: every fault of the file.
+    """
+    from hearth.kb import grammar
+    from hearth.schemas.errors import Diagnostic, HearthError
+    from hearth.schemas.syntax import parse_program
+    from hearth.schemas.text import decode
+
+    data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
+    text = decode(data, str(file))
+    if isinstance(text, Diagnostic):
+        raise HearthError(text)
+    written, faults = parse_program(text, str(file))
+    program, wrong = grammar.check(written, known, str(file), text.splitlines())
+    if faults or wrong:
+        raise HearthError((*faults, *wrong))
+    return program
+
+
+def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
+    """The home of that name, or that of a graph file.
+
+    Raises:
+        HearthError: UNKNOWN_HOME, or what is wrong with the file.
+    """
+    from hearth.simulation.home import Home
+    from hearth.simulation.homes import catalog
+
+    if graph is not None:
+        return Home.from_graph(catalog.graph_of(graph), graph.stem, known)
+    return Home.from_graph(catalog.load_graph(name, homes), name, known)

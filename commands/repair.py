@@ -1,0 +1,169 @@
+"""`repair`: what breaks when what this program relies on is otherwise, and how is it repaired?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from difflib import ndiff
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+from hearth.commands.inputs import File, Graph, HomeName, Homes, Kb, read_home, read_knowledge, read_program
+
+if TYPE_CHECKING:
+    from hearth.grounding.perturbing import Chances
+    from hearth.kb.knowledge import Knowledge
+    from hearth.pipelines.augmenting import Augmented, Pair
+    from hearth.pipelines.repairing import Attempt
+    from hearth.schemas.program import Program, Step
+
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of what is perturbed and of the environments.")]
+Variants = Annotated[int, typer.Option("--variants", metavar="N", min=1, help="Perturbed environments to try.")]
+Kinds = Annotated[
+    list[str] | None,
+    typer.Option("--perturb", metavar="KIND", help="Only this, wherever it applies; may be given several times."),
+]
+
+
+def repair(
+    file: File,
+    home: HomeName = "maple",
+    graph: Graph = None,
+    homes: Homes = None,
+    kb: Kb = None,
+    seed: Seed = 0,
+    variants: Variants = 1,
+    perturb: Kinds = None,
+    as_json: output.Json = False,
+) -> None:
+    """Perturb what a program relies on, and show how it is repaired.
+
+    Prints what was made otherwise, then each failure with its repair, then the repaired program. Kinds of perturbation
+    are those of augment.yaml: open, on, plugged, free, at_reach, ... The status is 1 if a program can't be repaired.
+
+    \b
+    Example:
+      python cli.py repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
+    """
+    from hearth.pipelines.augmenting import Options, augment
+    from hearth.schemas.failures import Failure
+
+    known = read_knowledge(kb)
+    program = read_program(file, known)
+    place = read_home(home, graph, homes, known)
+    found = augment(program, place, seed, program.title, Options(variants, chances=_chances(perturb)))
+    if isinstance(found, Failure):
+        _refuse(found, place.name, as_json)
+    if as_json:
+        output.emit({"home": place.name, "seed": seed, **_json(found)})
+    else:
+        _print(program, found, place.name, known)
+    if any(pair.failure is not None and pair.failure.code not in _HARMLESS for pair in found.pairs):
+        raise typer.Exit(output.BAD_INPUT)
+
+
+_HARMLESS = ("UNPERTURBED", "DUPLICATE")
+
+
+def _refuse(failure: Any, home: str, as_json: bool) -> None:
+    if as_json:
+        output.emit({"home": home, "failure": asdict(failure)})
+    else:
+        print(f"This program can't be placed in {home}. {failure.message()}")
+    raise typer.Exit(output.BAD_INPUT)
+
+
+def _chances(kinds: list[str] | None) -> Chances | None:
+    """Only the kinds asked for, all of them wherever they apply; those of augment.yaml when none are.
+
+    Raises:
+        HearthError: UNKNOWN_ID, with the kinds there are.
+    """
+    if not kinds:
+        return None
+    from hearth.grounding.perturbing import PERTURBATIONS, Chances
+    from hearth.schemas.errors import HearthError
+    from hearth.schemas.failures import Code
+
+    unknown = [kind for kind in kinds if kind not in PERTURBATIONS]
+    if unknown:
+        known = f"kinds are {', '.join(PERTURBATIONS)}"
+        raise HearthError.of(Code.UNKNOWN_ID, f"there is no perturbation `{unknown[0]}`", suggestion=known)
+    return Chances(dict.fromkeys(kinds, 1.0), {"each": 1.0})
+
+
+def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> None:
+    print(f"{program.title or 'A program'}, in {home}")
+    print(f"  to be reached: {'; '.join(map(str, found.goal)) or 'nothing'}")
+    if not found.pairs:
+        print("  It relies on nothing that could be otherwise.")
+    for pair in found.pairs:
+        _print_pair(pair, known)
+
+
+def _print_pair(pair: Pair, known: Knowledge) -> None:
+    for perturbation in pair.perturbations:
+        print(f"\nMade otherwise: {perturbation}")
+    for attempt in pair.attempts:
+        _print_attempt(attempt, known)
+    if pair.failure is not None:
+        print(f"\nGiven up. {pair.failure.message()}" if pair.attempts else f"\n{pair.failure.message()}")
+        return
+    print(f"\nRepaired: {output.counted(len(pair.program.steps), 'step')}.")
+    before, after = _texts(pair.environment.program.steps), _texts(pair.program.steps)
+    print("\n".join(f"  {line}" for line in _difference(before, after, every=True)))
+
+
+def _print_attempt(attempt: Attempt, known: Knowledge) -> None:
+    row = known.repairs.get(attempt.handler)
+    print(f"\n{attempt.number + 1:3}  {attempt.failure.message()}")
+    print(f"     {attempt.handler}{': ' + row.say if row is not None and row.say else ''}")
+    for line in _difference(_texts(attempt.before), _texts(attempt.after or attempt.before)):
+        print(f"       {line}")
+
+
+def _texts(steps: Iterable[Step]) -> list[str]:
+    from hearth.schemas.syntax import print_step
+
+    return [print_step(step) for step in steps]
+
+
+def _difference(before: list[str], after: list[str], *, every: bool = False) -> Iterator[str]:
+    """Lines that came (`+`) and went (`-`), and with `every` those that stayed."""
+    for line in ndiff(before, after):
+        if line[0] in "+-" or (every and line[0] == " "):
+            yield line
+
+
+def _json(found: Augmented) -> dict[str, Any]:
+    return {"goal": [str(fact) for fact in found.goal], "pairs": [_pair_json(pair) for pair in found.pairs]}
+
+
+def _pair_json(pair: Pair) -> dict[str, Any]:
+    return {
+        "perturbations": [
+            {
+                "kind": one.kind,
+                "dropped": [str(condition) for condition in one.dropped],
+                "added": [str(condition) for condition in one.added],
+            }
+            for one in pair.perturbations
+        ],
+        "original": _texts(pair.environment.program.steps),
+        "attempts": [_attempt_json(attempt) for attempt in pair.attempts],
+        "repaired": _texts(pair.program.steps) if pair.failure is None else None,
+        "failure": asdict(pair.failure) if pair.failure is not None else None,
+    }
+
+
+def _attempt_json(attempt: Attempt) -> dict[str, Any]:
+    return {
+        "attempt": attempt.number,
+        "step": attempt.step,
+        "failure": asdict(attempt.failure),
+        "handler": attempt.handler,
+        "before": _texts(attempt.before),
+        "after": _texts(attempt.after),
+    }
