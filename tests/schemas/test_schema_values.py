@@ -40,18 +40,18 @@ def test_a_graph_is_written_as_it_was_read():
         graph.node(3)
 
 
-@pytest.mark.parametrize(
-    "graph",
-    [
-        {},
-        {"nodes": []},
-        {"nodes": [{}], "edges": []},
-        {"nodes": [3], "edges": []},
-        {"nodes": 3, "edges": []},
-        {"nodes": [{"id": "x", "class_name": "bed"}], "edges": []},
-        {"nodes": [], "edges": [{"from_id": 1}]},
-    ],
-)
+NO_GRAPHS = [
+    {},
+    {"nodes": []},
+    {"nodes": [{}], "edges": []},
+    {"nodes": [3], "edges": []},
+    {"nodes": 3, "edges": []},
+    {"nodes": [{"id": "x", "class_name": "bed"}], "edges": []},
+    {"nodes": [], "edges": [{"from_id": 1}]},
+]
+
+
+@pytest.mark.parametrize("graph", NO_GRAPHS)
 def test_what_is_no_graph_is_one_clear_error(graph):
     with pytest.raises(HearthError) as caught:
         from_release(graph, "g.json")
