@@ -66,10 +66,10 @@ $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py 
 	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) 2>/dev/null
 
 test: $(READY)  ## the tests, without the slow ones
-	@$(PY) -m pytest -q -n $(JOBS) -m "not slow"
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadgroup -m "not slow"
 
 test-all: $(READY)  ## all tests
-	@$(PY) -m pytest -q -n $(JOBS)
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadgroup
 
 lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff check .
@@ -77,7 +77,7 @@ lint: $(READY)  ## ruff and mypy
 	@MYPYPATH=.types $(PY) -m mypy -p hearth
 
 bench: $(READY)  ## measure speed, with ratios to plain reference code
-	@$(PY) -m pytest -q -p no:xdist benchmarks
+	@for file in benchmarks/*_speed.py; do echo "$$file"; $(PY) "$$file" || exit 1; done
 
 lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock
 	@rm -rf build/lock && $(PYTHON) -m venv build/lock

@@ -65,6 +65,10 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "repair": Entry("repair:repair", "Perturb what a program relies on, and show how it is repaired."),
         "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
     },
+    "Make pictures": {
+        "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),
+        "render-sheet": Entry("render:sheet", "Draw every model, variant and state."),
+    },
     "Look around": {
         "kb": Entry("kb:app", "What is known of actions and objects."),
         "home": Entry("home:app", "The homes: list, show and check them."),

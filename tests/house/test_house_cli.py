@@ -29,8 +29,8 @@ def every_command():
 
 COMMANDS = list(every_command())
 
-DOCUMENTS = {("kb", "export")}
-"""Commands that print a document in a format of its own."""
+DOCUMENTS = {("kb", "export"), ("render-program",), ("render-sheet",)}
+"""Commands whose output is a document or pictures in a format of their own."""
 
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
