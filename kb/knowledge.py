@@ -184,6 +184,16 @@ class Knowledge:
 
     def default_states(self, name: str) -> tuple[str, ...]:
         """The simulated states in which a home's thing of that class starts (thesis 5.5.2)."""
+        known = self._default_states.get(name)
+        if known is None:
+            known = self._default_states[name] = self._defaults_of(name)
+        return known
+
+    @cached_property
+    def _default_states(self) -> dict[str, tuple[str, ...]]:
+        return {}
+
+    def _defaults_of(self, name: str) -> tuple[str, ...]:
         thing = self.object_class(name)
         if thing is None:
             return ()

@@ -175,6 +175,7 @@ def test_an_action_changes_what_its_effects_say(knowledge, world):
 def test_a_state_ends_its_opposite(knowledge, world):
     opened = world.after(changes(knowledge, world, knowledge.actions["Open"], {"a": ME, "o": FRIDGE}))
     assert opened.states[FRIDGE] == frozenset({"OPEN"})
+    assert not holds(knowledge, opened, parse_formula("hidden(o)"), {"a": ME, "o": MILK})
 
 
 def test_walking_takes_along_what_is_held_and_leaves_the_rest(knowledge, world):
