@@ -100,6 +100,10 @@ def _stowed(world: World, index: tuple[int, ...], _: Condition) -> bool:
     return rows.closed_container(world, index[0]) >= 0
 
 
+def _averted(world: World, index: tuple[int, ...], condition: Condition) -> bool:
+    return not _facing(world, index, condition)
+
+
 def _full_hands(world: World, index: tuple[int, ...], _: Condition) -> bool:
     return bool(world.agents[0].right and world.agents[0].left)
 
@@ -133,6 +137,7 @@ HOLDS: dict[str, Test] = {
     "apart": _apart,
     "elsewhere": _elsewhere,
     "stowed": _stowed,
+    "averted": _averted,
     "full_hands": _full_hands,
     "shut_in": _shut_in,
     "pet": _pet,

@@ -38,9 +38,10 @@ RELATION_OF: dict[str, str] = {
 SEATS = ("sitting", "lying", "free", "occupied")
 """Conditions about the character's rest, and about what is on a seat or bed."""
 
-SPOILING = ("apart", "elsewhere", "stowed", "full_hands", "shut_in", "pet")
-"""What perturbing asks for instead: not at reach of the other; in another room than the other names; in something
-closed; both hands of the character hold something; the doors of the object's room are closed; a pet is on the seat."""
+SPOILING = ("apart", "elsewhere", "stowed", "averted", "full_hands", "shut_in", "pet")
+"""What perturbing asks for instead: not at reach of the other; in another room than the other; in something closed but
+the other; not facing the other; both hands of the character hold something; the doors of the object's room are closed;
+a pet is on the seat."""
 
 PETS = ("cat", "dog")
 """What may lie on a seat that is wanted."""

@@ -141,6 +141,7 @@ FULFIL: dict[str, Fulfil] = {
     "apart": spoiling.apart,
     "elsewhere": spoiling.elsewhere,
     "stowed": spoiling.stowed,
+    "averted": spoiling.averted,
     "full_hands": spoiling.full_hands,
     "shut_in": spoiling.shut_in,
     "pet": spoiling.pet,

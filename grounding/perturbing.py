@@ -19,6 +19,9 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.program import Program
 from hearth.simulation.bits import indices
 
+MOST = 6
+"""Perturbations of one draw, where nothing else is said."""
+
 PATIENCE = 8
 """Draws in a row that bring nothing new before no more are made."""
 
@@ -89,7 +92,7 @@ class Chances:
 
     kinds: Mapping[str, float]
     draws: Mapping[str, float]
-    most: int = 6
+    most: int = MOST
 
 
 Kind = Callable[[Case], Iterator[Perturbation]]
@@ -291,7 +294,7 @@ PERTURBATIONS: dict[str, Kind] = {
     "on": _swap("on", {"is_on": "is_off", "is_off": "is_on"}),
     "open": _swap("open", {"open": "closed", "closed": "open"}),
     "free": _swap("free", {"free": "occupied", "occupied": "free"}),
-    "facing": _drop("facing", "facing"),
+    "facing": _swap("facing", {"facing": "averted"}),
     "holding": _drop("holding", "holds"),
     "container": _container,
     "location": _location,
@@ -313,7 +316,7 @@ _MATTER: dict[str, str] = {
     }.items() for name in names},
     **dict.fromkeys(("sitting", "lying"), "posture"),
     **dict.fromkeys(("free", "occupied", "pet"), "seat"),
-    "full_hands": "hands", "holds": "hands", "shut_in": "way", "facing": "view",
+    "full_hands": "hands", "holds": "hands", "shut_in": "way", "facing": "view", "averted": "view",
 }  # fmt: skip
 """What each condition is about; the rest is about where its first object is."""
 

@@ -59,6 +59,14 @@ def closes(base: Base, spot: Spot) -> bool:
     return spot[1] == "INSIDE" and bool((home.able("Open") & home.states[0]) >> spot[0] & 1)
 
 
+def averted(draft: Draft, condition: Condition) -> None:
+    """The first object faces away from the second."""
+    one, other = (draft.binding[key] for key in condition.objects)
+    draft.added[:] = [edge for edge in draft.added if edge != Edge(one, "FACING", other)]
+    if one in draft.base.home.index and other in draft.base.home.index:
+        draft.removed.append(Edge(one, "FACING", other))
+
+
 def full_hands(draft: Draft, condition: Condition) -> None:
     """The character's hands hold things of no concern to the program."""
     me = draft.base.character

@@ -10,7 +10,7 @@ from pathlib import Path
 from hearth.grounding.base import Base, prepared
 from hearth.grounding.checking import unmet
 from hearth.grounding.conditions import Condition, Preconditions
-from hearth.grounding.perturbing import PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
+from hearth.grounding.perturbing import MOST, PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
 from hearth.grounding.postconditions import Postconditions, achieved
 from hearth.grounding.sampling import Environment, Size, draw, sample
 from hearth.pipelines.repairing import TRIES, Attempt, repair
@@ -135,7 +135,7 @@ def load_chances(path: Path) -> Chances:
     faults = list(_faults(data))
     if faults:
         raise HearthError.of(Code.BAD_TABLE, "; ".join(faults), file=str(path), suggestion=_PARTS)
-    return Chances(dict(data["kinds"]), dict(data["draws"]), data.get("most", Chances.most))
+    return Chances(dict(data["kinds"]), dict(data["draws"]), data.get("most", MOST))
 
 
 _PARTS = "`kinds` gives each perturbation a probability; `draws` gives each, one and two a weight"
@@ -153,6 +153,9 @@ def _faults(data: object) -> Iterator[str]:
                 yield f"{value!r} is no {'probability' if part == 'kinds' else 'weight'} of `{name}`"
     if not any(isinstance(weight, int | float) and weight > 0 for weight in data["draws"].values()):
         yield "no draw has a weight"
+    most = data.get("most", MOST)
+    if not isinstance(most, int) or most < 1:
+        yield "`most` is no count"
 
 
 def default_chances() -> Chances:

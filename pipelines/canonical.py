@@ -15,6 +15,7 @@ from hearth.simulation.rules import Rules
 from hearth.simulation.world import World
 
 _UNDOING = {"Open": "Close", "SwitchOn": "SwitchOff", "PlugIn": "PlugOut", "Grab": "Release"}
+_IN_HAND = ("Grab", "Release")
 _UNDONE = {**_UNDOING, **{undo: do for do, undo in _UNDOING.items()}}
 
 
@@ -91,16 +92,18 @@ def _candidates(original: Program, steps: tuple[Step, ...], own: list[bool]) -> 
         if not own[number] or _walks_where_it_is(original, steps, number):
             yield number, number + 1
         pair = steps[number : number + 2]
-        if len(pair) == 2 and _undo(*pair) and pair not in neighbours:
+        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new=not any(own[number : number + 2])):
             yield number, number + 2
 
 
-def _undo(one: Step, other: Step) -> bool:
+def _undo(one: Step, other: Step, both_new: bool) -> bool:
+    """Whether a step undoes the one before it; sitting down and taking something are only undone where both are new."""
     if one.agent != other.agent:
         return False
-    if other.action == "StandUp":
+    if both_new and other.action == "StandUp":
         return one.action in ("Sit", "Lie")
-    return one.objects == other.objects and _UNDONE.get(one.action) == other.action
+    undoing = _UNDONE.get(one.action) == other.action and one.objects == other.objects
+    return undoing and (both_new or one.action not in _IN_HAND)
 
 
 def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int) -> bool:
