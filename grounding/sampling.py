@@ -152,6 +152,15 @@ def _place_character(draft: Draft, program: Program, conditions: Preconditions) 
         room = draft.rng.choice([r for r in rooms if r != begin] or rooms)
     draft.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(base.start.agents[0].inside))
     draft.added.append(Edge(me, "INSIDE", room))
+    _bring(draft, me, room)
+
+
+def _bring(draft: Draft, me: int, room: int) -> None:
+    """What the character holds is where it is, unless it is said to be elsewhere."""
+    held = [edge.target for edge in draft.added if edge.source == me and edge.relation in ("HOLDS_RH", "HOLDS_LH")]
+    for node_id in held:
+        if draft.room_of(node_id) < 0:
+            draft.settle(node_id, room)
 
 
 def _with_demand(
