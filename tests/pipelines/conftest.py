@@ -10,11 +10,12 @@ import pytest
 
 from hearth.pipelines.run import run_stage
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stages import stage
+from hearth.pipelines.stages import STAGES, stage
 from hearth.pipelines.workers import Workers
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden/pipelines"
 INPUT = GOLDEN / "input"
+GOLDEN_SOURCES = (INPUT / "crowd", INPUT / "programs/evening.txt", INPUT / "release")
 
 
 class Built:
@@ -30,6 +31,10 @@ class Built:
             for name in names:
                 self.result = run_stage(stage(name), self.settings, pool)
         return self.result
+
+    def run_all(self) -> Built:
+        self.run(*STAGES)
+        return self
 
     def rows(self, name: str) -> list[dict]:
         paths = sorted((self.out / name).glob("part-*.parquet"))
@@ -82,3 +87,9 @@ def inputs() -> Path:
 def build_folder():
     """A way to run stages over sources, into any folder."""
     return Built
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory) -> Built:
+    """All stages over the golden input, built once. Not to be changed."""
+    return Built(tmp_path_factory.mktemp("made") / "out", GOLDEN_SOURCES).run_all()

@@ -20,12 +20,9 @@ from hearth.schemas.syntax import print_lines
 REFRESH = "HEARTH_REFRESH=1 python -m pytest tests/pipelines/test_pipeline_golden.py"
 
 
-@pytest.fixture(scope="module")
-def out(tmp_path_factory, inputs, build_folder):
-    folder = tmp_path_factory.mktemp("golden")
-    sources = [inputs / "crowd", inputs / "programs/evening.txt", inputs / "release"]
-    build_folder(folder, sources).run(*STAGES)
-    return folder
+@pytest.fixture
+def out(made):
+    return made.out
 
 
 def read(folder: Path) -> list[dict]:
