@@ -83,15 +83,15 @@ def read_nodes(given: Iterable[Mapping[str, Any]] | Iterable[Node]) -> Nodes:
         nodes.sort(key=fields("id"))
         ids: list[int] = list(map(fields("id"), nodes))
         classes: list[str] = list(map(fields("class_name"), nodes))
+        _check_names(ids, classes)
+        index = dict(zip(ids, range(len(ids)), strict=True))
+        by_class = _masks(classes)
+        characters = by_class.get(CHARACTER_CLASS, 0)
+        rooms = _masks(map(_getter("category", nodes), nodes)).get(ROOM_CATEGORY, 0) & ~characters
+        properties, states = _properties(nodes, characters), _states(nodes)
     except (KeyError, TypeError, AttributeError) as error:
         raise bad_graph(f"a node lacks a field or has a wrong one: {type(error).__name__} {error}") from error
-    _check_names(ids, classes)
-    index = dict(zip(ids, range(len(ids)), strict=True))
-    by_class = _masks(classes)
-    agents = tuple(indices(by_class.get(CHARACTER_CLASS, 0)))
-    rooms = _masks(map(_getter("category", nodes), nodes)).get(ROOM_CATEGORY, 0) & ~by_class.get(CHARACTER_CLASS, 0)
-    properties = _properties(nodes, by_class.get(CHARACTER_CLASS, 0))
-    return Nodes(nodes, ids, index, classes, by_class, properties, rooms, _states(nodes), agents)
+    return Nodes(nodes, ids, index, classes, by_class, properties, rooms, states, tuple(indices(characters)))
 
 
 def bad_graph(message: str) -> HearthError:
@@ -225,9 +225,8 @@ def _positions(ids: Sequence[Any], nodes: Nodes) -> Any:
         return np.fromiter(map(nodes.index.get, ids, repeat(-1)), np.int64, count)
     table = np.full(nodes.ids[-1] + 2, -1)
     table[nodes.ids] = np.arange(len(nodes.ids))
-    try:
-        found = np.fromiter(ids, np.int64, count)
-    except (TypeError, ValueError, OverflowError):
+    found = np.array(ids)
+    if found.dtype != np.int64:
         return np.fromiter(map(nodes.index.get, ids, repeat(-1)), np.int64, count)
     found[(found < 0) | (found >= len(table))] = len(table) - 1
     return table[found]

@@ -56,7 +56,7 @@ def open_rooms(world: World, agent: Agent) -> int:
 
 def side(world: World, agent: Agent, door: int, room: int) -> int:
     """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
-    one that it is BETWEEN and that can be; else `room` again.
+    one that it is BETWEEN and that can be, the character's own before others; else `room` again.
     """
     start = rows.agent_room(world, agent)
     if start < 0:
@@ -65,6 +65,8 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     if room >= 0 and reached >> room & 1:
         return room
     within = world.home.between[door] & world.home.rooms & reached
+    if within >> start & 1:
+        return start
     return lowest(within) if within else room
 
 

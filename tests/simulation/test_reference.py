@@ -6,6 +6,8 @@ import random
 
 import pytest
 import reference
+from reference_world import Options
+from reference_world import World as PlainWorld
 from small_worlds import random_graph, random_step
 
 from hearth.schemas.failures import Failure
@@ -20,8 +22,8 @@ def agree(seed: int, steps: int = 30) -> int:
     rng = random.Random(seed)
     graph = random_graph(rng)
     rules = rng.choice((DEFAULT, REPLAY))
-    options = reference.Options(rules.doors, rules.watch_needs_on)
-    world, plain = World.start(Home.from_graph(graph)), reference.World(graph, rules.origin == "release")
+    options = Options(rules.doors, rules.watch_needs_on)
+    world, plain = World.start(Home.from_graph(graph)), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):
         instruction = random_step(rng, graph)
