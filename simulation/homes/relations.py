@@ -8,7 +8,7 @@ from math import cos, radians
 from typing import TYPE_CHECKING
 
 from hearth.schemas.graph import Edge
-from hearth.schemas.vocabulary import RELATION_ID
+from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 from hearth.simulation.homes.shell import Thing
 
 if TYPE_CHECKING:
@@ -34,10 +34,13 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
         ids: node ids by the things' names.
         lookable: classes that one can look at: what things are FACING.
     """
-    found = [*_given(things, ids)]
+    own = [ids[thing.name] for thing in things]
+    found = [(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]
     for relation, pairs in (("CLOSE", close(things)), ("FACING", facing(things, lookable))):
-        found.extend(Edge(ids[things[i].name], relation, ids[things[j].name]) for i, j in pairs)
-    return tuple(sorted(found, key=lambda e: (e.source, RELATION_ID[e.relation], e.target)))
+        number = RELATION_ID[relation]
+        found.extend((own[i], number, own[j]) for i, j in pairs)
+    found.sort()
+    return tuple(Edge(source, RELATIONS[number], target) for source, number, target in found)
 
 
 def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
@@ -69,8 +72,8 @@ def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
     near = (gaps**2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
     near &= _together(things)
     np.fill_diagonal(near, False)
-    for i, j in np.argwhere(near):
-        yield int(i), int(j)
+    rows, columns = np.nonzero(near)
+    yield from zip(rows.tolist(), columns.tolist(), strict=True)
 
 
 def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:

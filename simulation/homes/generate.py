@@ -1,0 +1,100 @@
+"""Homes by lot: a floor plan, furniture with clearances, and small things where the knowledge says they belong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from random import Random
+
+from hearth.kb.knowledge import Knowledge, default
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rng import rng
+from hearth.simulation.homes import checks, shell
+from hearth.simulation.homes.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_plan
+from hearth.simulation.homes.furnishing import UnfurnishableError, furnish_by_lot
+from hearth.simulation.homes.layout import Layout, arrange
+from hearth.simulation.homes.plan import Faults, Piece, Plan
+
+TRIES = 60
+"""Floor plans drawn before giving up; one in two or three is furnished."""
+
+
+def generate(rooms: int, seed: int, knowledge: Knowledge | None = None) -> Layout:
+    """A home of so many rooms, furnished; the same for the same arguments.
+
+    Args:
+        rooms: from 3 to 9.
+        seed: decides everything else.
+
+    Raises:
+        HearthError: NO_PLACE: another number of rooms, or no plan could be furnished.
+    """
+    if not LEAST_ROOMS <= rooms <= MOST_ROOMS:
+        raise HearthError.of(
+            Code.NO_PLACE, f"a home of {rooms} rooms", suggestion=f"from {LEAST_ROOMS} to {MOST_ROOMS} rooms"
+        )
+    knowledge = knowledge or default()
+    for attempt in range(TRIES):
+        layout = _attempt(f"home_{rooms}_{seed}", rooms, knowledge, rng(seed, "home", rooms, attempt))
+        if layout is not None:
+            return layout
+    raise HearthError.of(
+        Code.NO_PLACE, f"no home of {rooms} rooms was found for seed {seed}", suggestion="another seed"
+    )
+
+
+def _attempt(name: str, rooms: int, knowledge: Knowledge, rng: Random) -> Layout | None:
+    plan = floor_plan(name, rooms, rng)
+    faults = Faults(name)
+    checks.check_rooms(plan, faults)
+    built = shell.build(plan, faults)
+    if faults:
+        return None
+    try:
+        furnished = tuple(
+            replace(room, furniture=furnish_by_lot(room, plan.height, built, knowledge, rng)) for room in plan.rooms
+        )
+    except UnfurnishableError:
+        return None
+    return _settled(_numbered(replace(plan, rooms=furnished)), knowledge)
+
+
+def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
+    """The plan with everything in its place; small things that find none are left out, other faults end it."""
+    for _ in range(3):
+        faults = Faults(plan.name)
+        layout = arrange(plan, knowledge, faults)
+        crowded = {fault.line for fault in faults}
+        if crowded:
+            plan = _without(plan, crowded)
+            continue
+        checks.check_layout(layout.plan, layout.shell, layout.things, faults)
+        return None if faults else layout
+    return None
+
+
+def _numbered(plan: Plan) -> Plan:
+    """Every entry with a line of its own, by which its faults are known."""
+    counter = iter(range(10_000, 100_000))
+
+    def number(piece: Piece) -> Piece:
+        return replace(
+            piece,
+            line=next(counter),
+            on=tuple(map(number, piece.on)),
+            inside=tuple(map(number, piece.inside)),
+            lay=tuple(map(number, piece.lay)),
+        )
+
+    return replace(plan, rooms=tuple(replace(r, furniture=tuple(map(number, r.furniture))) for r in plan.rooms))
+
+
+def _without(plan: Plan, lines: set[int]) -> Plan:
+    def kept(pieces: tuple[Piece, ...]) -> tuple[Piece, ...]:
+        return tuple(
+            replace(piece, on=kept(piece.on), inside=kept(piece.inside), lay=kept(piece.lay))
+            for piece in pieces
+            if piece.line not in lines
+        )
+
+    return replace(plan, rooms=tuple(replace(room, furniture=kept(room.furniture)) for room in plan.rooms))
