@@ -1,4 +1,4 @@
-"""`home`: list, show, check and convert homes."""
+"""`home`: list, show, check, convert and generate homes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ from hearth.commands import output
 if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, help="The homes: list, show, check and convert them.")
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    help="The homes: list, show, check and convert them, or draw up new ones.",
+)
 
 Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
 Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
@@ -119,6 +123,37 @@ def convert(
         output.emit({"home": home, "file": out, "nodes": written})
     else:
         print(f"{out}: {output.counted(written, 'node')}")
+
+
+@app.command()
+def generate(
+    rooms: Annotated[int, typer.Option("--rooms", help="How many rooms, 3 to 9.")] = 5,
+    seed: Annotated[int, typer.Option("--seed", help="Decides everything else.")] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="A plan (.yaml), a scene graph (.json) or a drawing (.svg, .png)."),
+    ] = None,
+    as_json: output.Json = False,
+) -> None:
+    """Draw up a home by lot: rooms along a hall, furniture with clearances, things where the knowledge puts them.
+
+    \b
+    Example:
+      python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
+    """
+    from hearth.simulation.homes import exporting
+    from hearth.simulation.homes.generate import generate as draw_up
+    from hearth.simulation.homes.scene import scene
+
+    layout = draw_up(rooms, seed)
+    if out is not None:
+        exporting.write(layout, out)
+    figures = _figures(scene(layout))
+    if as_json:
+        output.emit({"home": layout.plan.name, "seed": seed, **figures, "file": out})
+    else:
+        names = ", ".join(room.name for room in layout.plan.rooms)
+        print(f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else ""))
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:

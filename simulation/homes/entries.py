@@ -210,7 +210,7 @@ class _Reader:
         (x, z), (width, depth) = found["at"], found["size"]
         windows = [w for item in found.get("windows", ()) if (w := self.window(item)) is not None]
         return Room(
-            name, class_name, Rect(x, z, x + width, z + depth), tuple(windows),
+            name, class_name, Rect(x, z, round(x + width, 6), round(z + depth, 6)), tuple(windows),
             self.pieces(found.get("furniture", ()), furniture=True), line,
         )  # fmt: skip
 

@@ -1,16 +1,35 @@
-"""Writing homes: scene graphs in the release's layout, and files of node ids."""
+"""Writing homes: plans, scene graphs in the release's layout, drawings, and files of node ids."""
 
 from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from pathlib import Path
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
+from hearth.simulation.homes import plan_drawing
 from hearth.simulation.homes.layout import Layout
-from hearth.simulation.homes.scene import every_thing, node_ids
+from hearth.simulation.homes.scene import every_thing, node_ids, scene
+from hearth.simulation.homes.writing import plan_text
+
+
+def write(layout: Layout, path: Path) -> None:
+    """Write a home as a plan, a scene graph or a drawing, by the file's ending.
+
+    A plan is named after its file.
+
+    Raises:
+        HearthError: UNSUPPORTED_FILE for an ending other than .yaml, .json, .svg and .png.
+    """
+    if path.suffix == ".json":
+        write_release(scene(layout), path)
+    elif path.suffix == ".yaml":
+        path.write_text(plan_text(replace(layout.plan, name=path.stem)), encoding="utf-8")
+    else:
+        plan_drawing.write(layout, path)
 
 
 def write_release(graph: EnvironmentGraph, path: Path) -> int:

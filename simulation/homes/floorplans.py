@@ -133,10 +133,14 @@ def _doors(rooms: Sequence[Room], rng: Random) -> list[Doorway]:
         width = 1.2 if open_plan and end - start > 1.6 else 0.8 if room.class_name == "bathroom" else 0.9
         low, high = WALL + 0.02, end - start - WALL - 0.02 - width
         at = low if rng.random() < 0.4 else high if rng.random() < 0.6 else rng.uniform(low, high)
+        place = (hall.name, room.name), "", round(at, 2), width
+        hinge = "low" if at < (low + high) / 2 else "high"
+        line = 1000 + len(doors)
         doors.append(
-            Doorway((hall.name, room.name), "", round(at, 2), width, not open_plan, room.name,
-                    "low" if at < (low + high) / 2 else "high", line=1000 + len(doors))
-        )  # fmt: skip
+            Doorway(*place, leaf=False, line=line)
+            if open_plan
+            else Doorway(*place, into=room.name, hinge=hinge, line=line)
+        )
     return doors
 
 

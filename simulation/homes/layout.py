@@ -14,7 +14,7 @@ from hearth.simulation.homes import checks, shell
 from hearth.simulation.homes.entries import read_plan
 from hearth.simulation.homes.floor import CELL, Floor, grid
 from hearth.simulation.homes.forms import form
-from hearth.simulation.homes.geometry import Rect, box_over, facing_from, footprint
+from hearth.simulation.homes.geometry import EPSILON, Rect, box_over, facing_from, footprint
 from hearth.simulation.homes.packing import contents
 from hearth.simulation.homes.placing import Furnishing, furnish
 from hearth.simulation.homes.plan import Faults, Plan, Room
@@ -161,7 +161,8 @@ def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:
         after, before = opening.end + SWITCH_FROM_DOOR, opening.start - SWITCH_FROM_DOOR - width
         starts = (after, before) if opening.door.hinge == "low" else (before, after)
         for start in starts:
-            if start >= low and start + width <= high and not _pierced(built, opening, start, start + width):
+            on_wall = start >= low - EPSILON and start + width <= high + EPSILON
+            if on_wall and not _pierced(built, opening, start, start + width):
                 box = box_over(strip(inner, opening.wall, start, start + width, depth), known.up, known.up + height)
                 yaw = facing_from(opening.wall)
                 return Thing(f"{room.name}/light.1", "light", room.name, box, yaw, "wall", line=room.line)

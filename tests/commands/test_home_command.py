@@ -73,6 +73,14 @@ def test_files_that_are_no_homes_are_refused(tmp_path, name, data):
     assert "Traceback" not in result.output
 
 
+def test_a_generated_plan_is_a_home_like_others(tmp_path):
+    result = run("generate", "--rooms", 3, "--seed", 5, "--out", tmp_path / "oak.yaml", "--json")
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)["rooms"] == 3
+    assert run("lint", "oak", "--homes", tmp_path).exit_code == 0
+    assert run("generate", "--rooms", 20).exit_code == 1
+
+
 def test_each_help_has_an_example():
-    for command in ("list", "show", "lint", "convert"):
+    for command in ("list", "show", "lint", "convert", "generate"):
         assert f"python cli.py home {command}" in run(command, "--help").stdout

@@ -1,0 +1,72 @@
+"""Homes by lot: always sound, always the same for the same seed, and plans that people can go on editing."""
+
+import pytest
+
+from hearth.schemas.errors import HearthError
+from hearth.simulation.homes import catalog
+from hearth.simulation.homes.generate import generate
+from hearth.simulation.homes.layout import read
+from hearth.simulation.homes.lint import lint
+from hearth.simulation.homes.scene import scene
+from hearth.simulation.homes.writing import plan_text
+
+KITCHENS = {"kitchen", "dining_room", "home_office"}
+
+
+@pytest.fixture(scope="module", params=[(rooms, seed) for rooms in range(3, 10) for seed in (0, 1)])
+def layout(request):
+    return generate(*request.param)
+
+
+def test_generated_homes_lint_clean_and_have_what_is_needed(layout):
+    graph = scene(layout)
+    assert lint(graph) == ()
+    classes = {node.class_name for node in graph.nodes}
+    assert {"bed", "toilet", "sink", "light", "door", "character"} <= classes
+    assert len(graph.nodes) > 40 * len(layout.plan.rooms)
+    if {"kitchen", "dining_room"} & {room.class_name for room in layout.plan.rooms}:
+        assert {"fridge", "stove", "dishwasher"} <= classes
+
+
+def test_a_generated_plan_reads_back_to_the_same_home(layout):
+    # Reading applies every check of plans: walls, doors, clearances, reach.
+    again = read(plan_text(layout.plan))
+    assert scene(again) == scene(layout)
+
+
+def test_tables_are_laid_and_shelves_filled(layout):
+    names = {thing.class_name: thing.name for thing in layout.things}
+    if "bookshelf" in names:
+        assert any(thing.on == names["bookshelf"] and thing.class_name == "book" for thing in layout.things)
+    for table in ("table", "dining_table", "kitchen_table"):
+        if table in names:
+            assert any(thing.on == names[table] and thing.class_name == "plate" for thing in layout.things)
+
+
+def test_the_seed_decides():
+    one, same, other = generate(4, 7), generate(4, 7), generate(4, 8)
+    assert one.things == same.things
+    assert plan_text(one.plan) == plan_text(same.plan)
+    assert one.things != other.things
+
+
+@pytest.mark.parametrize("rooms", [0, 2, 10])
+def test_other_numbers_of_rooms_are_refused(rooms):
+    with pytest.raises(HearthError, match="from 3 to 9 rooms"):
+        generate(rooms, 0)
+
+
+@pytest.mark.parametrize("name", ["maple", "larch"])
+def test_designed_plans_are_written_and_read_back_too(name):
+    layout = catalog.load_layout(name)
+    again = read(plan_text(layout.plan))
+    assert [(t.name, t.box, t.yaw, t.on, t.inside) for t in again.things] == [
+        (t.name, t.box, t.yaw, t.on, t.inside) for t in layout.things
+    ]
+
+
+@pytest.mark.slow
+def test_a_thousand_in_a_row_lint_clean():
+    for seed in range(1000):
+        layout = generate(3 + seed % 7, seed)
+        assert lint(scene(layout)) == (), seed
