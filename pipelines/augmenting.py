@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -54,6 +54,7 @@ class Pair:
         perturbations: what was made otherwise.
         environment: the perturbed environment, with the original program bound in it.
         program: the repaired program, bound.
+        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
         execution: its run.
         attempts: every repair, in order; also of pairs that were given up.
         failure: why there is no new program; None where there is one.
@@ -63,6 +64,7 @@ class Pair:
     perturbations: tuple[Perturbation, ...]
     environment: Environment
     program: Program
+    sources: tuple[int, ...]
     execution: Execution
     attempts: tuple[Attempt, ...]
     failure: Failure | None = None
@@ -188,9 +190,19 @@ def _pair(
         environment, condition = drawn
         failure = Failure(Code.CONDITION_UNMET, expected=str(condition), actual=f"not so in {DRAWS} environments drawn")
         program, execution = environment.program, Execution(environment.program, (environment.world,), failure)
-        return Pair(number, perturbed.perturbations, environment, program, execution, (), failure)
+        sources = tuple(range(len(program.steps)))
+        return Pair(number, perturbed.perturbations, environment, program, sources, execution, (), failure)
     done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, options.rules, tries=options.tries)
-    return Pair(number, perturbed.perturbations, drawn, done.program, done.execution, done.attempts, done.failure)
+    return Pair(
+        number,
+        perturbed.perturbations,
+        drawn,
+        done.program,
+        done.sources,
+        done.execution,
+        done.attempts,
+        done.failure,
+    )
 
 
 def _judged(pair: Pair, seen: set[object]) -> Pair:
@@ -205,7 +217,7 @@ def _judged(pair: Pair, seen: set[object]) -> Pair:
     if not pair.attempts:
         code, why = Code.UNPERTURBED, "the original runs here as it is"
     failure = Failure(code, expected="a program of its own", actual=why)
-    return Pair(pair.number, pair.perturbations, pair.environment, pair.program, pair.execution, pair.attempts, failure)
+    return replace(pair, failure=failure)
 
 
 def _shape(program: Program) -> object:

@@ -41,58 +41,61 @@ def resume(execution: Execution, program: Program, first: int, rules: Rules) -> 
 
 
 def trim(
-    original: Program, execution: Execution, own: tuple[bool, ...], goal: Postconditions, rules: Rules
-) -> Execution:
+    original: Program, execution: Execution, sources: tuple[int, ...], goal: Postconditions, rules: Rules
+) -> tuple[Execution, tuple[int, ...]]:
     """Take out what is not needed, until nothing more can be taken out.
 
     Args:
         original: the program before any repair.
         execution: of the repaired program, which runs and reaches its goal.
-        own: for each of its steps, whether the original had it; those stay, unless repairing made them void.
+        sources: for each of its steps, the number of the original's step it is, or -1; the original's stay, unless
+            repairing made them void.
         goal: what must stay reached; the characters' hands, too, must end up holding what they hold now.
         rules: for the runs.
+
+    Returns:
+        The execution of what is left, and the sources of its steps.
     """
     nodes = nodes_of(original, execution.final)
     hands = _hands(execution.final)
-    marks = list(own)
 
     def suffices(shorter: Execution) -> bool:
         end = shorter.final
         return shorter.failure is None and _hands(end) == hands and reached(goal, nodes, end)
 
     while True:
-        smaller = next(_smaller(original, execution, marks, suffices, rules), None)
+        smaller = next(_smaller(original, execution, sources, suffices, rules), None)
         if smaller is None:
-            return execution
-        execution, marks = smaller
+            return execution, sources
+        execution, sources = smaller
 
 
 def _smaller(
     original: Program,
     execution: Execution,
-    own: list[bool],
+    sources: tuple[int, ...],
     suffices: Callable[[Execution], bool],
     rules: Rules,
-) -> Iterator[tuple[Execution, list[bool]]]:
+) -> Iterator[tuple[Execution, tuple[int, ...]]]:
     """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
-    for start, end in _candidates(original, execution.program.steps, own):
+    for start, end in _candidates(original, execution.program.steps, sources):
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])
         shorter = resume(execution, program, start, rules)
         if suffices(shorter):
-            yield shorter, own[:start] + own[end:]
+            yield shorter, sources[:start] + sources[end:]
 
 
-def _candidates(original: Program, steps: tuple[Step, ...], own: list[bool]) -> Iterator[tuple[int, int]]:
+def _candidates(original: Program, steps: tuple[Step, ...], sources: tuple[int, ...]) -> Iterator[tuple[int, int]]:
     together = {n for n, step in enumerate(steps) if step.joins} | {n - 1 for n, s in enumerate(steps) if s.joins}
     neighbours = set(zip(original.steps, original.steps[1:], strict=False))
     for number in range(len(steps) - 1, -1, -1):
         if number in together:
             continue
-        if not own[number] or _walks_where_it_is(original, steps, number):
+        if sources[number] < 0 or _walks_where_it_is(original, steps, number):
             yield number, number + 1
         pair = steps[number : number + 2]
-        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new=not any(own[number : number + 2])):
+        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new=max(sources[number : number + 2]) < 0):
             yield number, number + 2
 
 

@@ -51,14 +51,14 @@ class Repaired:
         program: the last version.
         execution: of the last version.
         attempts: every repair, in order.
-        trimmed: how many steps that repairs had inserted turned out not to be needed.
+        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
         failure: why it was given up; None when it runs and reaches its goal.
     """
 
     program: Program
     execution: Execution
     attempts: tuple[Attempt, ...]
-    trimmed: int = 0
+    sources: tuple[int, ...]
     failure: Failure | None = None
 
 
@@ -73,10 +73,10 @@ class _Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Draft:
-    """A program under repair. `own` says of each step whether the original had it."""
+    """A program under repair; `sources` as in `Repaired`."""
 
     program: Program
-    own: tuple[bool, ...]
+    sources: tuple[int, ...]
     execution: Execution
 
 
@@ -103,7 +103,7 @@ def repair(
         The repaired program, canonical. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
         repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
     """
-    draft = _Draft(program, (True,) * len(program.steps), run(world, program, rules))
+    draft = _Draft(program, tuple(range(len(program.steps))), run(world, program, rules))
     task = _Task(goal, nodes_of(program, world), knowledge, rules)
     attempts: list[Attempt] = []
     seen = {program.steps}
@@ -124,9 +124,9 @@ def repair(
             return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
         seen.add(draft.program.steps)
     if not attempts:
-        return Repaired(program, draft.execution, ())
-    trimmed = canonical.trim(program, draft.execution, draft.own, goal, rules)
-    return Repaired(trimmed.program, trimmed, tuple(attempts), len(draft.own) - len(trimmed.program.steps))
+        return Repaired(program, draft.execution, (), draft.sources)
+    trimmed, sources = canonical.trim(program, draft.execution, draft.sources, goal, rules)
+    return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
 
 
 def _trouble(draft: _Draft, task: _Task) -> Trouble | None:
@@ -169,18 +169,18 @@ def _consult(handlers: Mapping[Code, Handler], trouble: Trouble) -> tuple[str, E
 
 def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
     """The program after an edit, run on from the last world that the edit does not touch."""
-    steps, own = list(draft.program.steps), list(draft.own)
-    mine = {id(step) for step, original in zip(steps, own, strict=True) if original}
+    steps, sources = list(draft.program.steps), list(draft.sources)
+    known = {id(step): source for step, source in zip(steps, sources, strict=True)}
     for splice in reversed(edit.splices):
         end = splice.at + splice.removed
-        replaced = own[splice.at : end]
-        marks = [id(step) in mine for step in splice.inserted]
-        marks[: len(replaced)] = replaced[: len(marks)]
+        replaced = sources[splice.at : end]
+        new = [known.get(id(step), -1) for step in splice.inserted]
+        new[: len(replaced)] = replaced[: len(new)]
         steps[splice.at : end] = splice.inserted
-        own[splice.at : end] = marks
+        sources[splice.at : end] = new
     program = draft.program.with_steps(steps)
     first = min(splice.at for splice in edit.splices)
-    return _Draft(program, tuple(own), canonical.resume(draft.execution, program, first, rules))
+    return _Draft(program, tuple(sources), canonical.resume(draft.execution, program, first, rules))
 
 
 def _attempt(attempts: Sequence[Attempt], trouble: Trouble, name: str, after: tuple[Step, ...]) -> Attempt:
@@ -193,4 +193,4 @@ def _given_up(draft: _Draft, attempts: list[Attempt], trouble: Trouble, code: Co
     reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
     told = f"{last.code}: {last.expected}" if last.expected else str(last.code)
     failure = replace(last, code=code, expected=told, actual=f"{last.actual}; {reason}" if last.actual else reason)
-    return Repaired(draft.program, draft.execution, tuple(attempts), 0, failure)
+    return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources, failure)

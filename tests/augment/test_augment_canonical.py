@@ -16,8 +16,13 @@ def trimmed(world: str, program: str, inserted: set[int], goal=()) -> list[str]:
     original = repaired.with_steps(s for n, s in enumerate(repaired.steps) if n not in inserted)
     execution = run(small_world(ROOMS + world), repaired)
     assert execution.failure is None
-    own = tuple(number not in inserted for number in range(len(repaired.steps)))
-    return [print_step(step) for step in trim(original, execution, own, goal, DEFAULT).program.steps]
+    kept = iter(range(len(original.steps)))
+    sources = tuple(-1 if number in inserted else next(kept) for number in range(len(repaired.steps)))
+    left, of_original = trim(original, execution, sources, goal, DEFAULT)
+    assert [original.steps[n] for n in of_original if n >= 0] == [
+        step for step, n in zip(left.program.steps, of_original, strict=True) if n >= 0
+    ]
+    return [print_step(step) for step in left.program.steps]
 
 
 def test_a_repair_that_is_not_needed_goes_and_the_same_step_of_the_original_stays():
