@@ -217,7 +217,7 @@ def mine(
 
     \b
     Example:
-      python cli.py kb mine data_out/publish
+      python cli.py kb mine data_out
     """
     from hearth.kb.mine import as_lines
     from hearth.kb.mine import mine as propose

@@ -80,10 +80,13 @@ def mine(
 
 
 def as_lines(proposals: Iterable[Proposal]) -> dict[str, list[str]]:
-    """The unknown ones as rows to add, by file: a review takes lines out, then pastes the rest."""
+    """The unknown ones as rows to add, by file: a review takes lines out, then pastes the rest.
+
+    Orders and rooms have no rows of their own: they are for the reviewer's eyes.
+    """
     lines: dict[str, list[str]] = {}
     for proposal in proposals:
-        if proposal.known or proposal.kind == "order":
+        if proposal.known:
             continue
         weight = 1 + round(4 * proposal.confidence)
         if proposal.kind in ("placed", "near"):

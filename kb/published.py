@@ -36,7 +36,9 @@ def programs(dataset: Path) -> Iterator[list[tuple[str, tuple[str, ...]]]]:
 def _files(dataset: Path) -> list[str]:
     if dataset.is_file():
         return [str(dataset)]
-    found = sorted(dataset.glob("programs*.parquet")) or sorted((dataset / "programs").glob("*.parquet"))
+    folders = (dataset, dataset / "publish")
+    found = [path for folder in folders for path in sorted(folder.glob("programs*.parquet"))]
+    found = found or [path for folder in folders for path in sorted((folder / "programs").glob("*.parquet"))]
     if not found:
         raise HearthError.of(
             Code.MISSING_FILE,

@@ -65,6 +65,9 @@ def test_programs_of_a_dataset_are_read_augmented_ones_aside(tmp_path):
     expected = [[("Grab", ("cup",)), ("Sleep", ())]]
     assert list(programs(tmp_path)) == expected
     assert list(programs(tmp_path / "programs.parquet")) == expected
+    (tmp_path / "publish/programs").mkdir(parents=True)
+    (tmp_path / "programs.parquet").rename(tmp_path / "publish/programs/part-00000.parquet")
+    assert list(programs(tmp_path)) == expected
 
 
 def test_a_folder_without_programs_is_bad_input(tmp_path):
