@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from hearth.grounding.conditions import PETS
 from hearth.pipelines.handlers.common import Edit, Splice, Trouble, before, removed
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
@@ -31,7 +32,7 @@ def not_resting(trouble: Trouble) -> Edit | None:
 
 
 def occupied(trouble: Trouble) -> Edit | None:
-    """Take things off the seat, one by one, until there is room; what can't be taken stays."""
+    """Take things off the seat, one by one, until there is room: pets first, what the program names last."""
     home = trouble.world.home
     seat = trouble.index()
     there = [home.index[node] for node in trouble.failure.objects[1:]]
@@ -42,7 +43,7 @@ def occupied(trouble: Trouble) -> Edit | None:
         mine = too_many == len(loose) + 1 and taken is not None and taken[2].node == trouble.failure.objects[0]
         return Edit("occupied_by_itself", (Splice(taken[0], 1),)) if mine and taken is not None else None
     named = {ref.node for ref in trouble.program.objects()}
-    loose.sort(key=lambda i: (home.ids[i] in named, i))
+    loose.sort(key=lambda i: (home.ids[i] in named, home.classes[i] not in PETS, i))
     things = trouble.refs(loose[:too_many])
     steps = [trouble.does(action, thing) for thing in things for action in ("Find", "Grab", "Release")]
     return before(trouble, "occupied", *steps)
