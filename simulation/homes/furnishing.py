@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import lru_cache
 from importlib.resources import files
 from random import Random
@@ -17,6 +17,7 @@ from hearth.simulation.homes.placing import PLACERS, Furnishing, NoPlaceError, P
 from hearth.simulation.homes.plan import Faults, Piece, Room
 from hearth.simulation.homes.shell import Opening, Shell, Thing, interior, span, strip
 from hearth.simulation.homes.stocking import stock
+from hearth.simulation.homes.suite import Suite
 
 TRIES = 8
 """Places tried along each wall."""
@@ -24,31 +25,6 @@ LOW = 1.0
 """What begins higher does not stand in the way of what is used from the floor."""
 FRONT_OF_WINDOW = 0.9
 """What is higher is not put before a window."""
-
-
-@dataclass(slots=True)
-class Suite:
-    """A room while it is furnished by lot.
-
-    Attributes:
-        furnishing: what has its place so far, as for a plan.
-        openings: of this room's walls.
-        kept: floor to keep free: before doors and before what is used.
-        solids: what stands or hangs: rectangle, underside, top.
-        pieces: the entries so far, in the order placed.
-    """
-
-    furnishing: Furnishing
-    openings: list[Opening]
-    kept: list[Rect]
-    rng: Random
-    solids: list[tuple[Rect, float, float]] = field(default_factory=list)
-    pieces: list[Piece] = field(default_factory=list)
-
-    @property
-    def knowledge(self) -> Knowledge:
-        """For sizes and for what belongs where."""
-        return self.furnishing.knowledge
 
 
 TABLES = {2: 1.1, 4: 1.4, 6: 1.8}
