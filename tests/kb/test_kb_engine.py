@@ -126,8 +126,8 @@ def step_of(action, *objects):
 
 def situations(name):
     """All of posture, hands and place; and for the thing that has every state, all of its states in each posture."""
-    places = PLACES if name == "any" else PLACES[::2]
-    yield from ((posture, hands, place, SWITCHES[0]) for posture, hands, place in product(POSTURES, HANDS, places))
+    hands, places = (HANDS, PLACES) if name == "any" else (HANDS[:2], PLACES[::2])
+    yield from product(POSTURES, hands, places, SWITCHES[:1])
     if name == "any":
         yield from product(POSTURES, ("empty", "it"), ("close", "far"), SWITCHES[1:])
 
@@ -145,7 +145,7 @@ def test_every_action_in_every_combination_of_states(knowledge, name):
                 where = (action.name, objects, name, situation)
                 result = compare(knowledge, world, facts, step_of(action, *objects), where)
                 done, failed = done + (result is not None), failed + (result is None)
-    assert done > 400 and failed > 400
+    assert done > 150 and failed > 150
 
 
 @pytest.mark.parametrize("block", range(2))

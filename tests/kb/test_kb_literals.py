@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.kb.evaluate import changes, first_failure, holds
@@ -45,10 +45,12 @@ formulas = st.recursive(
 
 
 @given(formulas)
+@settings(max_examples=60)
 def test_printing_and_reading_a_formula_gives_it_back(formula):
     assert parse_formula(str(formula)) == formula
 
 
+@settings(max_examples=60)
 @given(atoms, st.booleans(), formulas, st.lists(st.sampled_from("xyz"), max_size=2, unique=True).map(tuple))
 def test_printing_and_reading_an_effect_gives_it_back(atom, delete, condition, variables):
     effect = Effect(atom, delete, condition, variables)

@@ -40,7 +40,13 @@ def test_a_sheet_says_which_affordances_are_our_own(knowledge):
 def test_a_sheet_says_everything_of_an_action(knowledge):
     sheet = about_action(knowledge, knowledge.actions["Open"])
     assert [row["else"] for row in sheet["before"]][:2] == ["NOT_AFFORDED", "NOT_CLOSE"]
-    assert {row["on"] for row in sheet["repairs"]} == {"NOT_CLOSE", "NO_FREE_HAND", "IS_OPEN", "IS_ON"}
+    assert {row["on"] for row in sheet["repairs"]} == {
+        "NOT_CLOSE",
+        "NO_FREE_HAND",
+        "IS_OPEN",
+        "NOT_OPENABLE_STATE",
+        "IS_ON",
+    }
     assert about_action(knowledge, knowledge.actions["Read"])["served_by"][0] == "bookmark"
 
 
