@@ -30,7 +30,7 @@ def walk(w: World, o: int, _: int | None, options: Options) -> None:
     assert room is not None
     if options.doors:
         need(reachable(w, w.room(w.me), room), Code.DOOR_CLOSED)
-    near = {o} | {x for x in w.ids if w.has(x, "BODY_PART")} | (w.to["INSIDE"][o] - w.rooms)
+    near = {o} | w.body | (w.to["INSIDE"][o] - w.rooms)
     if w.has(o, "SURFACES"):
         near |= w.back["ON"][o]
     w.isolate(w.me, "INSIDE", "CLOSE", "FACING")
@@ -53,12 +53,14 @@ def side(w: World, start: int | None, o: int, room: int | None) -> int | None:
 
 
 def open_doors(w: World) -> list[int]:
-    return [d for d in w.ids if w.to["BETWEEN"][d] and not w.is_(d, "CLOSED")]
+    return [d for d in list(w.to["BETWEEN"]) if w.to["BETWEEN"][d] and not w.is_(d, "CLOSED")]
 
 
 def flood(w: World, start: int | None, doors: Iterable[int]) -> set[int | None]:
     reached = {start}
-    for _ in w.ids:
+    before = 0
+    while len(reached) > before:
+        before = len(reached)
         for door in doors:
             if w.to["BETWEEN"][door] & reached:
                 reached |= w.to["BETWEEN"][door]
@@ -70,7 +72,7 @@ def reachable(w: World, start: int | None, goal: int) -> bool:
     if start is None or start == goal:
         return True
 
-    doors = [d for d in w.ids if w.to["BETWEEN"][d]]
+    doors = [d for d in list(w.to["BETWEEN"]) if w.to["BETWEEN"][d]]
     return goal in flood(w, start, open_doors(w)) or goal not in flood(w, start, doors)
 
 

@@ -36,6 +36,7 @@ class World:
         self.ids = sorted(node.id for node in graph.nodes)
         self.name = {node.id: node.class_name for node in graph.nodes}
         self.properties = {node.id: set(node.properties) for node in graph.nodes}
+        self.body = {node.id for node in graph.nodes if "BODY_PART" in node.properties}
         self.furniture = {node.id for node in graph.nodes if node.category == "Furniture"}
         self.rooms = {node.id for node in graph.nodes if node.category == "Rooms"}
         self.me = next(node.id for node in graph.nodes if node.class_name == "character")

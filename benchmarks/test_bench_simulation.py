@@ -1,0 +1,155 @@
+"""How fast worlds are made and programs run in them, against the plain reference: `pytest benchmarks --benchmark-only`.
+
+Each benchmark says how many units one run of it is, so that rates are printed by unit (see `conftest`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cases
+import orjson
+import pytest
+import reference
+from reference_world import Options
+from reference_world import World as PlainWorld
+
+from hearth.schemas.graph import Edge, Node, from_release
+from hearth.simulation.edit import extended
+from hearth.simulation.engine import final, run
+from hearth.simulation.home import Home
+from hearth.simulation.legal import legal
+from hearth.simulation.rules import DEFAULT, REPLAY
+from hearth.simulation.views import view
+from hearth.simulation.world import World
+
+OPTIONS = {"release": (REPLAY, Options(doors=False, watch_needs_on=False)), "own homes": (DEFAULT, Options())}
+
+
+def started(corpus: str) -> list[tuple[World, Any]]:
+    if corpus == "release":
+        return [(World.start(Home.from_release(graph)), program) for graph, program in _release()]
+    return [(World.start(Home.from_graph(graph)), program) for graph, program in cases.own()]
+
+
+def plain(corpus: str) -> list[tuple[PlainWorld, Any]]:
+    if corpus == "release":
+        return [(PlainWorld(from_release(graph), release=True), program) for graph, program in _release()]
+    return [(PlainWorld(graph), program) for graph, program in cases.own()]
+
+
+def _release() -> Any:
+    found = cases.release()
+    if not found:
+        pytest.skip(f"no release sample in {cases.REAL} (set HEARTH_REAL_DATA)")
+    return found
+
+
+def note(benchmark: Any, unit: str, units: int = 1, against: str = "") -> None:
+    benchmark.extra_info.update(unit=unit, units=units, against=against)
+
+
+@pytest.mark.parametrize("corpus", OPTIONS)
+@pytest.mark.benchmark(group="steps, only the end kept")
+def test_steps_bare(benchmark, corpus):
+    items, rules = started(corpus), OPTIONS[corpus][0]
+    assert all(isinstance(final(world, program, rules), World) for world, program in items)
+    note(benchmark, "step", sum(len(p.steps) for _, p in items), f"test_steps_bare_reference[{corpus}]")
+    benchmark(lambda: [final(world, program, rules) for world, program in items])
+
+
+@pytest.mark.parametrize("corpus", OPTIONS)
+@pytest.mark.benchmark(group="steps, only the end kept")
+def test_steps_bare_reference(benchmark, corpus):
+    items, options = plain(corpus), OPTIONS[corpus][1]
+    note(benchmark, "step", sum(len(p.steps) for _, p in items))
+
+    def fresh() -> Any:
+        return ([(world.copy(), program) for world, program in items],), {}
+
+    def go(worlds: Any) -> None:
+        for world, program in worlds:
+            assert reference.run(world, program, options) is None
+
+    benchmark.pedantic(go, setup=fresh, rounds=5)
+
+
+@pytest.mark.parametrize("corpus", OPTIONS)
+@pytest.mark.benchmark(group="steps, every state kept")
+def test_steps_keeping_every_state(benchmark, corpus):
+    items, rules = started(corpus), OPTIONS[corpus][0]
+    note(benchmark, "step", sum(len(p.steps) for _, p in items), f"test_steps_keeping_every_state_reference[{corpus}]")
+    benchmark(lambda: [run(world, program, rules) for world, program in items])
+
+
+@pytest.mark.parametrize("corpus", OPTIONS)
+@pytest.mark.benchmark(group="steps, every state kept")
+def test_steps_keeping_every_state_reference(benchmark, corpus):
+    items, options = plain(corpus)[:6], OPTIONS[corpus][1]
+    note(benchmark, "step", sum(len(p.steps) for _, p in items))
+    benchmark.pedantic(
+        lambda: [reference.run_keeping_every_state(world, program, options) for world, program in items], rounds=3
+    )
+
+
+@pytest.mark.benchmark(group="making worlds")
+def test_world_from_known_home(benchmark):
+    home = Home.from_graph(cases.own()[0][0])
+    note(benchmark, "world")
+    benchmark(World.start, home)
+
+
+@pytest.mark.benchmark(group="making worlds")
+def test_environment_of_twenty_more_things(benchmark):
+    home = Home.from_graph(cases.own()[0][0])
+    room, place = (home.ids[mask.bit_length() - 1] for mask in (home.rooms, home.properties["SURFACES"]))
+    nodes = [Node(2000 + i, "cup", "Props", ("GRABBABLE", "RECIPIENT"), ("CLEAN",)) for i in range(20)]
+    edges = [Edge(n.id, r, t) for n in nodes for r, t in (("INSIDE", room), ("ON", place), ("CLOSE", place))]
+    states = {home.ids[i]: ("CLEAN",) for i in range(10, 20)}
+    note(benchmark, "environment")
+    benchmark(lambda: World.start(extended(home, nodes, edges, (), states)))
+
+
+@pytest.mark.benchmark(group="making worlds")
+def test_parse_and_build_release_graph(benchmark):
+    graph = max((graph for graph, _ in _release()), key=lambda g: len(g["edges"]))
+    data = orjson.dumps(graph)
+    benchmark.extra_info["size"] = f"{len(graph['nodes'])} nodes, {len(graph['edges'])} edges, {len(data)} bytes"
+    note(benchmark, "home")
+    benchmark(lambda: World.start(Home.from_release(orjson.loads(data))))
+
+
+@pytest.mark.benchmark(group="making worlds")
+def test_parse_and_build_reference(benchmark):
+    graph = max((graph for graph, _ in _release()), key=lambda g: len(g["edges"]))
+    data = orjson.dumps(graph)
+    note(benchmark, "home")
+    benchmark(lambda: PlainWorld(from_release(orjson.loads(data))))
+
+
+@pytest.mark.parametrize("limits", [{}, {"only_visible": True}, {"only_reachable": True}], ids=str)
+@pytest.mark.benchmark(group="what an agent may do and sees")
+def test_legal(benchmark, limits):
+    worlds = [world for start, program in started("own homes") for world in run(start, program).worlds[::6]]
+    note(benchmark, "world", len(worlds))
+    benchmark(lambda: [legal(world, **limits) for world in worlds])
+
+
+@pytest.mark.benchmark(group="what an agent may do and sees")
+def test_partial_view_as_ids(benchmark):
+    worlds = [world for start, program in started("own homes") for world in run(start, program).worlds[::6]]
+    note(benchmark, "world", len(worlds))
+    benchmark(lambda: [view(world).ids for world in worlds])
+
+
+SIZES = [300, 3_000, 30_000]
+
+
+@pytest.mark.parametrize("things", SIZES)
+@pytest.mark.benchmark(group="steps in homes of any size")
+def test_steps_in_large_homes(benchmark, things):
+    graph = cases.large(things)
+    world, program = World.start(Home.from_graph(graph)), cases.errands(graph)
+    assert isinstance(final(world, program), World)
+    note(benchmark, "step", len(program.steps), "test_steps_in_large_homes[300]" if things > 300 else "")
+    benchmark.pedantic(lambda: final(world, program), rounds=20, iterations=3, warmup_rounds=1)
