@@ -12,8 +12,10 @@ from reference_world import OPPOSITE, Options, RefusedError, World, need
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
 
-SEATS = {"couch": 4, "bed": 4, "sofa": 4, "loveseat": 2, "pianobench": 2, "bench": 2}
-BEDS = {"bed": 3, "couch": 2, "sofa": 2, "loveseat": 2, "bathtub": 2}
+SEATS = {
+    "couch": 4, "bed": 4, "sofa": 4, "loveseat": 2, "love_seat": 2, "pianobench": 2, "piano_bench": 2, "bench": 2,
+}  # fmt: skip
+BEDS = {"bed": 3, "couch": 2, "sofa": 2, "loveseat": 2, "love_seat": 2, "bathtub": 2}
 SQUEEZABLE = {
     "cleaning_solution", "tooth_paste", "shampoo", "food_peanut_butter", "dish_soap", "soap", "towel", "rag", "paper",
     "sponge", "food_lemon", "check",
