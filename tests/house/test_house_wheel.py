@@ -1,5 +1,6 @@
 """The package as others get it: built, installed into an empty environment, used from somewhere else."""
 
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -10,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("schemas", "kb", "simulation", "grounding", "rendering", "scoring", "pipelines", "commands", "data_raw")
+APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out")
 ENDINGS = {".py", ".yaml", ".csv", ".sql"}
 
 pytestmark = pytest.mark.xdist_group("wheel")
@@ -23,9 +25,13 @@ def run(*command, cwd):
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
-    """The wheel, built by way of a source archive, as a release would be."""
-    out = tmp_path_factory.mktemp("dist")
-    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, ROOT, cwd=out)
+    """The wheel, built by way of a source archive, as a release would be.
+
+    From a copy: setuptools writes beside the sources, where other builds may be writing.
+    """
+    out, copy = tmp_path_factory.mktemp("dist"), tmp_path_factory.mktemp("copy") / "hearth"
+    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*APART))
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, copy, cwd=out)
     (file,) = out.glob("*.whl")
     return file
 
