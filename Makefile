@@ -6,6 +6,9 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
 
+# Compiled modules are kept, whatever the environment says: every process would spend seconds compiling them again.
+unexport PYTHONDONTWRITEBYTECODE
+
 OUT    ?= data_out
 SEED   ?= 0
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
