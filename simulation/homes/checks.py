@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hearth.schemas.failures import Code
-from hearth.simulation.homes.floor import Floor, grid, stands_on_floor
+from hearth.simulation.homes.floor import Floor, stands_on_floor
 from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
 from hearth.simulation.homes.plan import OUTSIDE, Faults, Plan
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
@@ -44,7 +44,7 @@ def check_rooms(plan: Plan, faults: Faults) -> None:
         faults.add(Code.UNKNOWN_OBJECT, f"the character stands in `{plan.character}`, which is no room of the plan")
 
 
-def check_layout(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faults) -> None:
+def check_layout(plan: Plan, shell: Shell, things: Sequence[Thing], floor: Floor, faults: Faults) -> None:
     """Furniture stays within its room's walls, out of other furniture, of doors and openings, and can be reached."""
     for room in plan.rooms:
         own = [thing for thing in things if thing.room == room.name and _placed(thing)]
@@ -53,7 +53,7 @@ def check_layout(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faul
             _check_openings(thing, shell, faults)
         _check_apart(own, faults)
     _check_kept_free(things, shell, faults)
-    _check_reach(plan, shell, things, faults)
+    _check_reach(plan, things, floor, faults)
 
 
 def _placed(thing: Thing) -> bool:
@@ -152,7 +152,7 @@ def _check_kept_free(things: Sequence[Thing], shell: Shell, faults: Faults) -> N
                            f"the door needs {_bounds(zone)}")  # fmt: skip
 
 
-def _check_reach(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faults) -> None:
+def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faults) -> None:
     """All rooms join on foot, and whoever is in a room gets to the front of what has one.
 
     Where rooms or doors are at fault, or a thing itself, this would only say so again.
@@ -160,7 +160,6 @@ def _check_reach(plan: Plan, shell: Shell, things: Sequence[Thing], faults: Faul
     faulty = {fault.line for fault in faults}
     if faulty & ({room.line for room in plan.rooms} | {door.line for door in plan.doorways}):
         return
-    floor = grid(plan, shell, things)
     regions = floor.regions()
     main = _main_region(regions)
     for number, room in enumerate(plan.rooms):

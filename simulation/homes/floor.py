@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hearth.simulation.homes import raster
 from hearth.simulation.homes.geometry import Rect, bottom, footprint
 from hearth.simulation.homes.plan import Plan
 from hearth.simulation.homes.shell import WALL, Shell, Thing, interior, strip
@@ -49,10 +50,7 @@ class Floor:
 
     def regions(self) -> np.ndarray:
         """Int array: walkable cells that reach each other share a number from 1; others are 0."""
-        from scipy.ndimage import label
-
-        found: np.ndarray = label(self.walkable)[0]
-        return found
+        return raster.regions(self.walkable)
 
 
 def stands_on_floor(thing: Thing) -> bool:
@@ -67,7 +65,6 @@ def stands_on_floor(thing: Thing) -> bool:
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
     """The floor of a furnished plan."""
     import numpy as np
-    from scipy.ndimage import binary_erosion
 
     x0, z0 = min(room.rect.x0 for room in plan.rooms), min(room.rect.z0 for room in plan.rooms)
     x1, z1 = max(room.rect.x1 for room in plan.rooms), max(room.rect.z1 for room in plan.rooms)
@@ -86,9 +83,7 @@ def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) 
     for thing in things:
         if stands_on_floor(thing):
             free[_cells(footprint(thing.box), (x0, z0), cell, shape)] = False
-    reach = round(BODY / cell)
-    disc = np.hypot(*np.mgrid[-reach : reach + 1, -reach : reach + 1]) <= reach
-    return Floor((x0, z0), cell, free, free & binary_erosion(free, disc), room_of)
+    return Floor((x0, z0), cell, free, raster.eroded(free, round(BODY / cell)), room_of)
 
 
 def _cells(rect: Rect, origin: tuple[float, float], cell: float, shape: tuple[int, ...]) -> tuple[slice, slice]:

@@ -32,6 +32,7 @@ class Form:
     front: float = 0.0
 
 
+@lru_cache(maxsize=4096)
 def form(class_name: str, knowledge: Knowledge) -> Form | None:
     """The shape of a class, in the knowledge's size unless at home it lies otherwise; None for an unknown class."""
     known = knowledge.objects.get(class_name)

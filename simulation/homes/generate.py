@@ -68,7 +68,7 @@ def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
         if crowded:
             plan = _without(plan, crowded)
             continue
-        checks.check_layout(layout.plan, layout.shell, layout.things, faults)
+        checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
         return None if faults else layout
     return None
 

@@ -10,7 +10,7 @@ from hearth.kb.knowledge import Knowledge, default
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.graph import Box
 from hearth.schemas.vocabulary import CHARACTER_CLASS
-from hearth.simulation.homes import checks, shell
+from hearth.simulation.homes import checks, raster, shell
 from hearth.simulation.homes.entries import read_plan
 from hearth.simulation.homes.floor import CELL, Floor, grid
 from hearth.simulation.homes.forms import form
@@ -71,7 +71,7 @@ def read(text: str, file: str = "", knowledge: Knowledge | None = None) -> Layou
     if faults and not plan.rooms:
         raise HearthError(_shown(faults, text))
     layout = arrange(plan, knowledge, faults)
-    checks.check_layout(layout.plan, layout.shell, layout.things, faults)
+    checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
     if faults:
         raise HearthError(_shown(faults, text))
     return layout
@@ -177,12 +177,10 @@ def _pierced(built: Shell, beside: shell.Opening, start: float, end: float) -> b
 
 
 def _character(layout: Layout) -> Thing:
-    from scipy.ndimage import distance_transform_edt
-
     plan, floor = layout.plan, layout.floor
     names = [room.name for room in plan.rooms]
     number = names.index(plan.character) if plan.character in names else 0
-    space = distance_transform_edt(floor.free) * (floor.walkable & (floor.room == number))
+    space = raster.clearance(floor.free) * (floor.walkable & (floor.room == number))
     i, j = divmod(int(space.argmax()), space.shape[1])
     x, z = floor.center(i, j)
     width, height, depth = PERSON

@@ -353,7 +353,8 @@ def _steps(length: float) -> np.ndarray:
     """Places along a length, both ends among them."""
     import numpy as np
 
-    return np.linspace(0.0, max(length, 0.0), min(MOST_STEPS, max(1, round(length / STEP))) + 1)
+    count = min(MOST_STEPS, max(1, round(length / STEP)))
+    return np.arange(count + 1) * (max(length, 0.0) / count)
 
 
 def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float) -> np.ndarray:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
-from math import cos, radians
+from math import cos, radians, sin
 from typing import TYPE_CHECKING
 
 from hearth.schemas.graph import Edge
@@ -24,6 +23,10 @@ FAR = 7.0
 """Metres beyond which nothing is looked at."""
 EYES = (1.1, 1.6)
 """Sight starts between these heights: those of someone sitting and standing."""
+BLIND = ("ceiling", "flat", "door", "window")
+"""How things are mounted that face nothing."""
+TALL = ("floor", "wall", "door")
+"""And how those are that may stand in the way of sight."""
 
 
 def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[str]) -> tuple[Edge, ...]:
@@ -67,13 +70,30 @@ def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
     """
     import numpy as np
 
-    centers, halves = _arrays(things)
-    gaps = np.maximum(np.abs(centers[:, None] - centers[None]) - (halves[:, None] + halves[None]), 0.0)
-    near = (gaps**2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
-    near &= _together(things)
-    np.fill_diagonal(near, False)
-    rows, columns = np.nonzero(near)
-    yield from zip(rows.tolist(), columns.tolist(), strict=True)
+    doors: set[tuple[int, int]] = set()
+    for members in _rooms(things).values():
+        centers, halves = _arrays([things[i] for i in members])
+        gaps = np.abs(centers[:, None] - centers[None]) - (halves[:, None] + halves[None])
+        near = (np.maximum(gaps, 0.0) ** 2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
+        np.fill_diagonal(near, False)
+        for row, column in zip(*(axis.tolist() for axis in np.nonzero(near)), strict=True):
+            pair = members[row], members[column]
+            if things[pair[0]].between and things[pair[1]].between:
+                # A door and its jamb meet in both rooms.
+                if pair in doors:
+                    continue
+                doors.add(pair)
+            yield pair
+
+
+def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
+    """What is in each room, doorways in both of theirs; rooms themselves are near nothing."""
+    found: dict[str, list[int]] = {}
+    for i, thing in enumerate(things):
+        if thing.mount != "room":
+            for room in dict.fromkeys((thing.room, *thing.between)):
+                found.setdefault(room, []).append(i)
+    return found
 
 
 def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:
@@ -85,87 +105,79 @@ def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:
     return centers, halves
 
 
-def _together(things: Sequence[Thing]) -> np.ndarray:
-    """Bool (things, things): no wall stands between them; rooms themselves are near nothing."""
-    import numpy as np
-
-    names = list(dict.fromkeys(thing.room for thing in things))
-    member = np.zeros((len(things), len(names)), bool)
-    for i, thing in enumerate(things):
-        if thing.mount != "room":
-            for room in {thing.room, *(thing.between or ())}:
-                member[i, names.index(room)] = True
-    shared: np.ndarray = (member.astype(np.int32) @ member.T.astype(np.int32)) > 0
-    return shared
-
-
 def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[int, int]]:
-    """Pairs where the first turns its front to the second, which shows its own front, with nothing tall between."""
+    """Pairs where the first turns its front to the second, which shows its own front, with nothing tall between.
+
+    What is in a container neither looks nor is looked at.
+    """
     rooms: dict[str, list[int]] = {}
     for i, thing in enumerate(things):
-        if thing.mount not in ("room", "shell"):
+        if thing.mount not in ("room", "shell") and not thing.inside:
             rooms.setdefault(thing.room, []).append(i)
     for members in rooms.values():
-        blockers = [i for i in members if things[i].mount in ("floor", "wall", "door")]
-        for j in members:
-            target = things[j]
-            if target.class_name in lookable and not target.inside:
-                for i in members:
-                    if i != j and not things[i].inside and _faces(things[i], target):
-                        between = [things[k] for k in blockers if k not in (i, j)]
-                        if _sees(things[i], target, between):
-                            yield i, j
+        own = [things[i] for i in members]
+        targets = [k for k, thing in enumerate(own) if thing.class_name in lookable]
+        if targets:
+            yield from ((members[i], members[j]) for i, j in _seen(own, targets))
 
 
-def _faces(source: Thing, target: Thing) -> bool:
-    if source.yaw is None or source.mount in ("ceiling", "flat", "door", "window"):
-        return False
-    dx = target.box.center[0] - source.box.center[0]
-    dz = target.box.center[2] - source.box.center[2]
-    distance = (dx * dx + dz * dz) ** 0.5
-    if not 0.05 < distance <= FAR:
-        return False
-    ahead = _along(source.yaw, dx, dz) / distance
-    shown = 1.0 if target.yaw is None else -_along(target.yaw, dx, dz) / distance
-    return ahead >= cos(radians(VIEW)) and shown >= cos(radians(SHOWN))
+def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Which things of one room face which of its targets."""
+    import numpy as np
+
+    centers, _ = _arrays(things)
+    towards = centers[targets][None] - centers[:, None]
+    distance = np.maximum(np.hypot(towards[..., 0], towards[..., 2]), 1e-9)
+    fronts = np.array([_direction(thing.yaw or 0.0) for thing in things])
+    ahead = (towards[..., 0] * fronts[:, None, 0] + towards[..., 2] * fronts[:, None, 1]) / distance
+    shows = fronts[targets]
+    shown = -(towards[..., 0] * shows[None, :, 0] + towards[..., 2] * shows[None, :, 1]) / distance
+    shown[:, [things[j].yaw is None for j in targets]] = 1.0
+    looks = np.array([t.yaw is not None and t.mount not in BLIND for t in things])
+    near = (distance > 0.05) & (distance <= FAR) & looks[:, None]
+    pairs = np.argwhere(near & (ahead >= cos(radians(VIEW)) - 1e-9) & (shown >= cos(radians(SHOWN)) - 1e-9))
+    if len(pairs):
+        sources, aims = pairs[:, 0], np.array(targets)[pairs[:, 1]]
+        free = ~_blocked(things, sources, aims)
+        yield from zip(sources[free].tolist(), aims[free].tolist(), strict=True)
 
 
-@lru_cache(maxsize=16)
 def _direction(yaw: float) -> tuple[float, float]:
     """A yaw as a unit vector (x, z); exact for the four winds."""
     exact = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}
-    if yaw % 360 in exact:
-        return exact[yaw % 360]
-    from math import sin
-
-    return sin(radians(yaw)), cos(radians(yaw))
+    return exact.get(yaw % 360) or (sin(radians(yaw)), cos(radians(yaw)))
 
 
-def _along(yaw: float, dx: float, dz: float) -> float:
-    x, z = _direction(yaw)
-    return x * dx + z * dz
+def _blocked(things: Sequence[Thing], sources: np.ndarray, aims: np.ndarray) -> np.ndarray:
+    """Bool (pairs): the line of sight cuts through something of size other than the two and what they are on."""
+    import numpy as np
+
+    centers, halves = _arrays(things)
+    walls = np.array([k for k, thing in enumerate(things) if thing.mount in TALL], int)
+    start = centers[sources].copy()
+    start[:, 1] = np.clip(start[:, 1], *EYES)
+    cut = _cuts(start, centers[aims], centers[walls] - halves[walls], centers[walls] + halves[walls])
+    index = {thing.name: k for k, thing in enumerate(things)}
+    under = np.array([index.get(thing.on, -1) for thing in things])
+    for spared in (sources, aims, under[sources], under[aims]):
+        cut &= spared[:, None] != walls[None]
+    return np.asarray(cut.any(axis=1))
 
 
-def _sees(source: Thing, target: Thing, between: Sequence[Thing]) -> bool:
-    """Whether the straight line between them misses every other thing of size."""
-    eye = min(max(source.box.center[1], EYES[0]), EYES[1])
-    a = (source.box.center[0], eye, source.box.center[2])
-    b = target.box.center
-    spared = {target.on, target.name, source.on, source.name}
-    return not any(_cuts(thing, a, b) for thing in between if thing.name not in spared)
+def _cuts(start: np.ndarray, end: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Bool (segments, boxes): whether a segment passes through a box (slab test).
 
+    Args:
+        start, end: of shape (segments, 3).
+        low, high: corners, of shape (boxes, 3).
+    """
+    import numpy as np
 
-def _cuts(thing: Thing, a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:
-    """Whether the segment from a to b passes through a box (slab test)."""
-    first, last = 0.0, 1.0
-    for start, end, center, size in zip(a, b, thing.box.center, thing.box.size, strict=True):
-        low, high, step = center - size / 2, center + size / 2, end - start
-        if abs(step) < 1e-9:
-            if not low <= start <= high:
-                return False
-            continue
-        near, far = sorted(((low - start) / step, (high - start) / step))
-        first, last = max(first, near), min(last, far)
-        if first >= last:
-            return False
-    return True
+    step = (end - start)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, other = (low[None] - start[:, None]) / step, (high[None] - start[:, None]) / step
+    still = np.abs(step) < 1e-9
+    within = (low[None] <= start[:, None]) & (start[:, None] <= high[None])
+    near = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(one, other))
+    far = np.where(still, np.where(within, np.inf, -np.inf), np.maximum(one, other))
+    return np.asarray(np.maximum(near.max(axis=2), 0.0) < np.minimum(far.min(axis=2), 1.0))

@@ -24,7 +24,8 @@ def scene(layout: Layout, knowledge: Knowledge | None = None) -> EnvironmentGrap
     things = every_thing(layout)
     ids = node_ids((thing.name for thing in things), layout.plan.ids, layout.plan.file)
     lookable = frozenset(name for name, known in knowledge.objects.items() if "LOOKABLE" in known.properties)
-    nodes = sorted((_node(thing, ids[thing.name], knowledge) for thing in things), key=lambda node: node.id)
+    kinds = {name: _kind(name, knowledge) for name in {thing.class_name for thing in things}}
+    nodes = sorted((_node(thing, ids[thing.name], kinds[thing.class_name]) for thing in things), key=_id)
     return EnvironmentGraph(tuple(nodes), edges(things, ids, lookable))
 
 
@@ -58,15 +59,25 @@ def node_ids(names: Iterable[str], fixed: Mapping[str, int], file: str = "") -> 
     return ids
 
 
-def _node(thing: Thing, node_id: int, knowledge: Knowledge) -> Node:
-    known = knowledge.objects[thing.class_name]
+Kind = tuple[str, tuple[str, ...], tuple[str, ...]]
+"""A class's category, properties and default states."""
+
+
+def _kind(class_name: str, knowledge: Knowledge) -> Kind:
+    known = knowledge.objects[class_name]
     plain = known.category in (ROOM_CATEGORY, CHARACTER_CATEGORY)
-    return Node(
-        id=node_id,
-        class_name=thing.class_name,
-        category=known.category,
-        properties=tuple(sorted(known.properties, key=PROPERTY_ID.__getitem__)),
-        states=() if plain else tuple(sorted(knowledge.default_states(thing.class_name), key=STATE_ID.__getitem__)),
-        box=thing.box,
-        yaw=thing.yaw,
+    states = () if plain else knowledge.default_states(class_name)
+    return (
+        known.category,
+        tuple(sorted(known.properties, key=PROPERTY_ID.__getitem__)),
+        tuple(sorted(states, key=STATE_ID.__getitem__)),
     )
+
+
+def _node(thing: Thing, node_id: int, kind: Kind) -> Node:
+    category, properties, states = kind
+    return Node(node_id, thing.class_name, category, properties, states, box=thing.box, yaw=thing.yaw)
+
+
+def _id(node: Node) -> int:
+    return node.id

@@ -198,9 +198,11 @@ def test_the_releases_own_homes_are_read_and_written_without_loss(real_data):
 
 def test_the_order_of_hashing_changes_nothing():
     code = (
-        "import hashlib, orjson; from hearth.schemas.graph import to_release;"
+        "import hashlib, orjson, sys; from hearth.schemas.graph import to_release;"
         "from hearth.simulation.homes import catalog, plan_drawing;"
         "graph = orjson.dumps(to_release(catalog.load_graph('larch')));"
+        # scipy would cost every process ten homes' loading.
+        "assert 'scipy' not in sys.modules;"
         "drawing = plan_drawing.svg(catalog.load_layout('larch')).encode();"
         "print(hashlib.sha256(graph + drawing).hexdigest())"
     )
