@@ -151,7 +151,7 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
     if isinstance(error, HearthError):
         faults = error.diagnostics
     elif isinstance(error, OSError):
-        faults = (Diagnostic(Code.MISSING_FILE, str(error.strerror or error).lower(), file=str(error.filename or "")),)
+        faults = (_of_the_machine(error),)
     else:
         what = f"{type(error).__name__}: {error}"
         print(f"A fault of Hearth's, not of yours: {what}\n`--debug` before the command shows where.", file=sys.stderr)
@@ -161,6 +161,17 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
     else:
         output.report(faults)
     raise typer.Exit(output.BAD_INPUT) from error
+
+
+def _of_the_machine(error: OSError) -> Diagnostic:
+    """A file that is not there or cannot be read, or a place that cannot be written."""
+    import errno
+
+    name = str(error.filename or "")
+    full = error.errno in (errno.EROFS, errno.ENOSPC, errno.EDQUOT)
+    forbidden = error.errno in (errno.EACCES, errno.EPERM) and not Path(name).is_file()
+    code = Code.UNWRITABLE if full or forbidden else Code.MISSING_FILE
+    return Diagnostic(code, str(error.strerror or error).lower(), file=name)
 
 
 app = typer.Typer(

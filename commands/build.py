@@ -19,7 +19,7 @@ Sources = Annotated[
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Gets one folder a stage.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
 Jobs = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0 for one a core.")]
-Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N records.")]
+Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
 Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on what is there.")]
 InHomes = Annotated[
     list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")

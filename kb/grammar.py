@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -11,6 +12,12 @@ from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import print_object
+
+Span = tuple[int, int, str]
+"""Start and end in a line, and the words at fault; an end of 0 where they are not found."""
+
+_NO_ACTION = "no action is spelt like it; `kb export table` lists them all"
+_NO_OBJECT = "no object is spelt like it; use a commoner word, or add it to a folder of your own with --kb"
 
 
 def check(
@@ -63,14 +70,17 @@ class _Checker:
         action = self.knowledge.action(step.action)
         if action is None:
             near = self.knowledge.suggest(step.action, "action")
-            return step, [self._fault(Code.UNKNOWN_ACTION, "unknown action", step.action, line, _did_you_mean(near))]
+            remedy = _did_you_mean(near) or _NO_ACTION
+            span = _found_in(self._text(line), r"\[\s*({})", step.action)
+            return step, [self._fault(Code.UNKNOWN_ACTION, f"unknown action `{step.action}`", line, remedy, span)]
         faults = list(self._arity(action, step, line))
         objects: list[ObjectRef] = []
         for ref in step.objects:
             name = self._class_name(ref.name)
             if name is None:
-                near = self.knowledge.suggest(ref.name, "object")
-                faults.append(self._fault(Code.UNKNOWN_OBJECT, "unknown object", ref.name, line, _did_you_mean(near)))
+                remedy = _did_you_mean(self.knowledge.suggest(ref.name, "object")) or _NO_OBJECT
+                span = self._object(ref, line)
+                faults.append(self._fault(Code.UNKNOWN_OBJECT, f"unknown object `{ref.name}`", line, remedy, span))
             objects.append(ref if name in (None, ref.name) else replace(ref, name=name))
         if faults:
             return step, faults
@@ -82,17 +92,15 @@ class _Checker:
         action = self.knowledge.actions[step.action]
         for position, ref in enumerate(step.objects[: action.arity]):
             if not self.knowledge.affords(step.action, position, ref.name):
-                requirement = action.grammar[position]
-                yield self._fault(
-                    Code.NOT_AFFORDED, f"[{step.action}] can't be done to", ref.name, line, f"it takes {requirement}"
-                )
+                message = f"[{step.action}] can't be done to `{ref.name}`"
+                remedy = f"it takes {action.grammar[position]}"
+                yield self._fault(Code.NOT_AFFORDED, message, line, remedy, self._object(ref, line))
 
     def _arity(self, action: Action, step: Step, line: int) -> Iterator[Diagnostic]:
         if len(step.objects) != action.arity:
-            found = " ".join(map(print_object, step.objects))
             wanted = f"[{action.name}]" + "".join(f" <{role}> (1)" for role in action.roles)
             message = f"[{action.name}] takes {action.arity} object{'s' * (action.arity != 1)}, not {len(step.objects)}"
-            yield self._fault(Code.WRONG_ARITY, message, found or step.action, line, f"write {wanted}", quote=False)
+            yield self._fault(Code.WRONG_ARITY, message, line, f"write {wanted}", self._arguments(step, line))
 
     def _class_name(self, name: str) -> str | None:
         if name in self.knowledge.objects:
@@ -100,28 +108,36 @@ class _Checker:
         found = self.knowledge.object_class(name)
         return found.name if found else None
 
-    def _fault(
-        self, code: Code, message: str, found: str, line: int, suggestion: str, quote: bool = True
-    ) -> Diagnostic:
-        text = self.source[line - 1] if 0 < line <= len(self.source) else ""
-        start = _position(text, found)
-        whole = f"{message} `{found}`" if quote else message
-        return Diagnostic(
-            code,
-            whole,
-            self.file,
-            line,
-            start + 1,
-            len(found) if start >= 0 else 0,
-            found,
-            suggestion,
-            text.rstrip("\n"),
-        )
+    def _text(self, line: int) -> str:
+        return self.source[line - 1].rstrip("\n") if 0 < line <= len(self.source) else ""
+
+    def _object(self, ref: ObjectRef, line: int) -> Span:
+        """Where an object's name stands, or whatever it was called before it became canonical."""
+        text = self._text(line)
+        names = (ref.name, *self.knowledge.same_class(ref.name))
+        spans = (_found_in(text, r"<[\s_]*({})[\s_]*>", name) for name in names)
+        return next((span for span in spans if span[1]), (0, 0, ref.name))
+
+    def _arguments(self, step: Step, line: int) -> Span:
+        """Where the objects of a step stand, or its action where it has none."""
+        text = self._text(line)
+        start, end, _ = _found_in(text, r"(\[\s*{}\s*\])", step.action)
+        after = text[end:].partition("|")[0].partition("{")[0]
+        if end and step.objects and "<" in after:
+            start, end = end + after.index("<"), end + len(after.rstrip())
+        return start, end, text[start:end] if end else " ".join(map(print_object, step.objects)) or step.action
+
+    def _fault(self, code: Code, message: str, line: int, suggestion: str, span: Span) -> Diagnostic:
+        start, end, found = span
+        column = start + 1 if end else 0
+        return Diagnostic(code, message, self.file, line, column, end - start, found, suggestion, self._text(line))
 
 
-def _position(text: str, found: str) -> int:
-    """Where the words stand in the line as written, or -1."""
-    return text.lower().replace("_", " ").find(found.lower().replace("_", " "))
+def _found_in(text: str, pattern: str, name: str) -> Span:
+    """Where a name stands in a line as written: any case, spaces or underscores between its words."""
+    words = r"[\s_]+".join(map(re.escape, name.replace("_", " ").split()))
+    match = re.search(pattern.format(words), text, re.IGNORECASE)
+    return (match.start(1), match.end(1), name) if match else (0, 0, name)
 
 
 def _did_you_mean(names: Sequence[str]) -> str:

@@ -116,4 +116,4 @@ def _faults(rows: Iterable[dict[str, Any]]) -> Iterator[Diagnostic]:
     known = {str(code): code for code in Code}
     for row in rows:
         places = {name: row[name] for name in ("message", "file", "line", "column", "found", "suggestion")}
-        yield Diagnostic(known.get(row["code"], Code.SYNTAX), **places)
+        yield Diagnostic(known.get(row["code"], Code.INTERNAL_ERROR), **places)

@@ -91,10 +91,17 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[tuple[str, Item]]:
-    for number, one in enumerate(found):
-        if limit is not None and number >= limit:
-            return
-        yield one
+    """The first so many programs, and at most as many of what is no program; refused items do not count."""
+    counts = {True: 0, False: 0}
+    for source, item in found:
+        is_program = not (item.reader == crowd.NAME and item.value["stage"] == 1)
+        if limit is not None and item.reader != "refused":
+            if counts[is_program] >= limit:
+                if is_program:
+                    return
+                continue
+            counts[is_program] += 1
+        yield source, item
 
 
 def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:

@@ -11,7 +11,7 @@ from typing import Any
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 
-INTERNAL_ERROR = "INTERNAL_ERROR"
+INTERNAL_ERROR = str(Code.INTERNAL_ERROR)
 """The code of a record that made a stage's own code fail: a fault of ours, not of the record."""
 
 _LONGEST = 500
@@ -55,7 +55,7 @@ class Reject:
         frames = traceback.extract_tb(error.__traceback__)
         where = f"{PurePath(frames[-1].filename).name}:{frames[-1].lineno}" if frames else "?"
         message = f"{type(error).__name__} at {where}: {error}"[:_LONGEST]
-        fault = Diagnostic(Code.SYNTAX, message, file, suggestion="this is a fault of Hearth; please report it")
+        fault = Diagnostic(Code.INTERNAL_ERROR, message, file, suggestion="this is a fault of Hearth; please report it")
         return cls((fault,), internal=True)
 
     @property

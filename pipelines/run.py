@@ -50,7 +50,7 @@ def run_stage(
             return _run(stage, settings, workers or Workers(), progress)
     except OSError as error:
         raise HearthError.of(
-            Code.MISSING_FILE,
+            Code.UNWRITABLE,
             f"cannot write: {error.strerror or error}",
             file=str(error.filename or settings.folder(stage.name)),
             suggestion="free some space, or choose a folder you may write to with --out; complete parts are kept",

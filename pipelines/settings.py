@@ -15,7 +15,7 @@ class Settings:
         sources: files and folders to read, in order.
         out: the folder that gets one folder a stage.
         seed: of everything random.
-        limit: at most so many records are read; None for all.
+        limit: at most so many programs are read, and as many descriptions; None for all.
         homes: names of the homes to sample in, or empty for every home of the catalog.
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.

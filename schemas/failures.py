@@ -79,6 +79,11 @@ class Code(StrEnum):
     MISSING_PREDICTION = "MISSING_PREDICTION"
     REPLAY_DIFFERS = "REPLAY_DIFFERS"
     NOT_RENDERED = "NOT_RENDERED"
+    # This machine, and Hearth itself
+    FILE_TOO_LARGE = "FILE_TOO_LARGE"
+    UNWRITABLE = "UNWRITABLE"
+    LOCKED = "LOCKED"
+    INTERNAL_ERROR = "INTERNAL_ERROR"
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
+from hearth.schemas.blocks import STEP, Splitter
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.malformed import explain, special
 from hearth.schemas.program import ObjectRef, Program, Step
 
 MAX_LINE = 10_000
@@ -23,13 +25,12 @@ MAX_LINE = 10_000
 
 SPECIAL = "special"
 
-_OBJECT = r"<\s*([^<>\[\]]*?)\s*>\s*\(\s*(\d{1,9})(?:\.(\d{1,9}))?\s*\)"
+_OBJECT = r"<[\s_]*([^\s_<>\[\]][^<>\[\]]*?)[\s_]*>\s*\(\s*(\d{1,9})(?:\.(\d{1,9}))?\s*\)"
 _STEP = re.compile(
     rf"\s*(?:<\s*char(\d{{1,3}})\s*>\s*)?\[\s*([A-Za-z][A-Za-z _-]*?)\s*\]\s*((?:{_OBJECT}\s*)*)(\{{[^{{}}]*\}})?\s*",
     re.IGNORECASE,
 )
 _OBJECTS = re.compile(_OBJECT)
-_LOOKS_LIKE_STEP = re.compile(r"^\s*(\[|<|\(|\|)")
 _MODIFIER = re.compile(r"([a-z]+)=(\S+)")
 
 
@@ -43,9 +44,13 @@ class Parsed:
 
 def parse_programs(text: str, file: str = "") -> Parsed:
     """Read every program of a text; a line that is no step becomes a diagnostic, never a silent loss."""
+    return _parse(text, file, several=True)
+
+
+def _parse(text: str, file: str, several: bool) -> Parsed:
     programs: list[Program] = []
     diagnostics: list[Diagnostic] = []
-    for block in _blocks(text):
+    for block in _blocks(text, several):
         program, faults = _parse_block(block, file)
         programs.append(program)
         diagnostics.extend(faults)
@@ -60,7 +65,7 @@ def parse_programs(text: str, file: str = "") -> Parsed:
 
 def parse_program(text: str, file: str = "") -> tuple[Program, tuple[Diagnostic, ...]]:
     """Read a text that should hold one program; a second one is a fault."""
-    parsed = parse_programs(text, file)
+    parsed = _parse(text, file, several=False)
     if not parsed.programs:
         return Program(), parsed.diagnostics
     faults = list(parsed.diagnostics)
@@ -117,27 +122,30 @@ def normal_name(name: str) -> str:
 
 @dataclass(slots=True)
 class _Block:
-    header: list[str]
+    header: list[tuple[int, str]]
     steps: list[tuple[int, str]]
 
 
-def _blocks(text: str) -> Iterator[_Block]:
-    """Split a text into programs: a plain line after a blank one, once steps were seen, begins the next."""
+def _blocks(text: str, several: bool) -> Iterator[_Block]:
+    """Split a text into programs; where only one is meant, blank lines inside its header part nothing."""
     block = _Block([], [])
+    splitter = Splitter()
     after_blank = False
     for number, raw in enumerate(text.splitlines(), 1):
         line = raw.strip()
         if not line:
             after_blank = True
+            if several or block.steps:
+                splitter.blank()
             continue
-        is_step = len(line) > MAX_LINE or _LOOKS_LIKE_STEP.match(line) is not None
+        is_step = len(line) > MAX_LINE or STEP.match(line) is not None
+        if splitter.begins(line, is_step) and (block.header or block.steps):
+            yield block
+            block = _Block([], [])
         if is_step or (block.steps and not after_blank):
             block.steps.append((number, raw))
         else:
-            if block.steps:
-                yield block
-                block = _Block([], [])
-            block.header.append(line)
+            block.header.append((number, raw))
         after_blank = False
     if block.header or block.steps:
         yield block
@@ -154,11 +162,16 @@ def _parse_block(block: _Block, file: str) -> tuple[Program, list[Diagnostic]]:
         else:
             steps.extend(found)
             lines.extend([number] * len(found))
-    title = block.header[0] if block.header else ""
+    first, raw = block.header[0] if block.header else (0, "")
+    title = raw.strip()
     if not block.steps:
         suggestion = "write steps such as `[Walk] <kitchen> (1)` below the description"
-        faults.append(Diagnostic(Code.EMPTY, f"`{title[:60]}` has no steps", file, suggestion=suggestion))
-    return Program(title, "\n".join(block.header[1:]), tuple(steps), tuple(lines)), faults
+        message = f"`{title[:60]}` has no steps"
+        column, found = raw.find(title) + 1, title[:200]
+        fault = Diagnostic(Code.EMPTY, message, "", 0, column, len(found), found, suggestion)
+        faults.append(_placed(fault, file, first, raw))
+    description = "\n".join(line.strip() for _, line in block.header[1:])
+    return Program(title, description, tuple(steps), tuple(lines)), faults
 
 
 def _placed(fault: Diagnostic, file: str, number: int, line: str) -> Diagnostic:
@@ -175,7 +188,7 @@ def _parse_line(line: str) -> tuple[Step, ...] | Diagnostic:
     while True:
         match = _STEP.match(line, position)
         if match is None or (match.end() < len(line) and line[match.end()] != "|"):
-            return _explain(line, position)
+            return explain(line, position)
         step = _step(match, joins=bool(steps))
         if isinstance(step, Diagnostic):
             return step
@@ -188,7 +201,7 @@ def _parse_line(line: str) -> tuple[Step, ...] | Diagnostic:
 def _step(match: re.Match[str], joins: bool) -> Step | Diagnostic:
     agent, action, objects, braces = match[1], match[2], match[3], match[7] or ""
     if normal_name(action) == SPECIAL:
-        return _special(match.string, match.start(2))
+        return special(match.string)
     refs = tuple(
         ObjectRef(normal_name(name), int(instance), int(node) if node else None)
         for name, instance, node in _OBJECTS.findall(objects)
@@ -201,43 +214,3 @@ def _step(match: re.Match[str], joins: bool) -> Step | Diagnostic:
             Code.SYNTAX, text, column=column, length=len(braces), found=braces, suggestion="{at=3,2 hand=left}"
         )
     return Step(action, refs, int(agent or 0), joins, pairs)
-
-
-def _special(line: str, start: int) -> Diagnostic:
-    return Diagnostic(
-        Code.SPECIAL_BLOCK,
-        "a special block: free text where no action fitted",
-        column=start,
-        length=len(line.strip()),
-        found=line.strip()[:200],
-        suggestion="map its text to steps in the special-blocks file, or leave it out",
-    )
-
-
-def _explain(line: str, position: int) -> Diagnostic:
-    """Say what is wrong with a line that did not parse, pointing at the first offending words."""
-    rest = line[position:]
-    if re.match(r"\s*\[\s*special\s*\]", rest, re.IGNORECASE):
-        return _special(line, position + 1)
-    bad = re.search(r">\s*\(([^()]*)\)", rest)
-    while bad and re.fullmatch(r"\s*\d{1,9}(\.\d{1,9})?\s*", bad[1]):
-        bad = re.compile(r">\s*\(([^()]*)\)").search(rest, bad.end())
-    if bad:
-        column = position + bad.start(1) + 1
-        message = f"`{bad[1][:40]}` is not an instance"
-        return Diagnostic(
-            Code.BAD_INSTANCE,
-            message,
-            "",
-            0,
-            column,
-            len(bad[1]),
-            bad[1][:200],
-            "a number: (1), or (1.319) once bound to node 319",
-        )
-    action = re.match(r"\s*(?:<[^<>]*>\s*)?\[[^\[\]]*\]", rest)
-    column = position + (action.end() if action else 0) + 1
-    found = line[column - 1 :].strip()[:200]
-    message = "expected an object such as `<cup> (1)`" if action else "expected an action such as `[Walk]`"
-    suggestion = "[Action] <object> (1), with `|` between the agents of one tick"
-    return Diagnostic(Code.SYNTAX, message, "", 0, column, len(found), found, suggestion)

@@ -52,6 +52,7 @@ ELSEWHERE: frozenset[Code] = frozenset(
         Code.UNKNOWN_OBJECT, Code.UNKNOWN_HOME, Code.WRONG_ARITY, Code.SPECIAL_BLOCK, Code.CONTRADICTION, Code.NO_PLACE,
         Code.CONDITION_UNMET, Code.NO_HANDLER, Code.HANDLER_ERROR, Code.TOO_MANY_TRIES, Code.LOOP, Code.UNPERTURBED,
         Code.UNKNOWN_ID, Code.MISSING_PREDICTION, Code.REPLAY_DIFFERS, Code.NOT_RENDERED,
+        Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR,
     }
 )  # fmt: skip
 """Codes of reading, checking, grounding, repairing itself, scoring and publishing: no run of a program ends in them."""

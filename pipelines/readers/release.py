@@ -137,7 +137,7 @@ def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
         info = archive(path).getinfo(name)
         if info.file_size > LARGEST_FILE:
             message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"
-            return Diagnostic(Code.BAD_ARCHIVE, message, place)
+            return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")
         return archive(path).read(info)
     except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")

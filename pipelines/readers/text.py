@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hearth.pipelines.readers.item import LONGEST_LINE, Item, fault_of, lines, refused
+from hearth.pipelines.readers.item import Item, fault_of, lines, refused
 from hearth.pipelines.rejects import Reject
+from hearth.schemas.blocks import STEP, Splitter
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import MAX_LINE
 
 NAME = "text"
-
-_STEP = re.compile(r"\s*[\[<(|]")
 
 
 @dataclass(slots=True)
 class _Block:
     first: int
     lines: list[str] = field(default_factory=list)
-    has_steps: bool = False
     longest: int = 0
 
 
 def scan(path: Path, place: str) -> Iterator[Item]:
     """One item for each program of a file.
 
-    A plain line after a blank one, once steps were seen, begins the next program.
+    What begins the next program is told by `hearth.schemas.blocks`; a title without steps is a record of its own.
     """
     found = False
     for number, block in enumerate(_blocks(path), 1):
@@ -63,22 +60,20 @@ def _item(block: _Block, record_id: str, place: str) -> Item:
 
 def _blocks(path: Path) -> Iterator[_Block]:
     block: _Block | None = None
-    blank = False
+    splitter = Splitter()
     for number, (line, length) in enumerate(lines(path), 1):
-        if not line.strip():
-            blank = True
+        if not line or line.isspace():
+            splitter.blank()
             if block:
                 block.lines.append("")
             continue
-        is_step = length > MAX_LINE or _STEP.match(line) is not None
-        if block is None or (block.has_steps and blank and not is_step):
+        if splitter.begins(line, length > MAX_LINE or STEP.match(line) is not None):
             if block:
                 yield block
             block = _Block(number)
-        block.lines.append(line[:LONGEST_LINE])
-        block.has_steps |= is_step
+        assert block is not None
+        block.lines.append(line)
         block.longest = max(block.longest, length)
-        blank = False
     if block:
         yield block
 
@@ -87,7 +82,7 @@ def header(text: str) -> tuple[str, str]:
     """Title and description of a program's text: the lines before its first step."""
     found: list[str] = []
     for line in text.split("\n"):
-        if _STEP.match(line):
+        if STEP.match(line):
             break
         if line.strip():
             found.append(line.strip())

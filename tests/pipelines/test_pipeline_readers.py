@@ -307,7 +307,7 @@ def test_a_member_that_claims_too_much_is_not_unpacked(release, tmp_path, monkey
 
     monkeypatch.setattr(reader, "LARGEST_FILE", 1_000)
     found = read(zipped(release, tmp_path / "release.zip"))
-    assert {code for code, _, _ in faults(found)} == {"BAD_ARCHIVE"}
+    assert {code for code, _, _ in faults(found)} == {"FILE_TOO_LARGE"}
 
 
 # Recognising
@@ -359,3 +359,17 @@ def test_a_link_that_leaves_the_folder_is_not_followed(write, tmp_path):
     folder = write("p/a.txt", PROGRAM).parent
     (folder / "b.txt").symlink_to(secret)
     assert [row["program_id"] for row in rows(read(folder))] == ["text:p/a.txt"]
+
+
+def test_a_title_without_steps_is_a_record_of_its_own(write):
+    first, second = rows(read(write("two.txt", f"Ironing\nIron a shirt.\n\n\n{PROGRAM}")))
+    assert (first["title"], second["title"], second["line"]) == ("Ironing", "Watch TV", 4)
+    assert "[" not in first["text"] and second["text"].count("[") == 2
+
+
+def test_a_limit_counts_programs(write, built):
+    write("a.csv", batch(*(answer(number, worker=f"W{number}") for number in range(5))))
+    folder = write("z.txt", "\n".join([PROGRAM] * 4)).parent
+    limited = built(folder, limit=3)
+    limited.run("ingest")
+    assert [row["kind"] for row in limited.rows("ingest")] == ["description"] * 3 + ["program"] * 3

@@ -20,14 +20,16 @@ FAULTS = [
     ("walk to the cup", Code.SYNTAX, 1, "walk to the cup"),
     ("<cup> (1)", Code.SYNTAX, 1, "<cup> (1)"),
     ("[W4lk] <cup> (1)", Code.SYNTAX, None, None),
-    ("[] <cup> (1)", Code.SYNTAX, None, None),
-    ("[Walk] cup (1)", Code.SYNTAX, None, None),
-    ("[Walk] <cup (1)", Code.SYNTAX, None, None),
-    ("[Walk] <cup> 1", Code.SYNTAX, None, None),
-    ("[Walk] <cup>", Code.SYNTAX, None, None),
-    ("[Read] <book> (1) quietly", Code.SYNTAX, None, None),
-    ("<chef> [Walk] <cup> (1)", Code.SYNTAX, None, None),
-    ("<char0> [Walk] <cup> (1) |", Code.SYNTAX, None, None),
+    ("[] <cup> (1)", Code.SYNTAX, 1, "[]"),
+    ("[Walk] <> (1)", Code.SYNTAX, 8, "<>"),
+    ("[Walk] < _ > (1)", Code.SYNTAX, 8, "< _ >"),
+    ("[Walk] cup (1)", Code.SYNTAX, 8, "cup (1)"),
+    ("[Walk] <cup (1)", Code.SYNTAX, 8, "<cup (1)"),
+    ("[Walk] <cup> 1", Code.SYNTAX, 8, "<cup> 1"),
+    ("[Walk] <cup>", Code.SYNTAX, 8, "<cup>"),
+    ("[Read] <book> (1) quietly", Code.SYNTAX, 19, "quietly"),
+    ("<chef> [Walk] <cup> (1)", Code.SYNTAX, 1, "<chef>"),
+    ("<char0> [Walk] <cup> (1) |", Code.SYNTAX, 26, "|"),
     ("| [Walk] <cup> (1)", Code.SYNTAX, 1, "| [Walk] <cup> (1)"),
     ("[Walk] <cup> (1) {at=3,2 hand}", Code.SYNTAX, 18, "{at=3,2 hand}"),
     ("[Walk] <cup> (1) {at 3}", Code.SYNTAX, 18, "{at 3}"),
@@ -48,6 +50,7 @@ def test_a_malformed_line(line, code, column, found):
     if column:
         assert (fault.column, fault.found) == (column, found)
     assert 1 <= fault.column <= len(line) + 1
+    assert not line[fault.column - 1].isspace() and fault.found == fault.found.strip()
 
 
 @pytest.mark.parametrize("line", [line for line, code, *_ in FAULTS])

@@ -1,25 +1,24 @@
 """The syntax: what is printed is read back, what is canonical is printed unchanged, and nothing is passed over."""
 
-import re
-
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program, parse_programs, parse_steps, print_program, print_step
 from hearth.schemas.text import decode
 
-NAME = st.from_regex(r"[a-z0-9]+(_[a-z0-9]+)*", fullmatch=True)
-ACTION = st.from_regex(r"[A-Z][a-z]+([A-Z][a-z]+)*", fullmatch=True).filter(lambda name: name.lower() != "special")
+WORD = st.text("abz09", min_size=1, max_size=3)
+NAME = st.lists(WORD, min_size=1, max_size=3).map("_".join)
+ACTION = st.lists(st.sampled_from(["Put", "Back", "Walk", "Zz", "Aspecial"]), min_size=1, max_size=3).map("".join)
 NUMBER = st.integers(0, 999_999_999)
 REF = st.builds(ObjectRef, NAME, NUMBER, st.none() | NUMBER)
-MODIFIER = st.tuples(st.from_regex(r"[a-z]+", fullmatch=True), st.from_regex(r"[A-Za-z0-9.,:=-]+", fullmatch=True))
-LINE = (
-    st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), min_size=1, max_size=40)
-    .map(str.strip)
-    .filter(lambda line: line and not re.match(r"[\[<(|]", line))
+MODIFIER = st.tuples(st.text("az", min_size=1, max_size=3), st.text("aZ09.,:=-", min_size=1, max_size=4))
+LINE = st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=20).map(
+    lambda text: f"x{text}".rstrip()
 )
+FEW = settings(max_examples=50)
 
 
 @st.composite
@@ -38,6 +37,7 @@ def programs(draw):
     return Program(title, description, tuple(steps))
 
 
+@FEW
 @given(programs())
 def test_reading_back_what_was_printed_gives_the_program(program):
     read, faults = parse_program(print_program(program))
@@ -45,12 +45,14 @@ def test_reading_back_what_was_printed_gives_the_program(program):
     assert read == program
 
 
+@FEW
 @given(programs())
 def test_printing_what_was_read_gives_canonical_text_unchanged(program):
     text = print_program(program)
     assert print_program(parse_program(text)[0]) == text
 
 
+@FEW
 @given(st.lists(programs().filter(lambda program: program.title), min_size=1, max_size=3))
 def test_programs_one_after_another_stay_apart(several):
     parsed = parse_programs("\n".join(map(print_program, several)))
@@ -58,6 +60,7 @@ def test_programs_one_after_another_stay_apart(several):
     assert list(parsed.programs) == several
 
 
+@FEW
 @given(programs())
 def test_lines_say_where_each_step_stood(program):
     text = print_program(program)
@@ -83,7 +86,7 @@ def test_no_line_vanishes(text):
         len([line for line in (each.title, *each.description.splitlines()) if line]) for each in parsed.programs
     )
     steps = {line for program in parsed.programs for line in program.lines}
-    faulty = {fault.line for fault in parsed.diagnostics if fault.line}
+    faulty = {fault.line for fault in parsed.diagnostics if fault.line and fault.code != Code.EMPTY}
     assert not steps & faulty
     assert heads + len(steps | faulty) == sum(bool(line.strip()) for line in lines)
 

@@ -1,0 +1,52 @@
+"""Where one program of a text ends and the next begins."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+STEP = re.compile(r"\s*[\[<(|]")
+"""How a line begins that is, or tries to be, a step."""
+
+_SENTENCE_ENDS = tuple(".!?:;,\"')…”’")
+_SENTENCE_WORDS = 9
+
+
+@dataclass(slots=True)
+class Splitter:
+    """Tells, line by line, which line begins a program.
+
+    A plain line after a blank one begins the next program once steps were seen. Where none were, a title that nobody
+    wrote steps for must not become a part of its neighbour: two blank lines part them, or one where a description
+    stood already, unless the line reads like a sentence, which a title does not.
+    """
+
+    has_steps: bool = False
+    _header: int = 0
+    _blanks: int = 0
+    _started: bool = False
+
+    def begins(self, line: str, is_step: bool) -> bool:
+        """Take the next line that is not blank; whether it begins a program."""
+        blanks, self._blanks = self._blanks, 0
+        new = not self._started or (not is_step and self._parted(line, blanks))
+        if new:
+            self._started, self._header, self.has_steps = True, 0, False
+        if is_step:
+            self.has_steps = True
+        elif not self.has_steps:
+            self._header += 1
+        return new
+
+    def blank(self) -> None:
+        """Take a blank line."""
+        self._blanks += 1
+
+    def _parted(self, line: str, blanks: int) -> bool:
+        if self.has_steps:
+            return blanks > 0
+        return (blanks > 1 or (blanks == 1 and self._header > 1)) and not _is_sentence(line)
+
+
+def _is_sentence(line: str) -> bool:
+    return line.rstrip().endswith(_SENTENCE_ENDS) or len(line.split()) >= _SENTENCE_WORDS
