@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from hearth.grounding.conditions import CHARACTER, Preconditions
@@ -154,12 +154,13 @@ def _repair(attempt: Attempt) -> Row:
 
 def _texts(steps: tuple[Step, ...]) -> list[str]:
     """Steps as text, unbound; what is done in the tick of the step before begins with a bar."""
-    return [("| " if step.joins else "") + print_step(_unbound(step)) for step in steps]
+    return list(map(_text, steps))
 
 
-def _unbound(step: Step) -> Step:
+@lru_cache(maxsize=1 << 14)
+def _text(step: Step) -> str:
     objects = tuple(ObjectRef(ref.name, ref.instance) for ref in step.objects)
-    return Step(step.action, objects, step.agent, False, step.modifiers)
+    return ("| " if step.joins else "") + print_step(Step(step.action, objects, step.agent, False, step.modifiers))
 
 
 def open_context(job: Job) -> Context:
