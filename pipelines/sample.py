@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import pyarrow.parquet as pq
 
+from hearth.grounding.conditions import Preconditions
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import sample
 from hearth.kb.knowledge import Knowledge
@@ -49,7 +50,10 @@ def process(record: Record, context: Context) -> Iterator[Row | Reject]:
     if stored:
         return (_stored(record, grounding, context) for grounding in stored)
     program = program_of(record)
-    return _once([_sampled(record, program, name, context) for name in context.names])
+    conditions = infer(program, context.homes.knowledge)
+    if isinstance(conditions, Failure):
+        return iter([failed(conditions, program, record["place"], f"in {name}") for name in context.names[:1]])
+    return _once([_sampled(record, program, conditions, name=name, context=context) for name in context.names])
 
 
 def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
@@ -65,8 +69,10 @@ def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
         yield output
 
 
-def _sampled(record: Record, program: Program, name: str, context: Context) -> Row | Reject:
-    drawn = sample(program, context.homes.home(name), context.seed, record["program_id"])
+def _sampled(
+    record: Record, program: Program, conditions: Preconditions, *, name: str, context: Context
+) -> Row | Reject:
+    drawn = sample(program, context.homes.home(name), context.seed, record["program_id"], conditions)
     if isinstance(drawn, Failure):
         return failed(drawn, program, record["place"], f"in {name}")
     environment, execution = drawn

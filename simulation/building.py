@@ -36,6 +36,9 @@ CHARACTER_PROPERTIES = frozenset({"PERSON"})
 LARGEST_MATRIX = 2048
 """Up to so many nodes edges are read through a matrix of n x n, which is faster; beyond, edge by edge."""
 
+FEW_EDGES = 250
+"""Up to so many edges one by one is faster than any matrix."""
+
 LARGEST_TABLE = 100_000
 """Up to this id nodes are looked up in an array."""
 
@@ -156,7 +159,7 @@ def read_edges(edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Ra
     """
     try:
         columns = _columns(edges)
-        if 0 < len(nodes.ids) <= LARGEST_MATRIX:
+        if 0 < len(nodes.ids) <= LARGEST_MATRIX and len(columns[0]) > FEW_EDGES:
             tables, others = _by_matrix(columns, nodes)
         else:
             tables, others = _one_by_one(columns, nodes)

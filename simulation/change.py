@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
+from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
+from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
 
 if TYPE_CHECKING:
     from hearth.simulation.home import Home
@@ -46,7 +48,7 @@ def between(before: World, after: World) -> Change:
         extra = _home_differences(before.home, after.home)
     added: set[Edge] = set()
     removed: set[Edge] = set()
-    for i, relation, j, came in _edge_changes(before, after, extra):
+    for i, relation, j, came in set(_edge_changes(before, after, extra)):
         (added if came else removed).add(Edge(ids[i], relation, ids[j]))
     if before.home.others is not after.home.others:
         past, now = before.home.others, after.home.others
@@ -104,48 +106,83 @@ def _edge_changes(before: World, after: World, extra: int) -> Iterator[tuple[int
     for i in olds | news:
         old, new = olds.get(i), news.get(i)
         if old is not new:
-            past = set(rows.agent_edges(old)) if old else set()
-            now = set(rows.agent_edges(new)) if new else set()
-            yield from ((*edge, True) for edge in now - past)
-            yield from ((*edge, False) for edge in past - now)
+            yield from _agent_changes(old or Agent(i, 1 << i), new or Agent(i, 1 << i))
     if extra or before.moved is not after.moved:
-        for i in _touched(before, after) | set(indices(extra)):
-            yield from _row_changes(before, after, i)
+        keys = _touched(before, after)
+        if extra:
+            keys.update(8 * i + kind for i in indices(extra) for kind in range(len(_KINDS)))
+        for key in keys:
+            yield from _row_changes(before, after, *divmod(key, 8))
+    for i in indices(extra):
+        yield from _door_changes(before.home, after.home, i)
 
 
-def _touched(before: World, after: World) -> set[int]:
-    """Nodes of which some row may differ because something moved."""
-    old, new = before.moved, after.moved
-    gone = (old.on ^ new.on) | (old.inside ^ new.inside) | (old.close ^ new.close) | (old.facing ^ new.facing)
-    keys = {key for key, row in new.extra.items() if old.extra.get(key) != row} | (old.extra.keys() - new.extra.keys())
-    return {key >> 3 for key in keys} | set(indices(gone))
+_OUT = (("CLOSE", 2), ("FACING", 3), ("INSIDE", 5), ("ON", 7), ("HOLDS_RH", 9), ("HOLDS_LH", 10))
+_INTO = (("CLOSE", 2), ("FACING", 4), ("INSIDE", 6), ("ON", 8))
+"""The fields of an agent that hold its edges, by relation."""
+
+
+def _agent_changes(old: Agent, new: Agent) -> Iterator[tuple[int, str, int, bool]]:
+    """What came and went of a character's own edges, both ways."""
+    me = new.index
+    for relation, field in _OUT:
+        past, now = cast(int, old[field]), cast(int, new[field])
+        if past != now:
+            yield from ((me, relation, j, True) for j in indices(now & ~past))
+            yield from ((me, relation, j, False) for j in indices(past & ~now))
+    for relation, field in _INTO:
+        past, now = cast(int, old[field]), cast(int, new[field])
+        if past != now:
+            yield from ((j, relation, me, True) for j in indices(now & ~past))
+            yield from ((j, relation, me, False) for j in indices(past & ~now))
 
 
 Reader = Callable[["World", int], int]
 
-_READERS: tuple[tuple[str, Reader, Reader], ...] = (
-    ("ON", rows.on, rows.bears),
-    ("INSIDE", rows.inside, rows.contents),
-    ("CLOSE", rows.close, rows.close),
-    ("FACING", rows.facing, rows.faced),
+_KINDS: tuple[tuple[str, Reader, bool], ...] = (
+    ("ON", rows.on, True),
+    ("ON", rows.bears, False),
+    ("INSIDE", rows.inside, True),
+    ("INSIDE", rows.contents, False),
+    ("CLOSE", rows.close, True),
+    ("FACING", rows.facing, True),
+    ("FACING", rows.faced, False),
 )
+"""How each kind of row (see `moved`) is read, and whether its edges go out from the row's node."""
+
+_ONE_WAY = ((ON, BEARS), (INSIDE, CONTENTS), (CLOSE,), (FACING, FACED))
+"""The kinds of rows of each relation that `Moved` knows gone nodes of, in its order."""
 
 
-def _row_changes(before: World, after: World, i: int) -> Iterator[tuple[int, str, int, bool]]:
-    new_here, gone_here = i >= len(before.home), i >= len(after.home)
-    for relation, forward, backward in _READERS:
-        old = 0 if new_here else forward(before, i)
-        new = 0 if gone_here else forward(after, i)
-        if old != new:
-            yield from ((i, relation, j, True) for j in indices(new & ~old))
-            yield from ((i, relation, j, False) for j in indices(old & ~new))
-        old = 0 if new_here else backward(before, i)
-        new = 0 if gone_here else backward(after, i)
-        if old != new:
-            yield from ((j, relation, i, True) for j in indices(new & ~old))
-            yield from ((j, relation, i, False) for j in indices(old & ~new))
-    if before.home is not after.home:
-        old = 0 if new_here else before.home.between[i]
-        new = 0 if gone_here else after.home.between[i]
-        yield from ((i, "BETWEEN", j, True) for j in indices(new & ~old))
-        yield from ((i, "BETWEEN", j, False) for j in indices(old & ~new))
+def _touched(before: World, after: World) -> set[int]:
+    """Keys (8 * node + kind) of rows that may differ because something moved.
+
+    Where an edge came or went without its own row being among them, the row of its other end is.
+    """
+    old, new = before.moved, after.moved
+    keys = {key for key, row in new.extra.items() if old.extra.get(key) != row}
+    keys.update(old.extra.keys() - new.extra.keys())
+    for past, now, kinds in zip(old[:4], new[:4], _ONE_WAY, strict=True):
+        if past != now:
+            keys.update(8 * i + kind for i in indices(past ^ now) for kind in kinds)
+    return keys
+
+
+def _row_changes(before: World, after: World, i: int, kind: int) -> Iterator[tuple[int, str, int, bool]]:
+    relation, read, outwards = _KINDS[kind]
+    old = read(before, i) if i < len(before.home) else 0
+    new = read(after, i) if i < len(after.home) else 0
+    if old == new:
+        return
+    for came, mask in ((True, new & ~old), (False, old & ~new)):
+        for j in indices(mask):
+            yield (i, relation, j, came) if outwards else (j, relation, i, came)
+            if kind == CLOSE:
+                yield (j, relation, i, came)
+
+
+def _door_changes(before: Home, after: Home, i: int) -> Iterator[tuple[int, str, int, bool]]:
+    old = before.between[i] if i < len(before) else 0
+    new = after.between[i] if i < len(after) else 0
+    yield from ((i, "BETWEEN", j, True) for j in indices(new & ~old))
+    yield from ((i, "BETWEEN", j, False) for j in indices(old & ~new))
