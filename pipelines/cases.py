@@ -12,7 +12,7 @@ from hearth.pipelines.rows import (
     bindings_of,
     change_of,
     change_row,
-    edge_of,
+    edges_of,
     failure_row,
     node_of,
     node_row,
@@ -103,8 +103,8 @@ def _still(node: Node) -> Node:
 def home_of(environment: Mapping[str, Any], base: Home) -> Home:
     """The home that a row of `tables.ENVIRONMENT` describes."""
     nodes = [node_of(row) for row in environment["added_nodes"]]
-    added = [edge_of(row) for row in environment["added"]]
-    removed = [edge_of(row) for row in environment["removed"]]
+    added = list(edges_of(environment["added"]))
+    removed = list(edges_of(environment["removed"]))
     states: dict[int, set[str]] = {}
     for name, came in (("cleared_states", False), ("set_states", True)):
         for row in environment[name]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from hearth.schemas.rng import derive
 from hearth.version import ACTION_SET, VERSION
@@ -14,11 +15,13 @@ TRAIN = 7
 """Of ten activities, how many are for training (thesis 5.6)."""
 
 
+@lru_cache(maxsize=10_000)
 def activity_id(title: str) -> str:
     """An activity's name from a title as written: lower case, words joined by underscores."""
     return "_".join(re.findall(r"[^\W_]+", title.lower())) or "untitled"
 
 
+@lru_cache(maxsize=10_000)
 def split_of(activity: str, seed: int) -> str:
     """`train` or `test`, by activity, so that what was made of one program stays together."""
     return "train" if derive(seed, "split", activity) % 10 < TRAIN else "test"

@@ -41,7 +41,7 @@ def finish(job: Job, counts: Counts) -> None:
     """
     _check_unique(job.folder)
     told = _activities(job)
-    homes = Homes(job.settings)
+    homes = job.context.homes
     makers: dict[str, Callable[[], Iterable[Row]]] = {
         "activities": told.activity_rows,
         "descriptions": told.description_rows,
