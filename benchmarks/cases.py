@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import random
 import zipfile
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import orjson
 
+from hearth.grounding.binding import Binding, bind
 from hearth.kb import grammar
 from hearth.kb.knowledge import default
+from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
@@ -24,6 +28,8 @@ from hearth.simulation.world import World
 
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", Path(__file__).resolve().parents[2] / "shared/real"))
 SAMPLE = REAL / "activityprograms-sample.zip"
+CROWD = Path(__file__).resolve().parents[1] / "data_raw/crowd/programs.csv"
+TITLE = "Title\n\n\n"
 PROGRAMS = 40
 
 
@@ -50,6 +56,20 @@ def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
         graph = catalog.load_graph(name)
         start = World.start(Home.from_graph(graph, name))
         found += [(graph, _wander(start, random.Random(seed))) for seed in range(2)]
+    return tuple(found)
+
+
+@lru_cache(maxsize=1)
+def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
+    """Crowd-sourced programs of that many steps, their instances counters, with each home that they can be done in."""
+    rows = csv.DictReader(CROWD.read_text("utf-8").splitlines(keepends=True))
+    worlds = [World.start(Home.from_graph(catalog.load_graph(name), name)) for name in catalog.names()]
+    found: list[tuple[World, Program]] = []
+    for row in rows:
+        with suppress(HearthError):
+            program, faults = grammar.check(parse_program(TITLE + row["Answer.program"])[0], default())
+            if len(program.steps) == length and not faults:
+                found += [(world, program) for world in worlds if isinstance(bind(program, world), Binding)]
     return tuple(found)
 
 

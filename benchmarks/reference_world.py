@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from copy import deepcopy
 
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
@@ -55,7 +54,8 @@ class World:
     def copy(self) -> World:
         other = object.__new__(World)
         other.__dict__.update(self.__dict__)
-        other.states, other.to, other.back = deepcopy(self.states), deepcopy(self.to), deepcopy(self.back)
+        other.states = {node: set(states) for node, states in self.states.items()}
+        other.to, other.back = _copied(self.to), _copied(self.back)
         other.origins = dict(self.origins)
         return other
 
@@ -143,3 +143,9 @@ class Options:
     def __init__(self, doors: bool = True, watch_needs_on: bool = True) -> None:
         self.doors = doors
         self.watch_needs_on = watch_needs_on
+
+
+def _copied(relations: dict[str, dict[int, set[int]]]) -> dict[str, dict[int, set[int]]]:
+    return {
+        name: defaultdict(set, {node: set(others) for node, others in rows.items()}) for name, rows in relations.items()
+    }

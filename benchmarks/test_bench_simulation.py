@@ -14,6 +14,7 @@ import reference
 from reference_world import Options
 from reference_world import World as PlainWorld
 
+from hearth.grounding.binding import Binding, bind
 from hearth.schemas.graph import Edge, Node, from_release
 from hearth.simulation.edit import extended
 from hearth.simulation.engine import final, run
@@ -125,6 +126,21 @@ def test_parse_and_build_reference(benchmark):
     data = orjson.dumps(graph)
     note(benchmark, "home")
     benchmark(lambda: PlainWorld(from_release(orjson.loads(data))))
+
+
+@pytest.mark.benchmark(group="binding and running programs of 12 steps")
+def test_bind_and_run(benchmark):
+    items = cases.unbound()
+    assert len(items) > 50
+    note(benchmark, "program", len(items))
+
+    def go() -> None:
+        for world, program in items:
+            found = bind(program, world)
+            assert isinstance(found, Binding)
+            assert run(world, found.apply(program)).executable
+
+    benchmark(go)
 
 
 @pytest.mark.parametrize("limits", [{}, {"only_visible": True}, {"only_reachable": True}], ids=str)
