@@ -247,16 +247,18 @@ class Knowledge:
         """The known names nearest to one that is not known, best first; `kind` is `object` or `action`."""
         from rapidfuzz import process, utils
 
-        names = self._action_spellings if kind == "action" else self._object_spellings
+        names = self.action_spellings if kind == "action" else self.object_spellings
         close = process.extract(key_of(name), names, processor=utils.default_process, limit=5, score_cutoff=65)
         return tuple(dict.fromkeys(names[key] for _, _, key in close))[:3]
 
     @cached_property
-    def _action_spellings(self) -> dict[str, str]:
+    def action_spellings(self) -> dict[str, str]:
+        """Every spelling of an action, as `key_of` gives it -> the action's name."""
         return {key: action.name for key, action in self._action_names.items()}
 
     @cached_property
-    def _object_spellings(self) -> dict[str, str]:
+    def object_spellings(self) -> dict[str, str]:
+        """Every spelling of an object, as `key_of` gives it -> its class."""
         return {key: thing.name for key, thing in self._object_names.items()}
 
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from hearth.pipelines.files import value_digest
 from hearth.pipelines.parts import Row
-from hearth.pipelines.readers import crowd, release, text
-from hearth.pipelines.readers.item import Item, Source, read_refused, refused
-from hearth.pipelines.readers.recognise import recognise
+from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
+from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
+from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, Recognised, recognise
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import labelled, salt
@@ -21,6 +21,13 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
     crowd.NAME: crowd.scan,
     text.NAME: text.scan,
+    spoken.NAME: spoken.scan,
+    LISTED: spoken.scan_list,
+    ours.NAME: ours.scan,
+    DOCUMENT: ours.scan_document,
+    published.NAME: published.scan,
+    sketches.NAME: sketches.scan,
+    scenes.NAME: scenes.scan,
 }
 """What finds the records of a file or folder, by reader."""
 
@@ -28,11 +35,16 @@ READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]]
     release.NAME: lambda item, salt: release.read(item),
     crowd.NAME: crowd.read,
     text.NAME: lambda item, salt: text.read(item),
+    spoken.NAME: lambda item, salt: spoken.read(item),
+    ours.NAME: lambda item, salt: ours.read(item),
+    published.NAME: lambda item, salt: published.read(item),
+    sketches.NAME: lambda item, salt: sketches.read(item),
+    scenes.NAME: lambda item, salt: scenes.read(item),
     "refused": lambda item, salt: read_refused(item),
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {release.NAME: 4}
+WEIGHTS = {release.NAME: 4, scenes.NAME: 16}
 """What a record counts towards filling a partition, where it brings more than words."""
 
 _FULL = 128
@@ -46,25 +58,36 @@ def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
             if entry.refusal:
                 yield source.label, refused(entry.inside, entry.refusal)
                 continue
-            for item in SCANNERS[entry.reader](entry.path, entry.inside):
+            for item in _scanned(entry):
                 yield source.label, _first(item, seen)
+
+
+def _scanned(entry: Recognised) -> Iterator[Item]:
+    """What a reader finds; where a packed file breaks off, what came before is kept and the break is refused."""
+    try:
+        yield from SCANNERS[entry.reader](entry.path, entry.inside)
+    except DamagedError as error:
+        yield refused(entry.inside, Reject.because([f.at(entry.inside) for f in error.diagnostics]), f"{entry.inside}~")
 
 
 def _first(item: Item, seen: set[bytes]) -> Item:
     if item.reader == "refused":
         return item
-    for twin, what in ((item.record_id, "this id"), (_answer(item), "this answer of the same worker")):
+    what = "this text" if item.reader == spoken.NAME else "this answer of the same worker"
+    for twin, twins in ((item.record_id, "this id"), (_answer(item), what)):
         digest = twin and _short(twin)
         if digest and digest in seen:
             told = {"file": item.place, "line": item.line, "found": item.record_id}
-            return refused(item.place, Reject.of(Code.DUPLICATE, f"{what} was read before", **told), item.record_id)
+            return refused(item.place, Reject.of(Code.DUPLICATE, f"{twins} was read before", **told), item.record_id)
         if digest:
             seen.add(digest)
     return item
 
 
 def _answer(item: Item) -> Any:
-    """What a crowd worker's answer says, its own id left out; None for other records."""
+    """What makes two records one: a crowd worker's answer, its own id left out, or steps in words; else None."""
+    if item.reader == spoken.NAME:
+        return [spoken.NAME, item.value["text"]]
     if item.reader != crowd.NAME:
         return None
     return {name: cell for name, cell in item.value["cells"].items() if name != "HITId"}
@@ -94,7 +117,7 @@ def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[t
     """The first so many programs, and at most as many of what is no program; refused items do not count."""
     counts = {True: 0, False: 0}
     for source, item in found:
-        is_program = not (item.reader == crowd.NAME and item.value["stage"] == 1)
+        is_program = not (item.reader == crowd.NAME and item.value["stage"] == 1) and item.reader != sketches.NAME
         if limit is not None and item.reader != "refused":
             if counts[is_program] >= limit:
                 if is_program:
@@ -138,7 +161,7 @@ STAGE = Stage(
     name="ingest",
     tables={"": INGESTED},
     process=process,
-    uses=("pipelines/ingest.py", "pipelines/readers", "pipelines/rows.py"),
+    uses=("pipelines/ingest.py", "pipelines/readers", "pipelines/spoken.py", "pipelines/rows.py"),
     settings=("limit",),
     open=lambda job: salt(job.settings),
     prepare=prepare,

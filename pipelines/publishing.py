@@ -48,7 +48,7 @@ def finish(job: Job, counts: Counts) -> None:
         "homes": lambda: _homes(job, homes),
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
-        "sketches": lambda: (),
+        "sketches": lambda: _sketches(job),
         "frames": lambda: _frames(job),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
         "rejects": lambda: _rejects(job),
@@ -156,12 +156,22 @@ def _activities(job: Job) -> _Told:
     told = _Told()
     for path in _parts(job, "ingest"):
         for row in read_rows(path, list(_WORDS)):
-            told.describe(row)
+            if row["kind"] in ("program", "description"):
+                told.describe(row)
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
             told.count(row)
     told.gather()
     return told
+
+
+def _sketches(job: Job) -> Iterator[Row]:
+    """What was ingested as sketches: the program each is of goes by the id of its description column."""
+    for path in _parts(job, "ingest"):
+        for row in read_rows(path, ["kind", "description_id", "keep", "text"]):
+            if row["kind"] == "sketch":
+                steps = row["text"].splitlines()
+                yield {"program_id": row["description_id"], "keep": row["keep"], "steps": steps}
 
 
 def _manifest(job: Job, stage: str) -> Manifest:

@@ -10,8 +10,10 @@ from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import special
 from hearth.pipelines.parts import Row
+from hearth.pipelines.readers import spoken
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import binding_rows, step_rows, warning_row
+from hearth.pipelines.spoken import parse_spoken
 from hearth.pipelines.stage import Job, Record, Stage
 from hearth.pipelines.surroundings import knowledge, overlays
 from hearth.schemas.errors import Diagnostic
@@ -25,7 +27,8 @@ _KEPT = tuple(name for name in VALIDATED.names if name not in ("steps", "groundi
 
 def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject:
     """Check one program, and each of its groundings; a grounding at fault is refused alone."""
-    program, faults, warnings = checked(record["text"], record["line"], record["place"], known)
+    check = checked_words if record["origin"] == spoken.NAME else checked
+    program, faults, warnings = check(record["text"], record["line"], record["place"], known)
     if faults:
         return Reject(faults)
     rejects: list[Reject] = []
@@ -65,6 +68,16 @@ def checked(
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
     return replace(program, lines=lines), faults, () if faults else tuple(_warnings(program, known, lines, place))
+
+
+def checked_words(
+    text: str, before: int, place: str, known: Knowledge
+) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """`checked` for steps in words; what was only nearly understood is a warning with its similarity."""
+    heard = parse_spoken(text, before, place, known)
+    faults = heard.faults or grammar.affordances(heard.program, known, place)
+    warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place))
+    return heard.program, faults, () if faults else warnings
 
 
 def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place: str) -> Iterator[Diagnostic]:
@@ -131,6 +144,7 @@ STAGE = Stage(
         "data_raw/crowd/special_blocks.yaml",
         "pipelines/validate.py",
         "pipelines/special.py",
+        "pipelines/spoken.py",
         "pipelines/rows.py",
     ),
     open=open_knowledge,

@@ -96,7 +96,7 @@ REPAIR: Final = _struct(
 
 _NAMED = [
     _column("program_id", TEXT, "stable id of the program"),
-    _column("origin", TEXT, "crowd, release, text, synthetic or augmented"),
+    _column("origin", TEXT, "crowd, release, text, spoken, records, sketches, scenes, synthetic or augmented"),
     _column("source", TEXT, "the source it came from, as named in the manifest"),
     _column("place", TEXT, "file and line inside the source"),
     _column("description_id", TEXT, "the description it was written for"),
@@ -111,7 +111,7 @@ _NAMED = [
 
 INGESTED: Final = pa.schema(
     [
-        _column("kind", TEXT, "program, or description where only words were given"),
+        _column("kind", TEXT, "program, description where only words were given, sketch, or scene for a graph alone"),
         *_NAMED,
         _column("text", TEXT, "the program as collected; null for a description"),
         _column("line", COUNT, "file line of the text's first line, less one"),
@@ -121,6 +121,7 @@ INGESTED: Final = pa.schema(
             "the program as grounded in a home, with the start graph and what the stored final graph changes",
         ),
         _column("conditions", pa.list_(CONDITION), "preconditions that came with the program"),
+        _column("keep", pa.list_(pa.bool_()), "for each step of the program a sketch is of, whether it is kept"),
     ]
 )
 

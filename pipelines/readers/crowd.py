@@ -9,10 +9,9 @@ import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from hearth.pipelines.readers.item import LARGEST_FILE, Item, fault_of, lines, refused
+from hearth.pipelines.readers.item import LARGEST_FILE, Item, Place, fault_of, lines, refused
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
@@ -65,7 +64,7 @@ def header_of(line: str) -> Header | None:
     return Header(columns, delimiter, stage, tuple(name for name in wanted if name not in names))
 
 
-def scan(path: Path, place: str) -> Iterator[Item]:
+def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each answer of a batch."""
     rows = _Rows(path)
     first = next(rows, None)
@@ -109,7 +108,7 @@ def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, pla
 class _Rows(Iterator[tuple[int, str]]):
     """A file's lines with their numbers, some of which can be read again."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Place) -> None:
         self._source = enumerate((line for line, _ in lines(path)), 1)
         self._again: list[tuple[int, str]] = []
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from hearth.pipelines.readers.packed import DamagedError, Place, raw, size_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
@@ -20,6 +21,23 @@ LARGEST_FILE = 256_000_000
 """Bytes a member of an archive may unpack to."""
 
 _MARKS = ((b"\xff\xfe", "utf-16-le", 2), (b"\xfe\xff", "utf-16-be", 2), (b"\xef\xbb\xbf", "utf-8", 3))
+
+
+__all__ = [
+    "LARGEST_FILE",
+    "LONGEST_LINE",
+    "DamagedError",
+    "Item",
+    "Place",
+    "Source",
+    "fault_of",
+    "lines",
+    "opened",
+    "read_refused",
+    "refused",
+    "size_of",
+    "suffixless",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +90,25 @@ def read_refused(item: Item) -> Reject:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[tuple[BinaryIO, str]]:
-    """A file's bytes after its byte-order mark, and the encoding that the mark names (else UTF-8)."""
-    with path.open("rb") as file:
-        start = file.read(4)
+def opened(path: Place) -> Iterator[tuple[BinaryIO, str]]:
+    """A file's bytes, unpacked, after its byte-order mark, and the encoding that the mark names (else UTF-8).
+
+    Raises:
+        DamagedError: while reading, where a packed file is broken or unpacks to far too much.
+    """
+    with raw(path) as file:
+        start = file.peek(4)[:4]  # type: ignore[attr-defined]
         encoding, skip = next(((name, size) for mark, name, size in _MARKS if start.startswith(mark)), ("utf-8", 0))
-        file.seek(skip)
+        file.read(skip)
         yield file, encoding
 
 
-def lines(path: Path) -> Iterator[tuple[str, int]]:
+def suffixless(name: str) -> str:
+    """A file's name without its suffixes: `home.json.gz` is `home`."""
+    return name.partition(".")[0] or name
+
+
+def lines(path: Place) -> Iterator[tuple[str, int]]:
     """Each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
 
     Bytes that are no text become lone surrogates, which `fault_of` finds; no line is lost for the sake of another.

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import zipfile
 from collections.abc import Iterator
-from pathlib import Path
-from typing import NamedTuple
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
 
 from hearth.pipelines.files import walk
-from hearth.pipelines.readers import crowd, release
-from hearth.pipelines.readers.item import lines
+from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
+from hearth.pipelines.readers.document import looks_like_json
+from hearth.pipelines.readers.item import LARGEST_FILE, DamagedError, Place, lines, opened, size_of
+from hearth.pipelines.readers.packed import GZIP, ZSTD, Member, refusal_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -22,8 +25,6 @@ _MAGIC: dict[bytes, str] = {
     b"RIFF": "a picture, sound or video",
     b"%PDF": "a PDF document",
     b"PAR1": "a Parquet file",
-    b"\x1f\x8b": "a gzip file",
-    b"\x28\xb5\x2f\xfd": "a zstd file",
     b"SQLite": "an SQLite database",
     b"\x7fELF": "a program of this machine",
     b"\xd0\xcf\x11\xe0": "an old Office document",
@@ -32,13 +33,25 @@ _MAGIC: dict[bytes, str] = {
 _ASIDE = frozenset({".md", ".yaml", ".yml", ".rst"})
 """Notes and settings that stand beside data; what a folder holds of them is not read as data."""
 
-FORMS = "a release (zip or folder), crowd-sourcing CSV, or program text"
+_PACKED = frozenset({".gz", ".zst"})
+_TABLES = frozenset({".csv", ".tsv"})
+_JSON = frozenset({".json", ".jsonl", ".ndjson"})
+_DATA = _TABLES | _JSON | {"", ".txt", ".text", ".prog"}
+"""Files that an archive is read for; what else it holds (pictures, notes) stands beside the data."""
+
+_LOOKED_AT = 60
+_LONGEST = 100_000
+
+FORMS = (
+    "a release (zip or folder), crowd-sourcing CSV, program text, numbered steps in words, JSON or JSON Lines of "
+    "records, sketches, a scene graph, or a dataset; packed as .zip, .gz or .zst or not"
+)
 
 
 class Recognised(NamedTuple):
     """A file or folder and the reader it is for; `refusal` where there is none."""
 
-    path: Path
+    path: Place
     inside: str
     reader: str
     refusal: Reject | None = None
@@ -53,7 +66,10 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
     if not path.exists():
         raise HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path))
     if path.is_file():
-        yield _named_file(path, label)
+        yield from _named_file(path, label)
+        return
+    if published.names_it(path):
+        yield Recognised(path, label, published.NAME)
         return
     files = [file.relative_to(path).as_posix() for file in walk(path)]
     if any(map(release.names_it, files)):
@@ -73,50 +89,137 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
 def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
     for name in names:
         if Path(name).suffix.lower() not in _ASIDE:
-            yield _file(path / name, f"{label}/{name}")
+            yield from _file(path / name, f"{label}/{name}")
 
 
-def _named_file(path: Path, label: str) -> Recognised:
-    """A file that was asked for by name: what can't be read in it is an error, not a reject."""
-    found = _file(path, label)
-    if found.refusal and path.stat().st_size:
-        raise HearthError(tuple(fault.at(str(path)) for fault in found.refusal.diagnostics))
-    return found
+def _named_file(path: Path, label: str) -> Iterator[Recognised]:
+    """A file that was asked for by name: where nothing in it can be read, that is an error, not a reject."""
+    found = list(_file(path, label))
+    refused = [entry.refusal for entry in found if entry.refusal]
+    if len(refused) == len(found) and path.stat().st_size:
+        raise HearthError(fault.at(str(path)) for refusal in refused[:1] for fault in refusal.diagnostics)
+    yield from found
 
 
-def _file(path: Path, place: str) -> Recognised:
+def _file(path: Path, place: str) -> Iterator[Recognised]:
     with path.open("rb") as file:
         start = file.read(8)
     if start.startswith(b"PK"):
-        return _archive(path, place)
+        yield from _archive(path, place)
+        return
     kind = next((kind for magic, kind in _MAGIC.items() if start.startswith(magic)), None)
-    if kind:
-        return _refused(path, place, kind)
-    line = next((line for line, _ in lines(path)), "")
+    yield _refused(path, place, kind) if kind else _text(path, place)
+
+
+def _text(path: Place, place: str) -> Recognised:
+    """What a text is, packed or not, by its first lines."""
+    try:
+        first = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
+    except DamagedError as error:
+        return Recognised(path, place, "", Reject.because(error.diagnostics, place))
+    told = [line for line in first if line.strip()]
+    line = told[0] if told else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
-    if line.lstrip()[:1] in ("{", "[") and path.suffix.lower() in (".json", ".jsonl"):
-        return _refused(path, place, "a JSON file that is no release")
-    if path.suffix.lower() in (".csv", ".tsv"):
+    if looks_like_json(line):
+        return _json(path, place, told)
+    suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
+    suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
+    if suffix in _TABLES:
         return _refused(path, place, "a table whose first line names none of a batch's columns", Code.BAD_TABLE)
-    return Recognised(path, place, "text")
+    if suffix in _JSON and told:
+        return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
+    return Recognised(path, place, spoken.NAME if told and _is_spoken(told) else text.NAME)
 
 
-def _archive(path: Path, place: str) -> Recognised:
+def _is_spoken(told: list[str]) -> bool:
+    from hearth.pipelines.spoken import looks_spoken
+
+    return looks_spoken(told)
+
+
+def _json(path: Place, place: str, told: list[str]) -> Recognised:
+    """Which of the JSON forms it is: lines where the first is a whole value and others follow, else one document."""
+    from hearth.pipelines.readers.document import document, parsed
+
+    first = parsed(told[0], place, 1)
+    several = len(told) > 1 and not isinstance(first, Reject)
+    if several or (not isinstance(first, Reject) and size_of(path) > LARGEST_FILE):
+        return Recognised(path, place, ours.NAME)
+    try:
+        value = document(path, place)
+    except DamagedError as error:
+        value = Reject.because(error.diagnostics, place)
+    if isinstance(value, Reject):
+        return Recognised(path, place, "", value)
+    reader = _form_of(value)
+    return Recognised(path, place, reader) if reader else _refused(path, place, "JSON of no form that is known")
+
+
+def _form_of(value: Any) -> str:
+    if isinstance(value, list):
+        if value and isinstance(value[0], str):
+            return LISTED
+        return DOCUMENT if not value or isinstance(value[0], dict) else ""
+    if not isinstance(value, dict):
+        return ""
+    if all(isinstance(value.get(name), list) for name in sketches.COLUMNS):
+        return sketches.NAME
+    graph = value.get("init_graph", value)
+    if isinstance(graph, dict) and {"nodes", "edges"} <= graph.keys():
+        return scenes.NAME
+    return DOCUMENT if value.keys() & {"steps", "text", "program", "description", "title"} else ""
+
+
+LISTED = "spoken list"
+DOCUMENT = "records document"
+"""Readers' names for what is scanned otherwise and read alike."""
+
+
+def _archive(path: Path, place: str) -> Iterator[Recognised]:
     try:
         with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
-    except (zipfile.BadZipFile, EOFError, NotImplementedError) as error:
+            infos = [info for info in archive.infolist() if not info.is_dir()]
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError) as error:
         message = f"a damaged or truncated archive: {error}"
         reject = Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion="download it again")
+        yield Recognised(path, place, "", reject)
+        return
+    if any(release.names_it(info.filename) for info in infos):
+        yield Recognised(path, place, release.NAME)
+        return
+    found = [_member(path, info, f"{place}/{info.filename}") for info in infos if _is_data(info.filename)]
+    if found:
+        yield from found
+        return
+    example = f", for example `{infos[0].filename}`" if infos else ""
+    message = f"an archive of {len(infos)} files without any of the release's folders or other data{example}"
+    suggestion = f"it needs one of the folders {', '.join(sorted(release.FOLDERS))}, or .csv, .json, .jsonl or .txt"
+    yield Recognised(path, place, "", Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion=suggestion))
+
+
+def _is_data(name: str) -> bool:
+    path = PurePosixPath(name)
+    hidden = any(part.startswith((".", "__MACOSX")) and part != ".." for part in path.parts)
+    return not hidden and path.suffix.lower() in _DATA
+
+
+def _member(path: Path, info: zipfile.ZipInfo, place: str) -> Recognised:
+    refusal = refusal_of(info, place)
+    if refusal:
+        return Recognised(path, place, "", refusal)
+    member = Member(path, info.filename)
+    try:
+        with opened(member) as (file, _):
+            start = file.peek(8)[:8]  # type: ignore[attr-defined]
+    except (HearthError, OSError, RuntimeError, NotImplementedError) as error:
+        reject = Reject.of(Code.BAD_ARCHIVE, f"can't be unpacked: {error}", file=place, suggestion="download it again")
         return Recognised(path, place, "", reject)
-    if any(map(release.names_it, names)):
-        return Recognised(path, place, release.NAME)
-    example = f", for example `{names[0]}`" if names else ""
-    message = f"an archive of {len(names)} files without any of the release's folders{example}"
-    suggestion = f"it needs one of the folders {', '.join(sorted(release.FOLDERS))}"
-    return Recognised(path, place, "", Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion=suggestion))
+    kind = next((kind for magic, kind in _MAGIC.items() if start.startswith(magic)), None)
+    if start.startswith((b"PK", GZIP, ZSTD)):
+        kind = "a packed file inside an archive"
+    return _refused(member, place, kind) if kind else _text(member, place)
 
 
-def _refused(path: Path, place: str, kind: str, code: Code = Code.UNSUPPORTED_FILE) -> Recognised:
+def _refused(path: Place, place: str, kind: str, code: Code = Code.UNSUPPORTED_FILE) -> Recognised:
     return Recognised(path, place, "", Reject.of(code, kind, file=place, suggestion=f"give {FORMS}"))

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -14,6 +12,7 @@ import orjson
 
 from hearth.pipelines.files import file_digest, walk
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
+from hearth.pipelines.readers.packed import archive, leaves
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -74,6 +73,10 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         located = _located(name)
         if located is None or located[0] == "states":
             continue
+        if leaves(name):
+            message = f"`{name[:100]}` leaves the archive"
+            yield refused(f"{place}/{name}", Reject.of(Code.BAD_ARCHIVE, message, file=place, found=name[:200]))
+            continue
         kind, home, key = located
         members = programs.setdefault(key, {})
         if kind in _IN_HOMES:
@@ -106,25 +109,6 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
         for info in archive(path).infolist():
             if not info.is_dir():
                 yield info.filename, f"{info.CRC:08x}"
-
-
-@lru_cache(maxsize=4)
-def _archive(path: str, changed: int) -> zipfile.ZipFile:
-    try:
-        return zipfile.ZipFile(path)
-    except (zipfile.BadZipFile, EOFError, NotImplementedError) as error:
-        raise HearthError.of(
-            Code.BAD_ARCHIVE, f"a damaged or truncated archive: {error}", file=path, suggestion="download it again"
-        ) from error
-
-
-def archive(path: Path) -> zipfile.ZipFile:
-    """The archive at a path, open once a process.
-
-    Raises:
-        HearthError: BAD_ARCHIVE.
-    """
-    return _archive(str(path), path.stat().st_mtime_ns)
 
 
 def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:

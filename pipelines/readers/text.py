@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from hearth.pipelines.readers.item import Item, fault_of, lines, refused
+from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused, size_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.blocks import STEP, Splitter
 from hearth.schemas.failures import Code
@@ -23,7 +22,7 @@ class _Block:
     longest: int = 0
 
 
-def scan(path: Path, place: str) -> Iterator[Item]:
+def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a file.
 
     What begins the next program is told by `hearth.schemas.blocks`; a title without steps is a record of its own.
@@ -34,7 +33,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}#{number}"
         yield _item(block, record_id, place)
     if not found:
-        reason = "nothing to read" if path.stat().st_size else "an empty file"
+        reason = "nothing to read" if size_of(path) else "an empty file"
         suggestion = "write a title, a blank line, then one [Step] a line"
         yield refused(place, Reject.of(Code.EMPTY, reason, file=place, suggestion=suggestion))
 
@@ -58,7 +57,7 @@ def _item(block: _Block, record_id: str, place: str) -> Item:
     return Item(record_id, NAME, place, {"text": text + "\n", "line": block.first - 1})
 
 
-def _blocks(path: Path) -> Iterator[_Block]:
+def _blocks(path: Place) -> Iterator[_Block]:
     block: _Block | None = None
     splitter = Splitter()
     for number, (line, length) in enumerate(lines(path), 1):

@@ -65,7 +65,7 @@ def test_strict_makes_rejects_fatal(write, tmp_path):
 def test_an_archive_without_the_folders(tmp_path):
     path = tmp_path / "other.zip"
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("a/b.txt", "c")
+        archive.writestr("a/b.jpg", "c")
     result = ingest(tmp_path, path)
     assert result.exit_code == 1
     assert "needs one of the folders" in json.loads(result.stdout)["errors"][0]["suggestion"]

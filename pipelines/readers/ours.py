@@ -1,0 +1,130 @@
+"""Records of our own schema as JSON: a line each (JSON Lines), a list, or one alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hearth.pipelines.readers import spoken
+from hearth.pipelines.readers.document import document, parsed
+from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
+from hearth.pipelines.readers.text import header
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.blocks import STEP
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.syntax import normal_name, print_lines
+
+NAME = "records"
+
+_WORDS = ("title", "description", "scene", "worker", "platform", "description_id")
+_FORM = 'a record is {"title": ..., "description": ..., "steps": ["[Walk] <bed> (1)", ...]}, or has `text` for `steps`'
+_ORIGINS = frozenset({"crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
+
+
+def scan(path: Place, place: str) -> Iterator[Item]:
+    """One item for each line that is not blank."""
+    for number, (line, _) in enumerate(lines(path), 1):
+        if line.strip():
+            fault = fault_of(line, place, number)
+            value = Reject((fault,)) if fault else parsed(line, place, number)
+            yield _item(value, place, number, f"{place}:{number}")
+
+
+def scan_document(path: Place, place: str) -> Iterator[Item]:
+    """One item for each entry of a list, or for the one record of an object."""
+    value = document(path, place)
+    if isinstance(value, Reject) or not isinstance(value, list):
+        yield _item(value, place, 1, place)
+        return
+    for number, entry in enumerate(value, 1):
+        yield _item(entry, f"{place}[{number}]", 0, f"{place}[{number}]")
+
+
+def _item(value: Any, place: str, line: int, name: str) -> Item:
+    if isinstance(value, Reject):
+        return refused(place, value, line=line)
+    if isinstance(value, str):
+        return spoken.checked(value, 1, f"{spoken.NAME}:{name}", name)
+    if not isinstance(value, dict):
+        kind = type(value).__name__
+        return refused(
+            place, Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
+        )
+    own = value.get("program_id") or value.get("id")
+    return Item(str(own) if own else f"{NAME}:{name}", NAME, place, value, line=line)
+
+
+def read(item: Item) -> dict[str, Any] | Reject:
+    """The record of an item, in the columns of `tables.INGESTED`."""
+    value: Mapping[str, Any] = item.value
+    try:
+        return _row(item, value)
+    except (TypeError, ValueError, KeyError, AttributeError) as error:
+        message = f"not a record of ours: {error}"
+        return Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)
+
+
+def _row(item: Item, value: Mapping[str, Any]) -> dict[str, Any] | Reject:
+    words = {name: _word(value, name) for name in _WORDS}
+    text, is_spoken = _text(value, words)
+    kind = "program" if text else "description"
+    if not text and not words["description"]:
+        message = "neither steps nor a description"
+        return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
+    title, description = header(text) if text and not is_spoken and "steps" not in value else ("", "")
+    origin = _word(value, "origin") or NAME
+    return {
+        "kind": kind,
+        "program_id": item.record_id,
+        "origin": spoken.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
+        "place": item.place,
+        **words,
+        "title": words["title"] or title,
+        "description": words["description"] or description,
+        "description_id": words["description_id"] or item.record_id,
+        "rooms": _quantities(value.get("rooms")),
+        "props": _quantities(value.get("props")),
+        "text": text or None,
+        "line": max(item.line - 1, 0),
+    }
+
+
+def _word(value: Mapping[str, Any], name: str) -> str | None:
+    found = value.get(name)
+    if found is not None and not isinstance(found, str):
+        raise TypeError(f"`{name}` is {type(found).__name__}, not text")
+    return found.strip() if found else None
+
+
+def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool]:
+    """The program's text, and whether its steps are in words."""
+    steps = value.get("steps")
+    if steps is None:
+        text = _word(value, "text") or _word(value, "program") or ""
+        listed = text.split("\n")
+    elif isinstance(steps, list) and all(isinstance(step, str) for step in steps):
+        listed, text = steps, "\n".join(steps)
+    elif isinstance(steps, list):
+        return "".join(f"{line}\n" for line in print_lines(Program(steps=tuple(map(_step, steps))))), False
+    else:
+        raise TypeError(f"`steps` is {type(steps).__name__}, not a list")
+    is_spoken = bool(text.strip()) and not any(STEP.match(line) for line in listed)
+    if is_spoken and steps is not None:
+        numbered = [f"Step {number}: {' '.join(step.split())}" for number, step in enumerate(listed, 1)]
+        text = "\n".join([f"Task: {words['title'] or 'Untitled'}", words["description"] or "", *numbered])
+    return (text.rstrip("\n") + "\n" if text.strip() else ""), is_spoken
+
+
+def _step(value: Mapping[str, Any]) -> Step:
+    """A step as `tables.STEP` has it."""
+    objects = tuple(
+        ObjectRef(normal_name(str(ref["name"])), int(ref.get("instance") or 1), None)
+        for ref in value.get("objects") or ()
+    )
+    modifiers = tuple((str(pair["name"]), str(pair["value"])) for pair in value.get("modifiers") or ())
+    return Step(str(value["action"]), objects, int(value.get("agent") or 0), bool(value.get("joins")), modifiers)
+
+
+def _quantities(found: Any) -> list[dict[str, Any]]:
+    return [{"name": normal_name(str(one["name"])), "quantity": int(one.get("quantity") or 1)} for one in found or ()]

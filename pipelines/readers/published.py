@@ -1,0 +1,66 @@
+"""A published dataset of ours: its original programs and the descriptions nobody wrote a program for.
+
+Programs that a build made of others (augmented ones) are left to the next build to make.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hearth.pipelines.files import read_json
+from hearth.pipelines.readers import ours
+from hearth.pipelines.readers.item import Item
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import program_of
+from hearth.schemas.syntax import print_lines
+
+NAME = "published"
+
+_COLUMNS = [
+    "program_id", "origin", "description_id", "parent_id", "title", "description", "steps", "rooms", "props",
+    "worker", "platform",
+]  # fmt: skip
+_ROWS = 1_000
+
+
+def names_it(path: Path) -> bool:
+    """Whether a folder is a dataset."""
+    manifest = read_json(path / "manifest.json")
+    return isinstance(manifest, dict) and manifest.get("stage") == "publish"
+
+
+def scan(path: Path, place: str) -> Iterator[Item]:
+    """One item for each original program, then one for each description without any."""
+    scenes = {row["description_id"]: row["scene"] for row in _rows(path, "descriptions", ["description_id", "scene"])}
+    for row in _rows(path, "programs", _COLUMNS):
+        if row["parent_id"] is None:
+            row["scene"] = scenes.get(row["description_id"])
+            yield Item(row["program_id"], NAME, f"{place}/programs", row)
+    for row in _rows(path, "descriptions", None):
+        if not row["programs"]:
+            told = {key: row[key] for key in ("title", "description", "scene", "origin", "worker", "platform")}
+            value = {**told, "description_id": row["description_id"]}
+            yield Item(row["description_id"], NAME, f"{place}/descriptions", value)
+
+
+def _rows(path: Path, table: str, columns: list[str] | None) -> Iterator[dict[str, Any]]:
+    import pyarrow.parquet as pq
+
+    for file in sorted((path / table).glob("*.parquet")):
+        for batch in pq.ParquetFile(file).iter_batches(_ROWS, columns=columns):
+            yield from batch.to_pylist()
+
+
+def read(item: Item) -> dict[str, Any] | Reject:
+    """The record of a row."""
+    value = item.value
+    if "steps" in value:
+        program = program_of({**value, "steps": value["steps"]})
+        value = {**value, "text": "".join(f"{line}\n" for line in print_lines(program))}
+        del value["steps"]
+    row = ours.read(Item(item.record_id, ours.NAME, item.place, value))
+    if isinstance(row, dict):
+        row["origin"] = item.value["origin"]
+    return row

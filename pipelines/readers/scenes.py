@@ -1,0 +1,46 @@
+"""Scene graphs alone: a home as the release writes it, without any program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePath
+from typing import Any
+
+from hearth.pipelines.readers.document import document
+from hearth.pipelines.readers.item import Item, Place, refused, suffixless
+from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import graph_row
+from hearth.schemas.errors import HearthError
+from hearth.schemas.graph import from_release
+
+NAME = "scenes"
+
+
+def scan(path: Place, place: str) -> Iterator[Item]:
+    """One item: the graph of the file, or the first one of a pair."""
+    value = document(path, place)
+    if isinstance(value, Reject):
+        yield refused(place, value)
+        return
+    graph = value.get("init_graph", value)
+    yield Item(f"{NAME}:{place}", NAME, place, graph)
+
+
+def read(item: Item) -> dict[str, Any] | Reject:
+    """The record of a scene: the graph, under the file's name as that of a home."""
+    try:
+        graph = graph_row(from_release(item.value, item.place))
+    except HearthError as error:
+        return Reject.because(error.diagnostics, item.place)
+    name = suffixless(PurePath(item.place).name)
+    return {
+        "kind": "scene",
+        "program_id": item.record_id,
+        "origin": NAME,
+        "place": item.place,
+        "description_id": item.record_id,
+        "title": name,
+        "description": "",
+        "groundings": [{"home": name, "text": "", "start": graph, "final": None}],
+        "line": 0,
+    }
