@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 from hearth.grounding.sampling import Environment
 from hearth.pipelines.rows import (
@@ -19,7 +19,7 @@ from hearth.pipelines.rows import (
     program_of,
     tick_rows,
 )
-from hearth.pipelines.surroundings import RULES, Homes
+from hearth.pipelines.surroundings import RULES
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.change import Change
@@ -123,7 +123,14 @@ def _without(home: Home, gone: frozenset[int]) -> Home:
     return Home.from_graph(EnvironmentGraph(nodes, edges), home.name, home.knowledge)
 
 
-def start_of(case: Mapping[str, Any], homes: Homes) -> World:
+class Source(Protocol):
+    """Where homes come from: a build's, or a dataset's own."""
+
+    def home(self, name: str) -> Home:
+        """The home that environments of that name differ from."""
+
+
+def start_of(case: Mapping[str, Any], homes: Source) -> World:
     """The world that a case starts in."""
     return World.start(home_of(case["environment"], homes.home(case["home"])))
 
@@ -139,13 +146,13 @@ def run_row(execution: Execution, rules: str) -> Row:
     }
 
 
-def rerun(case: Mapping[str, Any], homes: Homes) -> Execution:
+def rerun(case: Mapping[str, Any], homes: Source) -> Execution:
     """Run a case again, from nothing but its row and its home."""
     program = program_of(case, bindings_of(case["bindings"]))
     return run(start_of(case, homes), program, RULES[case["rules"]])
 
 
-def difference_on_replay(case: Mapping[str, Any], homes: Homes) -> str:
+def difference_on_replay(case: Mapping[str, Any], homes: Source) -> str:
     """How running a case again differs from what its row says; empty when it does not."""
     execution = rerun(case, homes)
     if failure_row(execution.failure) != case["failure"]:

@@ -1,0 +1,35 @@
+"""`verify`: is a dataset what it says it is?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hearth.commands import output
+
+Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
+
+
+def verify(dataset: Folder, as_json: output.Json = False) -> None:
+    """Check a dataset: hashes, columns, counts, references, and every execution run again from what is on disk.
+
+    Exit status 1 where anything is wrong, each fault with its file.
+
+    \b
+    Example:
+      python cli.py verify data_out
+    """
+    from hearth.pipelines.verify import verify as checked
+
+    found = checked(dataset)
+    if as_json:
+        told = {"files": found.files, "rows": found.rows, "executions": found.executions}
+        output.emit({**told, "faults": [output.diagnostic_json(fault) for fault in found.faults]})
+    else:
+        output.report(found.faults)
+        ran = f"{output.counted(found.executions, 'execution')} run again"
+        said = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
+        print(f"{said}: {output.counted(len(found.faults), 'fault')}" if found.faults else f"{said}: all as it says")
+    output.status(len(found.faults), strict=True)

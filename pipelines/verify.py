@@ -1,0 +1,235 @@
+"""Is a dataset what it says it is? Files, columns, counts, references, and every execution run again from disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.pipelines.dataset import Dataset
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.simulation.home import Home
+
+BATCH = 256
+SHOWN = 20
+"""Faults of one kind that are told singly; what more there is, is counted."""
+
+KEYS = {
+    "activities": "activity_id",
+    "descriptions": "description_id",
+    "programs": "program_id",
+    "homes": "home",
+    "environments": "environment_id",
+    "executions": "execution_id",
+}
+
+REFERENCES = (
+    ("programs", "activity_id", "activities", "activity_id"),
+    ("programs", "description_id", "descriptions", "description_id"),
+    ("programs", "parent_id", "programs", "program_id"),
+    ("descriptions", "activity_id", "activities", "activity_id"),
+    ("home_nodes", "home", "homes", "home"),
+    ("home_edges", "home", "homes", "home"),
+    ("environments", "home", "homes", "home"),
+    ("environments", "program_id", "programs", "program_id"),
+    ("executions", "program_id", "programs", "program_id"),
+    ("executions", "environment_id", "environments", "environment_id"),
+    ("executions", "home", "homes", "home"),
+    ("repairs", "program_id", "programs", "program_id"),
+    ("repairs", "execution_id", "executions", "execution_id"),
+    ("sketches", "program_id", "programs", "program_id"),
+    ("frames", "execution_id", "executions", "execution_id"),
+)
+"""What refers to what: table and column, and the table and key in which its value must be; null refers to nothing."""
+
+COUNTED = (
+    ("homes", "nodes", "SELECT home, count(*) AS found FROM home_nodes GROUP BY 1"),
+    ("homes", "edges", "SELECT home, count(*) AS found FROM home_edges GROUP BY 1"),
+    ("activities", "programs", "SELECT activity_id, count(*) AS found FROM programs GROUP BY 1"),
+    ("activities", "descriptions", "SELECT activity_id, count(*) AS found FROM descriptions GROUP BY 1"),
+)
+"""Columns that say how many rows there are elsewhere, and the query that counts them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What was looked at, and what is wrong.
+
+    Attributes:
+        files: files hashed.
+        rows: rows counted, all tables together.
+        executions: executions run again.
+        faults: everything that is wrong; empty when the dataset is what it says.
+    """
+
+    files: int
+    rows: int
+    executions: int
+    faults: tuple[Diagnostic, ...]
+
+
+def verify(path: str | Path) -> Verdict:
+    """Check a dataset from nothing but its folder.
+
+    Files first: where one is missing or other than the manifest says, or has other columns, nothing further is asked
+    of the dataset, for its answers would mean nothing.
+
+    Raises:
+        HearthError: the path is no dataset, or one that a newer version wrote.
+    """
+    dataset = Dataset.open(path)
+    files = len(dataset.manifest["files"])
+    faults = tuple(_files(dataset)) or tuple(_schemas(dataset))
+    if faults:
+        return Verdict(files, 0, 0, faults)
+    rows = sum(_count(dataset, table) for table in _tables())
+    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset)]
+    if wrong:
+        return Verdict(files, rows, 0, tuple(wrong))
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset)))
+
+
+def _tables() -> tuple[str, ...]:
+    from hearth.schemas.tables import TABLES
+
+    return tuple(TABLES)
+
+
+def _files(dataset: Dataset) -> Iterator[Diagnostic]:
+    from hearth.pipelines.files import file_digest
+
+    told = dataset.manifest["files"]
+    for name, entry in told.items():
+        path = dataset.folder / name
+        if not path.is_file():
+            yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=_AGAIN)
+        elif path.stat().st_size != entry["bytes"]:
+            message = f"{path.stat().st_size:,} bytes where the manifest says {entry['bytes']:,}"
+            yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=_AGAIN)
+        elif file_digest(path) != entry["sha256"]:
+            yield Diagnostic(Code.DAMAGED_FILE, "other bytes than the manifest says", str(path), suggestion=_AGAIN)
+    for table in _tables():
+        for path in sorted((dataset.folder / table).glob("*.parquet")):
+            if path.relative_to(dataset.folder).as_posix() not in told:
+                message = "the folder has it, the manifest has not: queries would read it"
+                yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
+
+
+_AGAIN = "fetch or publish the dataset again"
+
+
+def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
+    import pyarrow.parquet as pq
+
+    from hearth.schemas.tables import TABLES
+
+    for table, schema in TABLES.items():
+        paths = sorted((dataset.folder / table).glob("*.parquet"))
+        if not paths:
+            yield Diagnostic(Code.MISSING_FILE, f"no table `{table}`", str(dataset.folder / table), suggestion=_AGAIN)
+        for path in paths:
+            found = pq.read_schema(path)
+            if not found.equals(schema):
+                odd = sorted({*found.names} ^ {*schema.names}) or [
+                    name for name in schema.names if found.field(name).type != schema.field(name).type
+                ]
+                message = f"other columns than the table's: {', '.join(odd) or 'in another order'}"
+                yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=_AGAIN)
+
+
+def _count(dataset: Dataset, table: str) -> int:
+    return int(dataset.rows(f"SELECT count(*) FROM {table}")[1][0][0])
+
+
+def _told(dataset: Dataset, code: Code, table: str, values: list[Any], message: str) -> Iterator[Diagnostic]:
+    for value in values[:SHOWN]:
+        yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
+    if len(values) > SHOWN:
+        yield Diagnostic(code, f"and {len(values) - SHOWN:,} more like it", str(dataset.folder / table))
+
+
+def _keys(dataset: Dataset) -> Iterator[Diagnostic]:
+    for table, key in KEYS.items():
+        _, found = dataset.rows(f"SELECT {key} FROM {table} GROUP BY 1 HAVING count(*) > 1 ORDER BY 1")
+        yield from _told(
+            dataset, Code.DUPLICATE, table, [row[0] for row in found], f"two rows have the {key} {{value}}"
+        )
+
+
+def _references(dataset: Dataset) -> Iterator[Diagnostic]:
+    for table, column, other, key in REFERENCES:
+        query = f"""SELECT DISTINCT t.{column} FROM {table} t WHERE t.{column} IS NOT NULL
+            AND NOT EXISTS (SELECT 1 FROM {other} o WHERE o.{key} = t.{column}) ORDER BY 1"""
+        values = [row[0] for row in dataset.rows(query)[1]]
+        yield from _told(dataset, Code.UNKNOWN_ID, table, values, f"its {column} {{value}} is not in `{other}`")
+
+
+def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
+    told = dataset.manifest["counts"]["rows"]
+    for table, number in told.items():
+        if number != _count(dataset, table):
+            message = f"{_count(dataset, table):,} rows where the manifest counts {number:,}"
+            yield Diagnostic(Code.BAD_TABLE, message, str(dataset.folder / table))
+    for table, column, query in COUNTED:
+        key = KEYS[table]
+        ask = f"""SELECT t.{key} FROM {table} t LEFT JOIN ({query}) q USING ({key})
+            WHERE t.{column} IS DISTINCT FROM coalesce(q.found, 0) ORDER BY 1"""
+        values = [row[0] for row in dataset.rows(ask)[1]]
+        yield from _told(dataset, Code.BAD_TABLE, table, values, f"its {column} of {{value}} are not so many")
+    query = "SELECT stage FROM ledger WHERE records_in <> records_through + records_rejected ORDER BY 1"
+    values = [row[0] for row in dataset.rows(query)[1]]
+    yield from _told(dataset, Code.BAD_TABLE, "ledger", values, "the records of stage {value} do not add up")
+
+
+class StoredHomes:
+    """The homes of a dataset by name, built from its own tables."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self._dataset = dataset
+        self._built: dict[str, Home] = {}
+
+    def home(self, name: str) -> Home:
+        """The home that environments of that name differ from.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        if name not in self._built:
+            self._built[name] = Home.from_graph(self._dataset.home(name), name)
+        return self._built[name]
+
+
+CASES = """
+    SELECT e.execution_id, e.home, e.rules, e.bindings, e.ticks, e.failure, p.title, p.description, p.steps,
+        {'added_nodes': v.added_nodes, 'removed_nodes': v.removed_nodes, 'added': v.added, 'removed': v.removed,
+         'set_states': v.set_states, 'cleared_states': v.cleared_states} AS environment
+    FROM executions e JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
+    ORDER BY e.home, e.execution_id
+"""
+
+
+def cases(dataset: Dataset) -> Iterator[dict[str, Any]]:
+    """Every execution with its program and environment, as far as running it needs them."""
+    # A cursor of its own: a connection has one open result, and homes are read meanwhile.
+    with dataset.connection.cursor() as cursor:
+        for batch in cursor.sql(CASES).to_arrow_reader(BATCH):
+            yield from batch.to_pylist()
+
+
+def _replays(dataset: Dataset) -> Iterator[Diagnostic]:
+    from hearth.pipelines.cases import difference_on_replay
+
+    homes, wrong = StoredHomes(dataset), 0
+    for case in cases(dataset):
+        try:
+            difference = difference_on_replay(case, homes)
+        except (HearthError, KeyError, ValueError, TypeError) as error:
+            difference = f"it cannot be run: {type(error).__name__} {error}"
+        wrong += bool(difference)
+        if difference and wrong <= SHOWN:
+            place = str(dataset.folder / "executions")
+            yield Diagnostic(Code.REPLAY_DIFFERS, f"{case['execution_id']}: {difference}", place)
+    if wrong > SHOWN:
+        yield Diagnostic(Code.REPLAY_DIFFERS, f"and {wrong - SHOWN:,} more like it", str(dataset.folder / "executions"))
