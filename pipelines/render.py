@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from hearth.pipelines.cases import rerun
 from hearth.pipelines.files import value_digest, write_bytes
 from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import Row, read_rows
+from hearth.pipelines.parts import READ_BATCH, Row, read_rows
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.stage import Job, Partition, Record, Stage
 from hearth.pipelines.surroundings import USES, Homes, overlays
 from hearth.schemas.tables import RENDERED
 
@@ -95,9 +95,18 @@ def prepare(settings: Settings) -> dict[str, Any]:
     return {**overlays(settings), "executions": sorted(chosen.values())}
 
 
-def is_chosen(case: Record, plan: dict[str, Any]) -> bool:
-    """Whether a case is to be filmed."""
-    return case["execution_id"] in plan["executions"]
+def chosen(job: Job, partition: Partition) -> Iterator[Record]:
+    """The cases of a part that are to be filmed; the others, nearly all, are never turned into rows."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+    import pyarrow.parquet as pq
+
+    wanted = pa.array(job.plan["executions"], pa.string())
+    with pq.ParquetFile(partition.payload) as file:
+        if not pc.any(pc.is_in(file.read(["execution_id"])["execution_id"], wanted)).as_py():
+            return
+        for batch in file.iter_batches(batch_size=READ_BATCH):
+            yield from batch.filter(pc.is_in(batch["execution_id"], wanted)).to_pylist()
 
 
 def open_context(job: Job) -> Context:
@@ -114,6 +123,6 @@ STAGE = Stage(
     settings=("pictures",),
     open=open_context,
     prepare=prepare,
-    select=is_chosen,
+    records=chosen,
     identify=lambda case: str(case["execution_id"]),
 )

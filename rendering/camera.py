@@ -78,8 +78,8 @@ class Camera:
 
 @lru_cache(maxsize=16)
 def cached_rays(camera: Camera, offset: tuple[float, float]) -> Floats:
-    """`camera.rays(offset)`, kept for cameras that take many pictures. Not to be written to."""
-    return camera.rays(offset)
+    """`camera.rays(offset)` as rows, (6, N), kept for cameras that take many pictures. Not to be written to."""
+    return np.ascontiguousarray(camera.rays(offset).T)
 
 
 TOP_FOV = 14.0

@@ -22,7 +22,7 @@ class Light:
         color: linear; a lamp of strength 1 lights white paper fully at a distance of one metre.
         span: half extents along x, y and z, for soft shadows; lamps are small balls, windows flat.
         facing: the way a window looks into its room; None for lamps.
-        room: (x0, x1, z0, z1) that it lights; a lamp lights a little more than its room, through doors.
+        room: (x0, x1, z0, z1) that it lights; by night a lamp lights a little more than its room, through doors.
     """
 
     position: Point
@@ -88,13 +88,18 @@ LAMP_COLOR: Color = (1.0, 0.86, 0.64)
 
 
 SPILL = 2.0
-"""Metres that a lamp's light is followed beyond its room."""
+"""Metres that a lamp's light is followed beyond its room by night; by day nobody sees what falls through doors."""
 
 
-def lamp(position: Point, strength: float = 1.5, room: tuple[float, float, float, float] | None = None) -> Light:
-    """A lamp that is on."""
+def lamp(
+    position: Point,
+    strength: float = 1.5,
+    room: tuple[float, float, float, float] | None = None,
+    spill: float = SPILL,
+) -> Light:
+    """A lamp that is on, and lights its room and `spill` metres around it."""
     red, green, blue = (strength * c for c in LAMP_COLOR)
-    beyond = room and (room[0] - SPILL, room[1] + SPILL, room[2] - SPILL, room[3] + SPILL)
+    beyond = room and (room[0] - spill, room[1] + spill, room[2] - spill, room[3] + spill)
     return Light(position, (red, green, blue), room=beyond)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,10 @@ from numpy.typing import NDArray
 
 from hearth.rendering import shading
 from hearth.rendering.camera import Camera, cached_rays
+from hearth.rendering.geometry import Geometry
 from hearth.rendering.lights import from_above
 from hearth.rendering.rays import Hits
-from hearth.rendering.scene import Geometry, Scene
+from hearth.rendering.scene import Scene
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -31,18 +33,28 @@ class Shot:
 
     Attributes:
         scene, camera, geometry: what, from where.
-        rays: (H*W, 6); moved down to the cut for views from above.
-        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction.
+        rays: (6, H*W); moved down to the cut for views from above.
+        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; 0 without a cut.
         hits: what they hit.
+        class_ids: class -> number.
     """
 
     scene: Scene
     camera: Camera
     geometry: Geometry
     rays: Floats
-    skipped: Floats
+    skipped: Floats | float
     hits: Hits
     class_ids: Mapping[str, int]
+
+    @cached_property
+    def owner(self) -> NDArray[np.int64]:
+        """(H*W,) index of the thing that is seen, -1 for none."""
+        return self.geometry.owner(self.hits.triangle)
+
+    def image(self, values: NDArray[Any]) -> Image:
+        """(H*W, ...) values as (H, W, ...)."""
+        return values.reshape(self.camera.height, self.camera.width, *values.shape[1:])
 
 
 def render(
@@ -75,88 +87,111 @@ def render(
     if unknown:
         known = ", ".join((*MODALITIES, *QUALITIES))
         raise HearthError.of(Code.NOT_RENDERED, f"unknown modality or quality: {', '.join(unknown)}", suggestion=known)
-    shot = _shoot(scene, camera, (0.5, 0.5), class_ids or {})
-    return {name: MODALITIES[name](shot, quality) for name in wanted}
+    return pictures_of(shoot(scene, camera, class_ids=class_ids), wanted, quality)
 
 
-def _shoot(scene: Scene, camera: Camera, offset: tuple[float, float], class_ids: Mapping[str, int]) -> Shot:
+def pictures_of(shot: Shot, modalities: Iterable[str], quality: str = "draft") -> dict[str, Image]:
+    """The pictures of a shot by modality, as `render` gives them."""
+    return {name: MODALITIES[name](shot, quality) for name in modalities}
+
+
+def shoot(
+    scene: Scene, camera: Camera, offset: tuple[float, float] = (0.5, 0.5), class_ids: Mapping[str, int] | None = None
+) -> Shot:
+    """Cast a camera's rays, through `offset` in each pixel."""
+    rays, skipped = camera_rays(camera, offset)
+    geometry = scene.geometry if camera.cut is None else scene.opened
+    return Shot(scene, camera, geometry, rays, skipped, geometry.cast(rays), class_ids or {})
+
+
+@lru_cache(maxsize=16)
+def camera_rays(camera: Camera, offset: tuple[float, float]) -> tuple[Floats, Floats | float]:
+    """(6, N) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
     rays = cached_rays(camera, offset)
-    skipped = np.zeros(len(rays), np.float32)
-    geometry = scene.geometry
-    if camera.cut is not None:
-        geometry = scene.opened
-        skipped = np.maximum((rays[:, 1] - camera.cut) / np.maximum(-rays[:, 4], 1e-6), 0).astype(np.float32)
-        rays = rays.copy()
-        rays[:, :3] += rays[:, 3:] * skipped[:, None]
-    return Shot(scene, camera, geometry, rays, skipped, geometry.caster.cast(rays), class_ids)
+    if camera.cut is None:
+        return rays, 0.0
+    skipped = np.maximum((rays[1] - camera.cut) / np.maximum(-rays[4], 1e-6), 0).astype(np.float32)
+    rays = rays.copy()
+    rays[:3] += rays[3:] * skipped
+    return rays, skipped
 
 
 def _rgb(shot: Shot, quality: str) -> Image:
-    camera = shot.camera
-    shape = (camera.height, camera.width, 3)
     if quality == "draft":
-        return shading.develop(_light(shot, 0, False)).reshape(shape)
+        return shot.image(draft(shot))
+    camera = shot.camera
     total = np.zeros((camera.height * camera.width, 3), np.float32)
     for number, offset in enumerate(SUBPIXELS):
-        one = _shoot(shot.scene, camera, offset, shot.class_ids)
-        total += shading.develop(_light(one, number, True))
-    return (total / len(SUBPIXELS) + 0.5).astype(np.uint8).reshape(shape)
+        one = shoot(shot.scene, camera, offset, shot.class_ids)
+        noise = _noise(camera.height, camera.width, number)
+        total += shading.develop(_light(one, shading.View(one.rays, one.hits, noise, pixel_angle(one), True)))
+    return shot.image((total / len(SUBPIXELS) + 0.5).astype(np.uint8))
 
 
-def _light(shot: Shot, number: int, fine: bool) -> Floats:
-    camera = shot.camera
-    angle = 1 / float(camera.intrinsics[0, 0])
-    noise = _noise(camera.height, camera.width, number)
+def draft(shot: Shot, among: NDArray[np.int64] | None = None) -> NDArray[np.uint8]:
+    """(N, 3) colours of all pixels, or of those among these indices."""
+    view = shading.View(shot.rays, shot.hits, NO_NOISE, pixel_angle(shot), False)
+    return shading.develop(_light(shot, view if among is None else view.part(among)))
+
+
+NO_NOISE: Floats = np.zeros((2, 0), np.float32)
+
+
+def pixel_angle(shot: Shot) -> float:
+    """Radians a pixel spans, as distances along the rays have it."""
+    angle = 1 / float(shot.camera.intrinsics[0, 0])
+    if shot.camera.cut is None:
+        return angle
     # Distances count from the cut, and textures must shrink with the distance from the eye.
-    far = 1 + float(np.median(shot.skipped)) / max(float(np.median(shot.hits.distance)), 0.1) if camera.cut else 1.0
-    view = shading.View(shot.rays, shot.hits, noise, angle * far, fine)
-    day = shot.scene.day if camera.cut is None else from_above(shot.scene.day)
-    light = shading.radiance(shot.scene, shot.geometry, view, day)
-    missed = np.flatnonzero(shot.hits.triangle < 0)
+    return angle * (1 + float(np.median(shot.skipped)) / max((shot.camera.cut - shot.camera.target[1]) / 2, 0.1))
+
+
+def _light(shot: Shot, view: shading.View) -> Floats:
+    above = shot.camera.cut is not None
+    day = from_above(shot.scene.day) if above else shot.scene.day
+    light = shading.radiance(shot.scene.lights, shot.geometry, view, day)
+    missed = np.flatnonzero(view.hits.triangle < 0)
     if len(missed):
-        light[missed] = shading.background(shot.scene.day, shot.rays[missed], camera.cut is not None)
+        light[:, missed] = shading.background(shot.scene.day, view.rays.take(missed, axis=1), above)
     return light
 
 
 def _noise(height: int, width: int, number: int) -> Floats:
-    """(H*W, 2) numbers from 0 to 1: the 16 points of a plastic sequence over each 4 by 4 pixels, other ones a pass."""
+    """(2, H*W) numbers from 0 to 1: the 16 points of a plastic sequence over each 4 by 4 pixels, other ones a pass."""
     order = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
     index = np.tile(order, (height // 4 + 1, width // 4 + 1))[:height, :width].reshape(-1) + 16 * number
-    return np.column_stack(((0.5 + index * 0.7548776662) % 1, (0.5 + index * 0.5698402910) % 1)).astype(np.float32)
+    return np.stack(((0.5 + index * 0.7548776662) % 1, (0.5 + index * 0.5698402910) % 1)).astype(np.float32)
 
 
 def _depth(shot: Shot, quality: str) -> Image:
     far = np.where(shot.hits.triangle >= 0, shot.hits.distance + shot.skipped, 0)
-    return np.minimum(np.rint(far * 1000), 65535).astype(np.uint16).reshape(shot.camera.height, shot.camera.width)
+    return shot.image(np.minimum(far * 1000 + 0.5, 65535).astype(np.uint16))
 
 
-def _per_thing(shot: Shot, values: NDArray[np.int64]) -> Image:
+def _per_thing(shot: Shot, values: Sequence[int]) -> Image:
     """(H, W) a value of each thing where it is seen, 0 elsewhere."""
-    owner = shot.geometry.owner[shot.hits.triangle] if len(shot.geometry.owner) else shot.hits.triangle
-    seen = values[np.minimum(owner, len(values) - 1)] if len(values) else np.zeros(len(owner), np.int64)
-    found = np.where(shot.hits.triangle >= 0, seen, 0)
-    return found.astype(np.uint16).reshape(shot.camera.height, shot.camera.width)
+    return shot.image(np.array([*values, 0], np.uint16).take(shot.owner, mode="wrap"))
 
 
 def _instances(shot: Shot, quality: str) -> Image:
-    return _per_thing(shot, np.array([thing.id for thing in shot.geometry.things], np.int64))
+    return _per_thing(shot, [thing.id for thing in shot.geometry.things])
 
 
 def _classes(shot: Shot, quality: str) -> Image:
     known = shot.class_ids or {
-        name: number for number, name in enumerate(sorted({thing.class_name for thing in shot.scene.things}), 1)
+        name: number for number, name in enumerate(sorted({thing.class_name for thing in shot.scene.everything}), 1)
     }
-    return _per_thing(shot, np.array([known.get(thing.class_name, 0) for thing in shot.geometry.things], np.int64))
+    return _per_thing(shot, [known.get(thing.class_name, 0) for thing in shot.geometry.things])
 
 
 def _normals(shot: Shot, quality: str) -> Image:
     found = np.flatnonzero(shot.hits.triangle >= 0)
-    image = np.zeros((len(shot.rays), 3), np.float32)
+    image = np.zeros((shot.rays.shape[1], 3), np.float32)
     if len(found):
-        noise = np.zeros((len(shot.rays), 2), np.float32)
-        surface = shading.surface_at(shot.geometry, shading.View(shot.rays, shot.hits, noise, 0.0, False).part(found))
-        image[found] = surface.normals / np.linalg.norm(surface.normals, axis=1, keepdims=True)
-    return image.reshape(shot.camera.height, shot.camera.width, 3)
+        view = shading.View(shot.rays, shot.hits, NO_NOISE, 0.0, False).part(found)
+        normals = shading.surface_at(shot.geometry, view).normals
+        image[found] = (normals / np.sqrt(shading.dot(normals, normals))).T
+    return shot.image(image)
 
 
 MODALITIES: dict[str, Callable[[Shot, str], Image]] = {

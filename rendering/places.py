@@ -86,7 +86,11 @@ class Places:
         found = []
         for node in self.graph.nodes:
             pose = self.poses.get(node.id)
-            found.append(replace(node, box=pose.box, yaw=pose.yaw) if pose else replace(node, box=None))
+            if pose is None:
+                found.append(replace(node, box=None) if node.box else node)
+            else:
+                same = node.box == pose.box and node.yaw == pose.yaw
+                found.append(node if same else replace(node, box=pose.box, yaw=pose.yaw))
         return found
 
     def size_of(self, node: Node) -> Point:

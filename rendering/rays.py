@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from functools import cache
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +27,11 @@ def engine() -> Any:
     Raises:
         HearthError: it is not installed, or a system library it needs is missing; says what to install.
     """
+    # The package's viewers import a web server, which takes longer than all the rest.
+    viewers = "open3d.visualization"
+    skipped = viewers not in sys.modules
+    if skipped:
+        sys.modules[viewers] = ModuleType(viewers)
     try:
         import open3d
     except ModuleNotFoundError as error:
@@ -34,6 +41,9 @@ def engine() -> Any:
         remedy = f"apt-get install -y --no-install-recommends {SYSTEM_LIBRARIES}"
         message = f"open3d is installed, but a system library it needs is not: {error}"
         raise HearthError.of(Code.NOT_RENDERED, message, suggestion=remedy) from error
+    finally:
+        if skipped:
+            sys.modules.pop(viewers, None)
     return open3d
 
 
@@ -43,19 +53,24 @@ class Hits(NamedTuple):
     Attributes:
         distance: (N,) in units of the ray's direction; infinite for none.
         triangle: (N,) which triangle; -1 for none.
-        uv: (N, 2) barycentric weights of its second and third corner.
+        u, v: (N,) barycentric weights of its second and third corner.
     """
 
     distance: Floats
     triangle: NDArray[np.int64]
-    uv: Floats
+    u: Floats
+    v: Floats
+
+    def part(self, found: NDArray[np.int64]) -> Hits:
+        """Only those rays."""
+        return Hits(*(values.take(found) for values in self))
 
 
 @dataclass(frozen=True, eq=False)
 class Caster:
-    """Triangles that rays can be cast at."""
+    """Triangles that rays can be cast at. Rays are (6, N): rows of origins x, y, z and directions x, y, z."""
 
-    corners: Floats
+    count: int
     scene: Any
 
     @classmethod
@@ -67,24 +82,29 @@ class Caster:
             points = np.ascontiguousarray(corners.reshape(-1, 3), np.float32)
             indices = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
             scene.add_triangles(core.Tensor(points), core.Tensor(indices))
-        return cls(corners, scene)
+        return cls(len(corners), scene)
 
     def cast(self, rays: Floats) -> Hits:
-        """The first hit of each of (N, 6) rays."""
-        if not len(self.corners):
-            none = np.full(len(rays), np.inf, np.float32)
-            return Hits(none, np.full(len(rays), -1, np.int64), np.zeros((len(rays), 2), np.float32))
-        answer = self.scene.cast_rays(engine().core.Tensor(np.ascontiguousarray(rays, np.float32)))
-        triangle = answer["primitive_ids"].numpy()
-        missed = triangle == np.uint32(0xFFFFFFFF)
-        number = triangle.astype(np.int64)
-        number[missed] = -1
-        return Hits(answer["t_hit"].numpy(), number, answer["primitive_uvs"].numpy())
+        """The first hit of each of (6, N) rays."""
+        size = rays.shape[1]
+        if not self.count or not size:
+            none, flat = np.full(size, np.inf, np.float32), np.zeros(size, np.float32)
+            return Hits(none, np.full(size, -1, np.int64), flat, flat)
+        answer = self.scene.cast_rays(_tensor(rays))
+        number = answer["primitive_ids"].numpy().astype(np.int32).astype(np.int64)
+        u, v = np.ascontiguousarray(answer["primitive_uvs"].numpy().T)
+        return Hits(answer["t_hit"].numpy(), number, u, v)
 
     def occluded(self, origins: Floats, directions: Floats, far: float = 0.999) -> NDArray[np.bool_]:
-        """(N,) whether anything lies between an origin and origin + far * direction."""
-        if not len(self.corners) or not len(origins):
-            return np.zeros(len(origins), np.bool_)
-        rays = np.concatenate([origins, directions], axis=1, dtype=np.float32)
+        """(N,) whether anything lies between (3, N) origins and origin + far * direction."""
+        size = origins.shape[1]
+        if not self.count or not size:
+            return np.zeros(size, np.bool_)
+        rays = np.empty((size, 6), np.float32)
+        rays[:, :3], rays[:, 3:] = origins.T, directions.T
         found: NDArray[np.bool_] = self.scene.test_occlusions(engine().core.Tensor(rays), 0.0, far).numpy()
         return found
+
+
+def _tensor(rays: Floats) -> Any:
+    return engine().core.Tensor(np.ascontiguousarray(rays.T))

@@ -15,7 +15,8 @@ from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look, Size
 from hearth.rendering.modalities import render
 from hearth.rendering.models import Model, draw
-from hearth.rendering.scene import Scene, Thing
+from hearth.rendering.scene import Scene
+from hearth.rendering.things import Thing
 
 TILE = 128
 LABEL = 14

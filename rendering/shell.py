@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.models import Model
-from hearth.rendering.scene import Thing
+from hearth.rendering.things import Thing
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.rng import derive
 

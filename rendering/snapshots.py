@@ -12,10 +12,13 @@ from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.acting import Actor, carried, cast, moved, posed
 from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.ground import Ground
+from hearth.rendering.history import graphs
 from hearth.rendering.modalities import render
 from hearth.rendering.places import Places
+from hearth.rendering.retake import Take, pictures_of, take
 from hearth.rendering.scene import Scene
 from hearth.rendering.staging import Stage, stage
+from hearth.rendering.things import Thing
 from hearth.rendering.viewpoints import best_view, home_box, room_views
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -85,21 +88,44 @@ def moments(
     Raises:
         HearthError: the home has no geometry.
     """
-    if not any(node.box and node.category == "Rooms" for node in home.nodes):
+    _check_geometry(home)
+    known = knowledge or default()
+    prepared = stage(home, seed=seed, hour=hour, knowledge=known)
+    found = list(_played(execution, home, prepared, seed))
+    still = _still([moment.scene for moment in found])
+    kept = frozenset(still)
+    for moment in found:
+        moving = tuple(thing for thing in moment.scene.things if thing not in kept)
+        yield replace(moment, scene=replace(moment.scene, things=moving, still=still))
+
+
+def _check_geometry(home: EnvironmentGraph) -> None:
+    if not any(node.box and node.category == ROOM_CATEGORY for node in home.nodes):
         raise HearthError.of(
             Code.NOT_RENDERED, "the home has no geometry: no room has a box", suggestion="a designed home"
         )
-    known = knowledge or default()
-    prepared = stage(home, seed=seed, hour=hour, knowledge=known)
+
+
+def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
+    """The things that are the same in all scenes."""
+    common = set(scenes[0].things)
+    for scene in scenes[1:]:
+        common &= set(scene.things)
+    return tuple(thing for thing in scenes[0].things if thing in common)
+
+
+def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed: int) -> Iterator[Moment]:
+    """The moments of an execution, their scenes made of moving things only."""
     ground = Ground.of(prepared.rooms.values(), home.nodes)
-    graph = execution.worlds[0].graph()
-    places = Places.start(home, known).settled(graph)
-    actors = cast(graph, ground, places, seed)
-    actors = tuple(posed(actor, graph, places, None) for actor in actors)
-    yield Moment(0, (), _scene(prepared, places, actors), actors, places)
-    for tick, steps in enumerate(list(execution.program.ticks())[: len(execution.worlds) - 1], 1):
-        graph = execution.worlds[tick].graph()
-        actors, places = _advanced(actors, places, graph, ground, steps)
+    ticks = [(), *execution.program.ticks()]
+    places, actors = Places.start(home, prepared.knowledge), ()
+    for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
+        if tick == 0:
+            places = places.settled(graph)
+            actors = cast(graph, ground, places, seed)
+            actors = tuple(posed(actor, graph, places, None) for actor in actors)
+        else:
+            actors, places = _advanced(actors, places, graph, ground, steps)
         yield Moment(tick, steps, _scene(prepared, places, actors), actors, places)
 
 
@@ -150,18 +176,26 @@ def snapshots(
     Raises:
         HearthError: the home has no geometry, open3d is missing, or a modality is unknown.
     """
+    _check_geometry(home)
     wanted = tuple(modalities)
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
-    last: Camera | None = None
+    above = top_view(home_box(home), TOP, *size)
+    last: dict[Camera | str, Camera] = {}
+    takes: dict[Camera | str, Take] = {}
     for moment in moments(execution, home, seed=seed, hour=hour, knowledge=knowledge):
         named = tuple(ref.node for step in moment.steps for ref in step.objects if ref.node and ref.node not in rooms)
         for choice in cameras:
-            camera = choice if isinstance(choice, Camera) else top_view(home_box(home), TOP, *size)
+            camera = choice if isinstance(choice, Camera) else above
             if choice == AUTO:
                 actor = moment.actors[0]
-                camera = last = best_view(moment.scene, views, actor, named, last, rooms.get(actor.room))
-            pictures = render(moment.scene, camera, wanted, quality=quality)
+                camera = best_view(moment.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
+            last[choice] = camera
+            if quality == "draft" and "rgb" in wanted:
+                takes[choice] = take(moment.scene, camera, takes.get(choice))
+                pictures = pictures_of(takes[choice], wanted)
+            else:
+                pictures = render(moment.scene, camera, wanted, quality=quality)
             seen = _seen(pictures["instance_ids"], named) if "instance_ids" in pictures else None
             yield Snapshot(moment.tick, moment.steps, camera, pictures, seen)
 

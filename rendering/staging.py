@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, radians, sin
 
 from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.figure import Figure
-from hearth.rendering.lights import Daylight, Light, daylight, lamp, window
+from hearth.rendering.lights import SPILL, Daylight, Light, daylight, lamp, window
 from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look, Size
 from hearth.rendering.models import Model, choice_of, model_of
-from hearth.rendering.scene import Scene, Thing
+from hearth.rendering.scene import Scene
 from hearth.rendering.shell import walls_of
+from hearth.rendering.things import Thing
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
@@ -67,6 +68,7 @@ class Stage:
     knowledge: Knowledge
     seed: int = 0
     hour: float = 10.0
+    _drawn: dict[Hashable, tuple[tuple[Thing, ...], tuple[Light, ...]]] = field(default_factory=dict, repr=False)
 
     @cached_property
     def day(self) -> Daylight:
@@ -128,11 +130,24 @@ class Stage:
         present = [
             node for node in (self.graph.nodes if nodes is None else nodes) if node.box and node.category not in UNSEEN
         ]
-        things = [thing for node in present for thing in self.things(node)]
-        things += walls_of(self.graph, tuple(self.rooms.values()))
-        people = [Thing(node.id, node.class_name, pose, place, yaw) for node, pose, place, yaw in figures]
-        lights = [light for node in present for light in self.lights(node)]
-        return Scene(tuple(things + people), tuple(lights), self.day)
+        drawn = [self._remembered(node) for node in present]
+        people = tuple(Thing(node.id, node.class_name, pose, place, yaw) for node, pose, place, yaw in figures)
+        things = tuple(thing for found, _ in drawn for thing in found)
+        lights = tuple(light for _, found in drawn for light in found)
+        return Scene(things + self.walls + people, lights, self.day)
+
+    @cached_property
+    def walls(self) -> tuple[Thing, ...]:
+        """Walls, floors and ceilings that the graph does not name."""
+        return tuple(walls_of(self.graph, tuple(self.rooms.values())))
+
+    def _remembered(self, node: Node) -> tuple[tuple[Thing, ...], tuple[Light, ...]]:
+        """A node's things and lights; most nodes are the same at most moments."""
+        key = (node.id, node.class_name, node.states, node.box, node.yaw)
+        found = self._drawn.get(key)
+        if found is None:
+            found = self._drawn[key] = tuple(self.things(node)), tuple(self.lights(node))
+        return found
 
     def things(self, node: Node) -> Iterator[Thing]:
         """What a node is drawn as."""
@@ -174,7 +189,8 @@ class Stage:
         share = RECIPES[choice.recipe].lamp
         if share is not None and "ON" in node.states:
             bounds = _bounds(room.box) if room and room.box else None
-            yield lamp((x, y + (share - 0.5) * size[1], z), STRENGTH.get(choice.recipe, 0.7), bounds)
+            spill = 0.0 if self.day.sun else SPILL
+            yield lamp((x, y + (share - 0.5) * size[1], z), STRENGTH.get(choice.recipe, 0.7), bounds, spill)
         if choice.recipe == "window" and room and room.box and node.yaw is not None:
             facing = (sin(radians(node.yaw)), 0.0, cos(radians(node.yaw)))
             yield window(node.box.center, size, _rounded(facing), _bounds(room.box), self.day)

@@ -189,17 +189,28 @@ def atlas() -> NDArray[np.uint8]:
     return rows
 
 
-def sample(slots: NDArray[np.int16], uvs: Image, footprint: Image) -> Image:
-    """(N, 3) linear texture colours.
+@cache
+def _texels() -> NDArray[np.uint8]:
+    """(3, slots * texels) the atlas, a row a colour."""
+    return np.ascontiguousarray(atlas().reshape(-1, 3).T)
+
+
+_STARTS = OFFSETS[:-1].astype(np.int32)
+
+
+def sample(slots: NDArray[np.int64], uvs: Image, footprint: Image) -> Image:
+    """(3, N) linear texture colours.
 
     Args:
         slots: (N,) texture of each point.
-        uvs: (N, 2) coordinates in tiles; they repeat.
+        uvs: (2, N) coordinates in tiles; they repeat.
         footprint: (N,) how many tiles a pixel spans; picks the mipmap.
     """
-    level = np.clip(np.log2(np.maximum(footprint * SIDE, 1.0)) + 0.3, 0, LEVELS - 1).astype(np.int64)
+    texels = np.maximum(footprint * np.float32(SIDE * 2**0.3), 1.0)
+    # The exponent of a float is the whole part of its logarithm.
+    level = np.minimum((texels.astype(np.float32).view(np.int32) >> 23) - 127, LEVELS - 1)
     side = SIDE >> level
     wrapped = uvs - np.floor(uvs)
-    column = np.minimum((wrapped[:, 0] * side).astype(np.int64), side - 1)
-    row = np.minimum((wrapped[:, 1] * side).astype(np.int64), side - 1)
-    return decode()[atlas()[slots, OFFSETS[level] + row * side + column]]
+    column, row = (np.minimum((w * side).astype(np.int32), side - 1) for w in wrapped)
+    index = slots * int(OFFSETS[-1]) + (_STARTS.take(level) + row * side + column)
+    return decode().take(_texels().take(index, axis=1))

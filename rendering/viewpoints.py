@@ -7,10 +7,10 @@ from dataclasses import replace
 from math import degrees, radians, tan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hearth.rendering.acting import Actor
 from hearth.rendering.camera import Camera, follow, room_cameras
-from hearth.rendering.modalities import render
 from hearth.rendering.models import Model
 from hearth.rendering.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph
@@ -94,12 +94,12 @@ def best_view(
         for side, turn in (("left", 40.0), ("right", -40.0))
     ]
     candidates = [*cameras, *(_kept_inside(camera, room) for camera in behind)]
-    scored = []
-    for number, camera in enumerate(candidates):
-        turned = aimed(camera, scene, actor, named)
-        value = score(scene, turned, actor, named) * (LOYALTY if last and camera.name == last.name else 1.0)
-        scored.append((value, -number, turned))
-    return max(scored, key=lambda entry: entry[:2])[2]
+    turned = [aimed(camera, scene, actor, named) for camera in candidates]
+    values = [
+        value * (LOYALTY if last and camera.name == last.name else 1.0)
+        for camera, value in zip(turned, scores(scene, turned, actor, named), strict=True)
+    ]
+    return turned[values.index(max(values))]
 
 
 def _kept_inside(camera: Camera, room: Box | None) -> Camera:
@@ -130,11 +130,21 @@ def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int]) -> C
     return replace(camera, target=(float(middle[0]), float(middle[1]), float(middle[2])), fov=fov)
 
 
-def score(scene: Scene, camera: Camera, actor: Actor, named: Sequence[int]) -> float:
-    """How well a camera sees someone and what the step names: up to 1 for the person, 1.3 for each object."""
+def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequence[int]) -> list[float]:
+    """How well cameras see someone and what the step names: up to 1 for the person, 1.3 for each object."""
+    if not cameras:
+        return []
     width, height = GLANCE
-    ids = render(scene, replace(camera, width=width, height=height), ("instance_ids",))["instance_ids"]
-    focal = height / 2 / tan(radians(camera.fov) / 2)
+    small = [replace(camera, width=width, height=height) for camera in cameras]
+    # All glances are cast at once: a cast of few rays costs as much as one of many.
+    hits = scene.geometry.cast(np.concatenate([camera.rays() for camera in small]).T)
+    numbers = np.array([*(thing.id for thing in scene.geometry.things), 0])
+    ids = numbers.take(scene.geometry.owner(hits.triangle), mode="wrap").reshape(len(small), -1)
+    return [_score(scene, camera, seen, actor, named) for camera, seen in zip(small, ids, strict=True)]
+
+
+def _score(scene: Scene, camera: Camera, ids: NDArray[np.int64], actor: Actor, named: Sequence[int]) -> float:
+    focal = camera.height / 2 / tan(radians(camera.fov) / 2)
     eye = np.array(camera.eye)
     total = min(int((ids == actor.node.id).sum()) / ENOUGH, 1.0)
     to_eye = eye - np.array(actor.position)

@@ -10,8 +10,9 @@ from hearth.rendering.camera import look_at, top_view
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.modalities import render
 from hearth.rendering.models import Model
-from hearth.rendering.scene import Scene, Thing
+from hearth.rendering.scene import Scene
 from hearth.rendering.staging import scene_of
+from hearth.rendering.things import Thing
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
