@@ -1,6 +1,6 @@
 """Binding a program whose instances are counters to the nodes of a home, so that all its steps can run (thesis 2.4.1).
 
-Depth-first over the steps: a step that names a new object tries the home's candidates for it, best first, and runs;
+Depth-first over the ticks: one that names a new object tries the home's candidates for it, best first, and runs;
 what fails is undone by going back to the world before, which costs nothing because worlds are values.
 """
 
@@ -17,7 +17,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
-from hearth.simulation.engine import act
+from hearth.simulation.engine import act, together
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
 
@@ -54,7 +54,7 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
         option = next(stack[-1], None)
         if option is None:
             stack.pop()
-        elif len(stack) == len(program.steps):
+        elif len(stack) == len(search.ticks):
             return Binding(option[0], search.tried)
         else:
             stack.append(search.options(len(stack), option[1], option[0]))
@@ -65,7 +65,7 @@ class _Search:
     """The candidates of each object, and the furthest failure so far."""
 
     def __init__(self, program: Program, rules: Rules) -> None:
-        self.steps = program.steps
+        self.ticks = tuple(program.ticks())
         self.rules = rules
         self.tried = 0
         self.furthest = Failure(Code.UNBOUND, expected="a step", actual="none")
@@ -77,11 +77,15 @@ class _Search:
         self.candidates: dict[Key, int] = {}
 
     def options(self, number: int, world: World, nodes: dict[Key, int]) -> Iterator[tuple[dict[Key, int], World]]:
-        """Every way to do step `number` from a world: the binding with its new objects, and the world after."""
-        step = self.steps[number]
-        new = list(dict.fromkeys(ref.key for ref in step.objects if ref.key not in nodes))
-        choices = [self._ordered(key, world, step.agent, nodes) for key in new]
-        for key, found in zip(new, choices, strict=True):
+        """Every way to do tick `number` from a world: the binding with its new objects, and the world after."""
+        steps = self.ticks[number]
+        new: dict[Key, Step] = {}
+        for step in steps:
+            for ref in step.objects:
+                if ref.key not in nodes:
+                    new.setdefault(ref.key, step)
+        choices = [self._ordered(key, world, step.agent, nodes) for key, step in new.items()]
+        for (key, step), found in zip(new.items(), choices, strict=True):
             if not found:
                 self._fail(number, self._nothing(step, key, world))
         for chosen in product(*choices):
@@ -89,11 +93,16 @@ class _Search:
                 continue
             bound = {**nodes, **dict(zip(new, chosen, strict=True))}
             self.tried += 1
-            after = act(world, _bound(step, bound), self.rules)
+            after = self._done(world, steps, bound)
             if isinstance(after, Failure):
                 self._fail(number, after)
             else:
                 yield bound, after
+
+    def _done(self, world: World, steps: tuple[Step, ...], bound: dict[Key, int]) -> World | Failure:
+        if len(steps) == 1:
+            return act(world, _bound(steps[0], bound), self.rules)
+        return together(world, [_bound(step, bound) for step in steps], self.rules)
 
     def _fail(self, number: int, failure: Failure) -> None:
         if number >= self.reached:
@@ -112,7 +121,7 @@ class _Search:
         rank = {
             i: (not rows.is_close(world, agent, i), rows.room_of(world, i) != room, i)
             for i in indices(mask)
-            if i not in taken
+            if i not in taken and i != agent.index
         }
         return [home.ids[i] for i in sorted(rank, key=rank.__getitem__)]
 

@@ -9,7 +9,9 @@ from hearth.grounding.binding import Binding, bind
 from hearth.grounding.sampling import Environment, sample
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
+from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution, run
+from hearth.simulation.env import with_agents
 from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
@@ -44,19 +46,27 @@ def attempt(
         add: sample an environment when the home alone has no binding that runs.
 
     Returns:
-        The trial, or why the program can be grounded neither way.
+        The trial, or why the program can be grounded neither way. Where the program has or names more characters than
+        the home, the others stand in random rooms, and nothing else is added.
     """
-    world = World.start(prepared(home).home if at_rest else home)
+    wanted = _characters(program)
+    world = with_agents(World.start(prepared(home).home if at_rest else home), wanted, seed)
     found = bind(program, world, rules)
     if isinstance(found, Binding):
         return Trial(run(world, found.apply(program), rules))
     fixed = any(ref.node is not None for ref in program.objects())
     if fixed:
         return Trial(run(world, program, rules))
-    if not add:
+    if not add or wanted > 1:
         return found
     sampled = sample(program, home, seed, program.title, rules=rules)
     if isinstance(sampled, Failure):
         return sampled
     environment, execution = sampled
     return Trial(execution, environment, found)
+
+
+def _characters(program: Program) -> int:
+    """Who takes part: those who act, and whom the first of them meets."""
+    acting = max((step.agent for step in program.steps), default=0)
+    return 1 + max(acting, sum(ref.name == CHARACTER_CLASS for ref in program.objects()))

@@ -48,7 +48,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else _together(world, steps, rules)
+        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             failure = replace(result, tick=number)
             break
@@ -60,7 +60,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Only the end of a run, for who needs no trace."""
     for number, steps in enumerate(_ticks(program)):
-        result = act(world, steps, rules) if isinstance(steps, Step) else _together(world, steps, rules)
+        result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
         world = result
@@ -138,7 +138,7 @@ def _after_others(result: World | Failure, action: str) -> World | Failure:
     return replace(result, code=Code.CONFLICT, expected=f"{action} still possible", actual=actual)
 
 
-def _together(world: World, steps: Iterable[Step], rules: Rules) -> World | Failure:
+def together(world: World, steps: Iterable[Step], rules: Rules) -> World | Failure:
     """Several agents' instructions in one tick of a program: by the rule of `tick`, or, if one fails, not at all."""
     instructions: dict[int, Step | None] = {}
     for instruction in steps:
