@@ -40,6 +40,7 @@ def attach(folder: Path) -> Any:
 
     root = f"{folder.resolve()}/"
     connection = duckdb.connect()
+    connection.execute("SET parquet_metadata_cache = true")
     connection.execute(statements(root))
     quoted = root.replace("'", "''")
     connection.execute(f"SET allowed_directories = ['{quoted}']")

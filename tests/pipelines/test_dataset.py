@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections import Counter
 
 import duckdb
 import pytest
@@ -209,3 +210,9 @@ def test_nothing_refers_to_what_is_not_there(ds):
     ):
         query = f"SELECT count(*) FROM {table} ANTI JOIN {other} USING ({column})"
         assert ds.rows(query)[1] == [(0,)], (table, column)
+
+
+def test_relations_counted_from_differences(ds):
+    found = dict(ds.rows("SELECT relation, edges FROM start_relations WHERE edges > 0")[1])
+    runs = [run for program_id in ds for run in ds[program_id].runs]
+    assert found == Counter(edge.relation for run in runs for edge in run.start.edges)
