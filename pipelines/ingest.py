@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from hearth.pipelines.duplicates import Copies, pasted
 from hearth.pipelines.files import value_digest
 from hearth.pipelines.parts import Row
 from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
@@ -51,15 +52,16 @@ _FULL = 128
 
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
-    """Every record of the sources with its source's label; one that was there before is refused as a duplicate."""
+    """Every record of the sources with its source's label; copies of one that was there before are refused."""
     seen: set[bytes] = set()
-    for source in sources:
-        for entry in recognise(source.path, source.label):
-            if entry.refusal:
-                yield source.label, refused(entry.inside, entry.refusal)
-                continue
-            for item in _scanned(entry):
-                yield source.label, _first(item, seen)
+    found = [(source.label, entry) for source in sources for entry in recognise(source.path, source.label)]
+    copies = Copies(pasted(item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry)))
+    for label, entry in found:
+        if entry.refusal:
+            yield label, refused(entry.inside, entry.refusal)
+            continue
+        for item in _scanned(entry):
+            yield label, copies.checked(_first(item, seen))
 
 
 def _scanned(entry: Recognised) -> Iterator[Item]:
@@ -161,7 +163,13 @@ STAGE = Stage(
     name="ingest",
     tables={"": INGESTED},
     process=process,
-    uses=("pipelines/ingest.py", "pipelines/readers", "pipelines/spoken.py", "pipelines/rows.py"),
+    uses=(
+        "pipelines/ingest.py",
+        "pipelines/readers",
+        "pipelines/duplicates.py",
+        "pipelines/spoken.py",
+        "pipelines/rows.py",
+    ),
     settings=("limit",),
     open=lambda job: salt(job.settings),
     prepare=prepare,

@@ -8,7 +8,7 @@ from typing import Any
 
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines import special
+from hearth.pipelines import lint, special
 from hearth.pipelines.parts import Row
 from hearth.pipelines.readers import spoken
 from hearth.pipelines.rejects import Reject
@@ -36,10 +36,15 @@ def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject
     for grounding in record["groundings"] or ():
         outcome = _grounding(grounding, record["place"], known)
         (rejects if isinstance(outcome, Reject) else groundings).append(outcome)  # type: ignore[arg-type]
+    told = replace(
+        program, title=record["title"] or program.title, description=record["description"] or program.description
+    )
+    found = [*lint.findings(told, known), *lint.undeclared(told, record, known)]
+    warnings = (*warnings, *(lint.diagnostic(each, told, record["place"]) for each in found))
     row = {
         **{name: record[name] for name in _KEPT},
-        "title": record["title"] or program.title,
-        "description": record["description"] or program.description,
+        "title": told.title,
+        "description": told.description,
         "steps": step_rows(program),
         "groundings": groundings,
         "warnings": [warning_row(fault) for fault in warnings],
@@ -65,6 +70,8 @@ def checked(
     faults = (*faults, *wrong)
     if not faults:
         faults = grammar.affordances(program, known, place, source)
+    if not faults:
+        faults = tuple(lint.diagnostic(each, program, place, source) for each in lint.contradictions(program))
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
     return replace(program, lines=lines), faults, () if faults else tuple(_warnings(program, known, lines, place))
@@ -76,7 +83,9 @@ def checked_words(
     """`checked` for steps in words; what was only nearly understood is a warning with its similarity."""
     heard = parse_spoken(text, before, place, known)
     faults = heard.faults or grammar.affordances(heard.program, known, place)
-    warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place))
+    # Words lose instances: what is switched on twice may be two things, so that this is only a warning here.
+    twice = (lint.diagnostic(each, heard.program, place) for each in lint.contradictions(heard.program))
+    warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place), *twice)
     return heard.program, faults, () if faults else warnings
 
 
@@ -143,6 +152,7 @@ STAGE = Stage(
         "kb",
         "data_raw/crowd/special_blocks.yaml",
         "pipelines/validate.py",
+        "pipelines/lint.py",
         "pipelines/special.py",
         "pipelines/spoken.py",
         "pipelines/rows.py",

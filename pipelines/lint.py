@@ -1,0 +1,205 @@
+"""What a well-formed program says that cannot be meant: contradictions, things used from afar, other words.
+
+Faults stop a program; warnings go on with it. Each names the step, and most name the edit that mends it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.errors import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.syntax import print_object, print_step
+
+
+class Finding(NamedTuple):
+    """Something that looks wrong with a step (-1: with the whole program), and what would mend it.
+
+    Attributes:
+        code: the kind.
+        step: number of the step, from 0.
+        message: the fault.
+        remedy: what to do, in words.
+        before: steps to write before it.
+        remove: whether the step should go.
+        found: the offending words.
+        object: the object at fault, for underlining.
+    """
+
+    code: Code
+    step: int
+    message: str
+    remedy: str = ""
+    before: tuple[Step, ...] = ()
+    remove: bool = False
+    found: str = ""
+    object: ObjectRef | None = None
+
+
+_SETS: dict[str, tuple[str, str]] = {
+    "SwitchOn": ("power", "on"),
+    "SwitchOff": ("power", "off"),
+    "Open": ("door", "open"),
+    "Close": ("door", "closed"),
+    "PlugIn": ("plug", "in"),
+    "PlugOut": ("plug", "out"),
+}
+"""What an action makes of which of a thing's aspects."""
+
+_SAID = {"SwitchOn": "switched on", "SwitchOff": "switched off", "Open": "opened", "Close": "closed"}
+_GOES = frozenset({"Walk", "Run", "Find", "Walktowards", "Crawl"})
+_PASSING = _GOES | {"TurnTo", "LookAt", "PointAt", "StandUp", "Turnleft", "Turnright", "Walkforward", "Wait"}
+_TOUCHING = frozenset({"Sit", "Lie", "Grab", "Open", "Close", "SwitchOn", "SwitchOff", "PlugIn", "PlugOut"})
+_PUTS = frozenset({"PutBack", "PutIn"})
+
+
+def contradictions(program: Program) -> Iterator[Finding]:
+    """Steps that make a thing what the program has just made it: switched on twice, opened while open."""
+    made: dict[tuple[tuple[str, int], str], str] = {}
+    for number, step in enumerate(program.steps):
+        if step.action in _SETS and step.objects:
+            aspect, value = _SETS[step.action]
+            key = (step.objects[0].key, aspect)
+            if made.get(key) == value:
+                said = _SAID.get(step.action, f"{step.action} done")
+                message = f"{print_object(step.objects[0])} is {said} twice with nothing between"
+                remedy = "leave the second one out"
+                yield Finding(Code.CONTRADICTION, number, message, remedy, (), True, step.action)
+            made[key] = value
+
+
+def from_afar(program: Program, known: Knowledge) -> Iterator[Finding]:
+    """Things that are used though nobody went to them, nor to anything they usually are on or in; a Walk is missing."""
+    reached: set[str] = set()
+    touched: set[tuple[str, int]] = set()
+    for number, step in enumerate(program.steps):
+        for ref in _needed_close(step):
+            if ref.key not in touched and not _within_reach(ref, reached, known):
+                walk = Step("Walk", (ref,), step.agent)
+                message = f"{print_object(ref)} is used, but nobody went to it"
+                remedy = f"write {print_step(walk)} before"
+                yield Finding(Code.NOT_CLOSE, number, message, remedy, (walk,), False, ref.name, ref)
+                reached.add(ref.name)
+            touched.add(ref.key)
+        if step.action in _GOES and step.objects:
+            touched.add(step.objects[0].key)
+            reached.add(step.objects[0].name)
+        if step.action in _PUTS | {"Grab"}:
+            touched.update(ref.key for ref in step.objects)
+
+
+def _needed_close(step: Step) -> tuple[ObjectRef, ...]:
+    if step.action in _TOUCHING:
+        return step.objects[:1]
+    return step.objects[1:2] if step.action in _PUTS else ()
+
+
+def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
+    """Whether it may stand beside, on or in something that was gone to, or something gone to beside, on or in it."""
+    things = {name for name in reached if not known.is_room(name)}
+    thing = known.object_class(ref.name)
+    if thing is None or thing.category == "Rooms" or not things.isdisjoint(known.same_class(ref.name)):
+        return True
+    if {"BODY_PART", "CLOTHES"} & set(thing.properties) or (things and "GRABBABLE" in thing.properties):
+        return True
+    destinations = {place.destination for place in known.placements(ref.name)}
+    return any(name in destinations or _holds(known, ref.name, name) for name in things)
+
+
+def _holds(known: Knowledge, name: str, other: str) -> bool:
+    return any(place.destination == name for place in known.placements(other))
+
+
+def without_effect(program: Program) -> Iterator[Finding]:
+    """A program that only walks about and looks."""
+    if program.steps and all(step.action in _PASSING for step in program.steps):
+        yield Finding(Code.NO_EFFECT, -1, "this program does nothing but go and look", "write what is done there")
+
+
+def off_topic(program: Program, known: Knowledge) -> Iterator[Finding]:
+    """A text that mentions none of the objects that the program uses, nor what any of them is a kind of."""
+    words = set(_stems(f"{program.title} {program.description}"))
+    used = {ref.name for step in program.steps for ref in step.objects if not known.is_room(ref.name)}
+    if not words or not used or not program.description:
+        return
+    if not any(_mentioned(name, words, known) for name in sorted(used)):
+        shown = ", ".join(sorted(used)[:3])
+        yield Finding(Code.OFF_TOPIC, -1, f"the text mentions none of the objects used ({shown})", found=shown)
+
+
+def _mentioned(name: str, words: set[str], known: Knowledge) -> bool:
+    names = (*known.same_class(name), *known.ancestors(name)[:2])
+    return any(not words.isdisjoint(_stems(each.replace("_", " "))) for each in names)
+
+
+def _stems(text: str) -> Iterator[str]:
+    """Words without their plural or common verb endings, so that `dishes` meets `dish` and `reading` meets `read`."""
+    for word in re.findall(r"[a-z]+", text.lower()):
+        yield re.sub(r"(?:ing|es|s|ed)$", "", word) if len(word) > 4 else word.rstrip("s")
+
+
+def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[Finding]:
+    """Declared rooms and props that are not used, and what is used though it was not declared (thesis figure 3-3)."""
+    rooms, props = ({one["name"]: one["quantity"] for one in row.get(part) or ()} for part in ("rooms", "props"))
+    if not props and not rooms:
+        return
+    used = _used(program, known)
+    missing = sorted(name for name in used if name not in props)
+    idle = sorted(name for name in props if name not in used and not _is_body(known, name))
+    wrong = sorted(name for name in used if name in props and used[name] > (props[name] or 1))
+    more = sorted(name for name in used if name in props and used[name] < (props[name] or 1))
+    walked = sorted({r.name for s in program.steps for r in s.objects if known.is_room(r.name)} - rooms.keys())
+    for names, message in (
+        (missing, "used, but not declared as props"),
+        (idle, "declared as props, but not used"),
+        (wrong, "used in more pieces than were declared"),
+        (more, "declared in more pieces than are used"),
+        (walked, "walked to, but not declared as rooms"),
+    ):
+        if names:
+            shown = ", ".join(names[:4])
+            yield Finding(Code.UNDECLARED, -1, f"{message}: {shown}", found=shown)
+
+
+def _is_body(known: Knowledge, name: str) -> bool:
+    thing = known.object_class(name)
+    return thing is not None and "BODY_PART" in thing.properties
+
+
+def _used(program: Program, known: Knowledge) -> dict[str, int]:
+    """How many things of each class a program handles; rooms and parts of the body are not props."""
+    instances: dict[str, set[int]] = {}
+    for ref in program.objects():
+        thing = known.object_class(ref.name)
+        if thing and thing.category != "Rooms" and not _is_body(known, ref.name):
+            instances.setdefault(ref.name, set()).add(ref.instance)
+    return {name: len(found) for name, found in instances.items()}
+
+
+def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[str] = ()) -> Diagnostic:
+    """A finding as people know it from compilers.
+
+    Args:
+        finding: what was found.
+        program: the program it was found in; its steps know their lines.
+        place: the file.
+        source: the file's lines, for columns and underlining.
+    """
+    line = program.line(finding.step) if finding.step >= 0 else 0
+    text = source[line - 1].rstrip("\n") if 0 < line <= len(source) else ""
+    words = finding.object.name if finding.object else finding.found
+    spelt = r"[\s_]+".join(map(re.escape, words.replace("_", " ").split()))
+    match = re.search(spelt, text, re.IGNORECASE) if spelt and text else None
+    column, length = (match.start() + 1, len(match[0])) if match else (0, 0)
+    return Diagnostic(finding.code, finding.message, place, line, column, length, finding.found, finding.remedy, text)
+
+
+def findings(program: Program, known: Knowledge) -> Iterable[Finding]:
+    """What a program alone shows, contradictions aside."""
+    yield from from_afar(program, known)
+    yield from without_effect(program)
+    yield from off_topic(program, known)

@@ -1,0 +1,69 @@
+"""Contradictions, things used from afar, programs that do nothing, other words, what was declared."""
+
+import pytest
+
+from hearth.kb import grammar
+from hearth.pipelines import lint
+from hearth.schemas.program import Program
+from hearth.schemas.syntax import parse_program, print_step
+
+
+def program(text, title="", description=""):
+    found, faults = parse_program(text)
+    assert not faults
+    return Program(title, description, found.steps, found.lines)
+
+
+def test_switched_on_twice():
+    steps = "[SwitchOn] <tv> (1)\n[SwitchOn] <tv> (2)\n[SwitchOn] <tv> (1)\n[SwitchOff] <tv> (1)\n[SwitchOn] <tv> (1)\n"
+    (found,) = lint.contradictions(program(steps))
+    assert (found.code, found.step, found.remove) == ("CONTRADICTION", 2, True)
+
+
+@pytest.mark.parametrize(
+    ("steps", "missing"),
+    [
+        ("[Walk] <bedroom> (1)\n[Sit] <sofa> (1)\n", [(1, "[Walk] <sofa> (1)")]),
+        ("[Walk] <kitchen> (1)\n[Grab] <cup> (1)\n", [(1, "[Walk] <cup> (1)")]),
+        ("[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n", []),
+        ("[Walk] <kitchen> (1)\n[Walk] <table> (1)\n[Grab] <cup> (1)\n", []),
+        ("[Find] <cup> (1)\n[Grab] <cup> (1)\n[PutBack] <cup> (1) <sofa> (1)\n", [(2, "[Walk] <sofa> (1)")]),
+    ],
+)
+def test_used_from_afar(knowledge, steps, missing):
+    found = list(lint.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
+    assert [(one.step, print_step(one.before[0])) for one in found] == missing
+
+
+def test_a_program_that_does_nothing():
+    assert [one.code for one in lint.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"))] == ["NO_EFFECT"]
+    assert not list(lint.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n")))
+
+
+@pytest.mark.parametrize(
+    ("description", "is_off"),
+    [("I turn the TV on.", False), ("Wash the dishes well.", True), ("Two televisions", False), ("", False)],
+)
+def test_words_about_other_things(knowledge, description, is_off):
+    given = program("[Walk] <television> (1)\n[SwitchOn] <television> (1)\n", "Relax", description)
+    assert bool(list(lint.off_topic(given, knowledge))) == is_off
+
+
+def test_what_was_declared(knowledge):
+    given = program("[Walk] <kitchen> (1)\n[Walk] <table> (1)\n[Grab] <cup> (1)\n[Wash] <teeth> (1)\n")
+    row = {"rooms": [{"name": "bedroom", "quantity": 1}], "props": [{"name": "cup", "quantity": 2}]}
+    told = [one.message for one in lint.undeclared(given, row, knowledge)]
+    assert len(told) == 3
+    assert "table" in told[0] and "cup" in told[1] and "kitchen" in told[2]
+    assert not list(lint.undeclared(given, {"rooms": [], "props": None}, knowledge))
+
+
+def test_through_validate(write, built):
+    good = "Watch TV\nTV!\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n"
+    twice = good + "[SwitchOn] <television> (1)\n"
+    afar = "Nap\nOn the sofa.\n\n[Walk] <bedroom> (1)\n[Sit] <sofa> (1)\n"
+    build = built(write("a.txt", f"{good}\n{twice}\n{afar}"))
+    build.run("ingest", "validate")
+    assert build.codes("validate") == [("text:a.txt#2", "CONTRADICTION")]
+    warnings = {row["program_id"]: [one["code"] for one in row["warnings"]] for row in build.rows("validate")}
+    assert warnings == {"text:a.txt": [], "text:a.txt#3": ["NOT_CLOSE"]}
