@@ -11,6 +11,9 @@ from hearth.commands import output
 from hearth.commands.inputs import File, Graph, HomeName, Homes, Kb, read_home, read_knowledge, read_program
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from hearth.grounding.stances import Stance
     from hearth.grounding.trial import Trial
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
@@ -56,15 +59,16 @@ def run(
     trial = attempt(program, place, seed, DEFAULT, at_rest=not as_is, add=not as_is)
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
     if as_json:
-        output.emit(_json(trial, place))
+        output.emit(_json(trial, place, homes))
     else:
-        _print(program, trial, place, explain, DEFAULT)
+        _print(program, trial, place, explain, homes)
     if failure is not None:
         raise typer.Exit(output.BAD_INPUT)
 
 
-def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, rules: Rules) -> None:
+def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, homes: Path | None) -> None:
     from hearth.schemas.failures import Failure
+    from hearth.simulation.rules import DEFAULT
 
     print(f"{program.title or 'A program'}, in {place.name}")
     if isinstance(trial, Failure):
@@ -72,6 +76,7 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
         return
     _print_binding(trial)
     execution = trial.execution
+    stances = _stances(trial, place, homes) if explain else ()
     for number, tick in enumerate(execution.program.ticks()):
         before = execution.worlds[number]
         if number + 1 == len(execution.worlds):
@@ -80,9 +85,28 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
             return
         change = execution.worlds[number + 1].changes(before)
         print(f"{number + 1:3}  {_tick(tick)}\n     {_summary(change, before)}")
+        for stance in stances[number] if stances else ():
+            print(f"       {_stance(stance)}")
         if explain:
-            _print_checks(before, tick, rules)
+            _print_checks(before, tick, DEFAULT)
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
+
+
+def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[Stance, ...], ...]:
+    """How the character stands for each step; nothing in homes without geometry."""
+    from hearth.grounding.stances import stances
+    from hearth.simulation.homes import catalog
+    from hearth.simulation.navigation import Ways
+
+    if place.name not in catalog.names(homes) or place.node(place.agents[0]).box is None:
+        return ()
+    return stances(trial.execution, Ways(catalog.load_layout(place.name, homes).floor))
+
+
+def _stance(stance: Stance) -> str:
+    x, z, yaw = stance.pose
+    hand = f", {stance.hand} hand" if stance.hand else ""
+    return f"character {stance.agent} at ({x:.2f}, {z:.2f}) m, facing {yaw:.0f} degrees{hand}"
 
 
 def _tick(tick: tuple[Any, ...]) -> str:
@@ -130,7 +154,7 @@ def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
             print(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
 
 
-def _json(trial: Trial | Failure, place: Home) -> dict[str, Any]:
+def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, Any]:
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 
@@ -147,4 +171,5 @@ def _json(trial: Trial | Failure, place: Home) -> dict[str, Any]:
         "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
         "steps": [print_step(step) for step in execution.program.steps],
         "changes": changes,
+        "stances": [[asdict(stance) for stance in tick] for tick in _stances(trial, place, homes)],
     }

@@ -42,17 +42,19 @@ class Located:
 
 
 def located(world: World) -> Located:
-    """The characters where their boxes have them.
+    """The characters where their boxes have them; who has none, because it was added, in the middle of its room.
 
     Raises:
-        KeyError: a character has no box; only homes with geometry can be moved in by metres.
+        KeyError: neither a character nor its room has a box; only homes with geometry can be moved in by metres.
     """
     poses = []
     for agent in world.agents:
         node = world.home.node(agent.index)
-        if node.box is None:
+        room = rows.agent_room(world, agent)
+        box = node.box or (world.home.node(room).box if room >= 0 else None)
+        if box is None:
             raise KeyError(f"character {node.id} has no box")
-        poses.append(Pose(node.box.center[0], node.box.center[2], node.yaw or 0.0))
+        poses.append(Pose(box.center[0], box.center[2], node.yaw or 0.0))
     return Located(world, tuple(poses))
 
 
@@ -77,17 +79,21 @@ def do(
 
 
 def spot(here: Located, node: int) -> Box | None:
-    """The box of a node as things stand: with whom holds it, on or in what it was put, else where the home has it."""
+    """The box of a node as things stand: with whom holds it, on or in what it was put, else where the home has it.
+
+    What was added to a home has no box of its own: it is where it stands on or in.
+    """
     world = here.world
     for number, agent in enumerate(world.agents):
         if agent.index == node or agent.held >> node & 1:
             x, z = here.poses[number].point
             return Box((x, 0.9, z), (0.1, 0.1, 0.1))
-    if (world.moved.on | world.moved.inside) >> node & 1:
+    box = world.home.node(node).box
+    if box is None or (world.moved.on | world.moved.inside) >> node & 1:
         place = lowest((rows.on(world, node) | rows.inside(world, node)) & ~world.home.rooms)
         if place >= 0 and place != node:
             return spot(here, place)
-    return world.home.node(node).box
+    return box
 
 
 def _walk_towards(here: Located, step: Step, ways: Ways, stride: float, rules: Rules) -> Located | Failure:
@@ -200,7 +206,8 @@ def _follow(here: Located, world: World, step: Step, ways: Ways) -> tuple[Pose, 
     pose = here.poses[number]
     target = world.home.index.get(step.objects[0].node or -1, -1) if step.objects else -1
     box = spot(here, target) if target >= 0 else None
-    if box is None:
+    resting = (world.states[SITTING] | world.states[LYING]) & world.agents[number].bit
+    if box is None or resting and step.action in ("Walk", "Run", "Find"):
         return here.poses
     if step.action in ("TurnTo", "LookAt", "PointAt", "Watch"):
         moved: Pose | None = pose.towards((box.center[0], box.center[2]))

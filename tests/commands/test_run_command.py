@@ -109,3 +109,23 @@ def test_replay_of_something_else_is_one_clear_error(tmp_path):
     file.write_bytes(b"PK\x03\x04 truncated")
     result = call("replay", file)
     assert result.exit_code == 1 and "BAD_ARCHIVE" in result.output and "Traceback" not in result.output
+
+
+def test_explain_says_where_to_stand_which_hand_and_which_way_to_face(tmp_path):
+    file = tmp_path / "tv.txt"
+    file.write_text(
+        "Fetch\n\n\n[Walk] <remote_control> (1)\n[Grab] <remote_control> (1)\n[SwitchOn] <television> (1)\n"
+    )
+    stances = json.loads(call("run", file, "--home", "maple", "--json").output)["stances"]
+    assert [tick[0]["hand"] for tick in stances] == [None, "right", "left"]
+    walked, grabbed, switched = (tick[0]["pose"] for tick in stances)
+    assert len({(pose["x"], pose["z"]) for pose in (walked, grabbed, switched)}) == 1
+    assert grabbed["yaw"] != switched["yaw"]
+    assert "m, facing" in call("run", file, "--home", "maple", "--explain").output
+
+
+def test_a_second_character_is_placed_too(tmp_path):
+    file = tmp_path / "two.txt"
+    file.write_text("Two\n\n\n<char0> [Walk] <chair> (1) | <char1> [Walk] <fridge> (1)\n")
+    (tick,) = json.loads(call("run", file, "--home", "maple", "--json").output)["stances"]
+    assert [stance["agent"] for stance in tick] == [0, 1]

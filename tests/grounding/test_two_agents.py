@@ -16,7 +16,7 @@ NODES = (
     Node(11, "cup", "Props", ("GRABBABLE",)),
     Node(12, "fridge", "Appliances", ("CAN_OPEN", "CONTAINERS"), ("CLOSED",)),
 )
-EDGES = tuple(Edge(node, "INSIDE", 1) for node in (3, 10, 11, 12)) + (Edge(11, "ON", 10), Edge(11, "CLOSE", 10))
+EDGES = (*(Edge(node, "INSIDE", 1) for node in (3, 10, 11, 12)), Edge(11, "ON", 10), Edge(11, "CLOSE", 10))
 
 
 def home(knowledge):
