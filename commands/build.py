@@ -25,6 +25,15 @@ InHomes = Annotated[
     list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")
 ]
 HomesFolder = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
+SomeHomes = Annotated[
+    list[str] | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours; or `all` of them.")
+]
+Rehearsed = Annotated[
+    list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Try these programs, and write nothing.")
+]
+NodesWanted = Annotated[
+    int | None, typer.Option("--nodes", metavar="N", min=1, help="With SOURCE: fill environments up to N nodes or so.")
+]
 Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Salt = Annotated[
     str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
@@ -34,6 +43,7 @@ Variants = Annotated[int, typer.Option("--variants", metavar="N", min=0, help="P
 
 _OUT = Path("data_out")
 _CODES = 4
+_ALL = "all"
 
 
 def build(
@@ -98,22 +108,37 @@ def validate(
 
 
 def sample(
+    sources: Rehearsed = None,
     out: Out = _OUT,
     seed: Seed = 0,
     home: InHomes = None,
-    homes: HomesFolder = None,
+    homes: SomeHomes = None,
     kb: Kb = None,
+    size: NodesWanted = None,
+    limit: Limit = None,
     workers: Jobs = 0,
     strict: output.Strict = False,
     as_json: output.Json = False,
 ) -> None:
     """Place every valid program in homes where it runs.
 
+    With a SOURCE nothing is written: its programs are tried in environments sampled from every home, and what becomes
+    of each pair of a program and a home is counted: ran; proven impossible, with the two steps or the fact that forbid
+    it; failed, with why.
+
     \b
-    Example:
+    Examples:
       python cli.py sample --out data_out --seed 7 --home maple
+      python cli.py sample release.zip --homes all --homes their_homes --json
     """
-    _run(None, out, workers, "sample", _options(seed, None, home, homes, kb, None), strict, as_json)
+    folder = next((Path(text) for text in homes or () if text != _ALL), None)
+    if not sources:
+        _run(None, out, workers, "sample", _options(seed, None, home, folder, kb, None), strict, as_json)
+        return
+    from hearth.commands import rehearsal
+
+    settings = {"seed": seed, "homes": tuple(home or ()), "homes_folder": _text(folder), "kb_folder": _text(kb)}
+    rehearsal.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
 def augment(

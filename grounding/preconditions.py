@@ -33,19 +33,34 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
     A failure of a program that contradicts itself has code CONTRADICTION; its `expected` says what step needed, its
     `actual` which step made that impossible.
     """
+    conditions, execution, step = _inferred(program, knowledge, rules)
+    return conditions if execution.failure is None else _contradiction(program, conditions, execution, step)
+
+
+def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
+    """The steps because of which no start lets a program run: one, or the one that spoils another and that other."""
+    conditions, execution, step = _inferred(program, knowledge, rules)
+    if execution.failure is None:
+        return ()
+    culprit = None if execution.failure.code in CAUSED_BY_START else _culprit(program, conditions, step)
+    return (step,) if culprit is None else (culprit, step)
+
+
+def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
+    """The conditions found, the last try with them, and the step it failed at, if it did."""
     conditions = Preconditions(tuple(habits(program, knowledge)))
     tried: dict[int, set[tuple[str, object]]] = {}
     for _ in range(MAX_CONDITIONS):
         place = sketch(program, conditions, knowledge)
         execution = run(World.start(place.home), place.program, rules)
         if execution.failure is None:
-            return conditions
+            return conditions, execution, -1
         step = _step_of(program, execution.failure.tick)
         found = _next(conditions, execution, place, step, tried.setdefault(step, set()), knowledge)
         if found is None:
-            return _contradiction(program, conditions, execution, step)
+            break
         conditions = found
-    return _contradiction(program, conditions, execution, step)
+    return conditions, execution, step
 
 
 def _next(

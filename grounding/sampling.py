@@ -13,6 +13,7 @@ from hearth.grounding.filling import fill
 from hearth.grounding.fulfilling import fulfil
 from hearth.grounding.placing import Wishes, bind
 from hearth.grounding.preconditions import infer
+from hearth.grounding.soundness import unsound
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Program
@@ -60,13 +61,16 @@ class Size:
     some: int = 12
 
 
+USUAL = Size()
+
+
 def sample(
     program: Program,
     home: Home,
     seed: int,
     record_id: str = "",
     conditions: Preconditions | None = None,
-    size: Size = Size(),
+    size: Size = USUAL,
     rules: Rules = DEFAULT,
     must_run: bool = True,
 ) -> tuple[Environment, Execution] | Failure:
@@ -93,9 +97,10 @@ def sample(
         environment = draw(program, base, found, seed, record_id, attempt, size)
         execution = run(environment.world, environment.program, rules)
         missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
-        if not missing and (execution.failure is None or not must_run):
+        fault = unsound(environment.world)
+        if not missing and fault is None and (execution.failure is None or not must_run):
             return environment, execution
-        failure = _unmet(missing[0]) if missing else execution.failure
+        failure = _unmet(missing[0]) if missing else fault or execution.failure
         if attempt % 2 and execution.failure is not None and not missing:
             found = _with_demand(found, environment, execution, base)
     assert failure is not None

@@ -85,28 +85,58 @@ def _told(case: Record, shot: Snapshot, modality: str) -> Row:
 def prepare(settings: Settings) -> dict[str, Any]:
     """Choose the executions: the first ones of different programs, in homes that have geometry."""
     homes = Homes(settings)
-    chosen: dict[str, str] = {}
+    found: dict[str, tuple[str, str]] = {}
+    for file, row in _sampled(settings):
+        if len(found) >= settings.pictures:
+            break
+        if row["executable"] and homes.in_catalog(row["home"]):
+            found.setdefault(row["program_id"], (row["execution_id"], file))
+    return {**overlays(settings), "executions": dict(sorted(found.values()))}
+
+
+def _sampled(settings: Settings) -> Iterator[tuple[str, Row]]:
+    """Every case with the file it stands in, without what only running it needs."""
     manifest = read_manifest(settings.folder("sample"))
     for part in manifest.parts if manifest else ():
         for file in part["files"]:
             for row in read_rows(manifest.folder / file, ["program_id", "execution_id", "home", "executable"]):
-                if len(chosen) < settings.pictures and row["executable"] and homes.in_catalog(row["home"]):
-                    chosen.setdefault(row["program_id"], row["execution_id"])
-    return {**overlays(settings), "executions": sorted(chosen.values())}
+                yield file, row
 
 
-def chosen(job: Job, partition: Partition) -> Iterator[Record]:
-    """The cases of a part that are to be filmed; the others, nearly all, are never turned into rows."""
+SHARES = 64
+"""Partitions at most, so that all workers have something to film and a killed run loses little."""
+
+
+def partitions(job: Job) -> Iterator[Partition]:
+    """The executions to be filmed, a few at a time; one empty partition if there are none."""
+    manifest = read_manifest(job.settings.folder("sample"))
+    known: dict[str, str] = job.plan["executions"]
+    executions = list(known)
+    size = max(1, -(-len(executions) // SHARES))
+    for number, start in enumerate(range(0, max(len(executions), 1), size)):
+        share = executions[start : start + size]
+        files = sorted({known[execution] for execution in share})
+        digests = [manifest.content["files"][file]["sha256"] for file in files] if manifest else []
+        yield Partition(number, value_digest([digests, share]), share, len(share))
+
+
+def records(job: Job, partition: Partition) -> Iterator[Record]:
+    """The cases of a partition; the others, nearly all, are never turned into rows."""
     import pyarrow as pa
     import pyarrow.compute as pc
     import pyarrow.parquet as pq
 
-    wanted = pa.array(job.plan["executions"], pa.string())
-    with pq.ParquetFile(partition.payload) as file:
-        if not pc.any(pc.is_in(file.read(["execution_id"])["execution_id"], wanted)).as_py():
-            return
-        for batch in file.iter_batches(batch_size=READ_BATCH):
-            yield from batch.filter(pc.is_in(batch["execution_id"], wanted)).to_pylist()
+    left = {execution: job.plan["executions"][execution] for execution in partition.payload}
+    for name in sorted(set(left.values())):
+        wanted = pa.array([execution for execution, file in left.items() if file == name])
+        count = len(wanted)
+        with pq.ParquetFile(job.settings.folder("sample") / name) as file:
+            for batch in file.iter_batches(batch_size=READ_BATCH):
+                rows = batch.filter(pc.is_in(batch["execution_id"], wanted)).to_pylist()
+                yield from rows
+                count -= len(rows)
+                if not count:
+                    break
 
 
 def open_context(job: Job) -> Context:
@@ -123,6 +153,7 @@ STAGE = Stage(
     settings=("pictures",),
     open=open_context,
     prepare=prepare,
-    records=chosen,
+    partitions=partitions,
+    records=records,
     identify=lambda case: str(case["execution_id"]),
 )

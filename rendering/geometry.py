@@ -125,15 +125,15 @@ class Geometry:
         found[rest] = still.occluded(origins[:, rest], directions[:, rest], far)
         return found
 
-    def rows(self, triangle: Ids) -> Floats:
-        """(ROWS, N) what is known of N triangles."""
-        first = self.first
+    def rows(self, triangle: Ids, which: slice = slice(None)) -> Floats:
+        """(ROWS, N) what is known of N triangles, or only those rows."""
+        first, moving = self.first, self.moving.rows[which]
         if not first:
-            return self.moving.rows.take(triangle, axis=1)
-        found = self.still.rows.take(triangle, axis=1, mode="clip")
+            return moving.take(triangle, axis=1)
+        found: Floats = self.still.rows[which].take(triangle, axis=1, mode="clip")
         moved = np.flatnonzero(triangle >= first)
         if len(moved):
-            found[:, moved] = self.moving.rows.take(triangle[moved] - first, axis=1)
+            found[:, moved] = moving.take(triangle[moved] - first, axis=1)
         return found
 
     def owner(self, triangle: Ids) -> Ids:

@@ -48,7 +48,7 @@ def looks() -> dict[str, Choice]:
         HearthError: an entry names a recipe that does not exist.
     """
     text = (files("hearth.rendering") / "looks.yaml").read_text(encoding="utf-8")
-    table: dict[str, Any] = yaml.safe_load(text)
+    table: dict[str, Any] = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     chosen = {
         name: Choice(**(entry if isinstance(entry, dict) else {"recipe": entry})) for name, entry in table.items()
     }

@@ -264,7 +264,7 @@ def _candidates(
             at = (cx + x * c + z * s, y, cz - x * s + z * c)
             away = min((abs(at[0] - p[0]) + abs(at[2] - p[2]) for p in near), default=0.0)
             middle = abs(x) * 0.3 + abs(z - (region.z0 + region.z1) / 2) * 0.15
-            found.append((round(away * 0.7 + middle + 0.02 * (derive(seed, i, k) % 100) / 100, 6), at))
+            found.append((round(away * 0.7 + middle + 0.02 * ((seed + i * 7919 + k * 104729) % 101) / 101, 6), at))
     w, d = (size[0], size[2]) if abs(c) > abs(s) else (size[2], size[0])
     return [Pose(Box(at, (w, size[1], d)), yaw) for _, at in sorted(found)]
 

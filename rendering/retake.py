@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from hearth.rendering.things import Thing, placed
 
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+Where = tuple[Floats, Floats]
 
 MARGIN = 0.01
 """Metres by which boxes of what changed are widened."""
@@ -37,15 +39,23 @@ class Take:
     Attributes:
         shot: what each pixel's ray hit.
         rgb: (H*W, 3) its colours.
-        points, flat: (3, H*W) visible points and the normals of their triangles; nothing where nothing was hit.
         drawn: how many pixels were drawn anew.
+        known: what `where` gives, if it is known already.
     """
 
     shot: Shot
     rgb: NDArray[np.uint8]
-    points: Floats
-    flat: Floats
     drawn: int
+    known: Where | None = None
+
+    @cached_property
+    def where(self) -> Where:
+        """(3, H*W) visible points, and the normals of their triangles; zeros where nothing was hit."""
+        if self.known is not None:
+            return self.known
+        points, flat = np.zeros((2, 3, self.shot.rays.shape[1]), np.float32)
+        _locate(self.shot, np.flatnonzero(self.shot.hits.triangle >= 0), points, flat)
+        return points, flat
 
 
 def take(scene: Scene, camera: Camera, last: Take | None = None) -> Take:
@@ -60,9 +70,7 @@ def take(scene: Scene, camera: Camera, last: Take | None = None) -> Take:
 
 def _whole(scene: Scene, camera: Camera) -> Take:
     shot = shoot(scene, camera)
-    points, flat = np.zeros((2, 3, shot.rays.shape[1]), np.float32)
-    _locate(shot, np.flatnonzero(shot.hits.triangle >= 0), points, flat)
-    return Take(shot, draft(shot), points, flat, shot.rays.shape[1])
+    return Take(shot, draft(shot), shot.rays.shape[1])
 
 
 def _locate(shot: Shot, found: Ids, points: Floats, flat: Floats) -> None:
@@ -80,7 +88,7 @@ def _again(scene: Scene, geometry: Geometry, last: Take) -> Take:
     hits = _renumbered(past.hits, old, new, past.geometry.first)
     seen = _seen_anew(past, hits, came)
     shot = replace(past, scene=scene, geometry=geometry, hits=_recast(geometry, past.rays, hits, seen))
-    points, flat = last.points.copy(), last.flat.copy()
+    points, flat = (values.copy() for values in last.where)
     _locate(shot, seen[shot.hits.triangle[seen] >= 0], points, flat)
     changed = np.zeros(points.shape[1], np.bool_)
     changed[seen] = True
@@ -89,7 +97,7 @@ def _again(scene: Scene, geometry: Geometry, last: Take) -> Take:
     rgb = last.rgb.copy()
     if len(drawn):
         rgb[drawn] = draft(shot, drawn)
-    return Take(shot, rgb, points, flat, len(drawn))
+    return Take(shot, rgb, len(drawn), (points, flat))
 
 
 GONE = -2
@@ -132,7 +140,7 @@ def _recast(geometry: Geometry, rays: Floats, hits: Hits, seen: Ids) -> Hits:
     return whole
 
 
-def _mark_lit(changed: Mask, shot: Shot, past: Shot, where: tuple[Floats, Floats], things: tuple[Thing, ...]) -> None:
+def _mark_lit(changed: Mask, shot: Shot, past: Shot, where: Where, things: tuple[Thing, ...]) -> None:
     """Mark the pixels whose light is another: near lights that changed, and where shadows went or came."""
     hit = shot.hits.triangle >= 0
     points, flat = where
@@ -153,7 +161,7 @@ Box = tuple[Floats, Floats]
 
 
 def _mark_sun(
-    changed: Mask, shot: Shot, where: tuple[Floats, Floats], hit: Mask, caster: Caster, boxes: list[Box]
+    changed: Mask, shot: Shot, where: Where, hit: Mask, caster: Caster, boxes: list[Box]
 ) -> None:
     day = shot.scene.day if shot.camera.cut is None else from_above(shot.scene.day)
     if day.sun is None:
@@ -170,7 +178,7 @@ def _mark_sun(
 
 
 def _mark_lamp(
-    changed: Mask, light: Light, where: tuple[Floats, Floats], hit: Mask, caster: Caster, boxes: list[Box]
+    changed: Mask, light: Light, where: Where, hit: Mask, caster: Caster, boxes: list[Box]
 ) -> None:
     points, flat = where
     rest = shading.within(light, points)

@@ -102,11 +102,24 @@ def _shaded(lights: tuple[Light, ...], geometry: Geometry, view: View, day: Dayl
     surface = surface_at(geometry, view)
     surface.light[:] = _ambient(day, surface, geometry, view.fine)
     _add_sun(day, surface, geometry, view.fine)
-    for source in lights:
+    for source in _in_reach(lights, surface.points):
         _add_light(source, surface, geometry, view.fine)
     color = surface.albedo * (surface.light + surface.glow) + surface.gloss + _reflection(surface)
     color[:, surface.inner] = np.array(SECTION, np.float32)[:, None]
     return color
+
+
+def _in_reach(lights: tuple[Light, ...], points: Floats) -> list[Light]:
+    """The lights that reach some of the points' neighbourhood."""
+    (west, east), (south, north) = ((axis.min(), axis.max()) for axis in (points[0], points[2]))
+    areas = [(light, _area(light)) for light in lights]
+    return [light for light, (x0, x1, z0, z1) in areas if x0 < east and x1 > west and z0 < north and z1 > south]
+
+
+def _area(source: Light) -> tuple[float, float, float, float]:
+    """(x0, x1, z0, z1) beyond which a light is not looked at."""
+    x, _, z = source.position
+    return source.room or (x - REACH, x + REACH, z - REACH, z + REACH)
 
 
 def dot(a: Floats, b: Floats) -> Floats:
@@ -119,7 +132,7 @@ def dot(a: Floats, b: Floats) -> Floats:
 
 def visible_points(geometry: Geometry, view: View) -> tuple[Floats, Floats]:
     """(3, M) points of rays that all hit something, lifted off their surface, and (3, M) flat normals there."""
-    flat = geometry.rows(view.hits.triangle)[g.FLAT]
+    flat = geometry.rows(view.hits.triangle, g.FLAT)
     direction = view.rays[3:]
     flat *= np.where(dot(flat, direction) > 0, np.float32(-1), np.float32(1))
     return view.rays[:3] + direction * view.hits.distance + flat * np.float32(LIFT), flat
@@ -217,8 +230,7 @@ def _add_light(source: Light, surface: Surface, geometry: Geometry, fine: bool) 
 
 def within(source: Light, points: Floats) -> Ids:
     """Which points a light may reach: those in its room; a lamp's also a little beyond, through doors."""
-    x0, x1, z0, z1 = source.room or (source.position[0] - REACH, source.position[0] + REACH,
-                                     source.position[2] - REACH, source.position[2] + REACH)  # fmt: skip
+    x0, x1, z0, z1 = _area(source)
     x, z = points[0], points[2]
     return np.flatnonzero((x > x0) & (x < x1) & (z > z0) & (z < z1))
 

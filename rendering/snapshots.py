@@ -107,11 +107,11 @@ def _check_geometry(home: EnvironmentGraph) -> None:
 
 
 def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
-    """The things that are the same in all scenes."""
+    """The things that are the same in all scenes, but for lamps, which cast no shadows, and what hangs above."""
     common = set(scenes[0].things)
     for scene in scenes[1:]:
         common &= set(scene.things)
-    return tuple(thing for thing in scenes[0].things if thing in common)
+    return tuple(thing for thing in scenes[0].things if thing in common and not (thing.above or thing.lamp))
 
 
 def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed: int) -> Iterator[Moment]:

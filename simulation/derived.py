@@ -49,8 +49,7 @@ def extended(
             return _rebuilt(home, nodes, edges, removed_edges, states)
     new = home.copy()
     try:
-        for node in nodes:
-            _append(new, node)
+        _append(new, nodes)
         touched = -1 << len(home)
         touched |= _each(new, removed_edges, _clear) | _each(new, edges, _put)
         _restate(new, states)
@@ -116,29 +115,35 @@ def _twice(node_id: int) -> HearthError:
     return HearthError.of(Code.BAD_GRAPH, f"two nodes have the id {node_id}")
 
 
-def _append(home: Home, node: Node) -> None:
-    index = len(home.ids)
-    node_id, name = node.id, node.class_name
-    if node_id in home.index:
-        raise _twice(node_id)
-    bit = 1 << index
-    home.index[node_id] = index
-    home.ids.append(node_id)
-    home.classes.append(name)
-    home.nodes.append(node)
-    home.by_class[name] = home.by_class.get(name, 0) | bit
-    if name == CHARACTER_CLASS:
-        home.agents = (*home.agents, index)
-        home.agent_rows.append((0,) * 9)
-    elif node.category == ROOM_CATEGORY:
-        home.rooms |= bit
-    for prop in node.properties:
-        if name != CHARACTER_CLASS or prop in CHARACTER_PROPERTIES:
-            home.properties[prop] = home.properties.get(prop, 0) | bit
+def _append(home: Home, nodes: Sequence[Node]) -> None:
+    """Append nodes that belong after all others; what is alike in several of them is entered once for all."""
+    first = len(home.ids)
+    home.ids += [node.id for node in nodes]
+    home.index.update(zip(home.ids[first:], range(first, len(home.ids)), strict=True))
+    if len(home.index) < first - home.absent.bit_count() + len(nodes):
+        raise _twice(next(node.id for i, node in enumerate(nodes, first) if home.index[node.id] != i))
+    home.nodes += nodes
+    home.classes += [node.class_name for node in nodes]
     for rows in home.rows:
-        rows.append(0)
-    if node.states:
-        home.states = _entered(home.states, bit, node.states)
+        rows.extend([0] * len(nodes))
+    kinds: dict[tuple[str, str, tuple[str, ...], tuple[str, ...]], int] = {}
+    bit = 1 << first
+    for node in nodes:
+        kind = (node.class_name, node.category, node.properties, node.states)
+        kinds[kind] = kinds.get(kind, 0) | bit
+        bit <<= 1
+    for (name, category, properties, states), mask in kinds.items():
+        home.by_class[name] = home.by_class.get(name, 0) | mask
+        if name == CHARACTER_CLASS:
+            home.agents = (*home.agents, *indices(mask))
+            home.agent_rows += [(0,) * 9] * mask.bit_count()
+        elif category == ROOM_CATEGORY:
+            home.rooms |= mask
+        for prop in properties:
+            if name != CHARACTER_CLASS or prop in CHARACTER_PROPERTIES:
+                home.properties[prop] = home.properties.get(prop, 0) | mask
+        if states:
+            home.states = _entered(home.states, mask, states)
 
 
 def _entered(states: tuple[int, ...], bit: int, names: Iterable[str]) -> tuple[int, ...]:

@@ -207,7 +207,7 @@ def _follow(here: Located, world: World, step: Step, ways: Ways) -> tuple[Pose, 
     target = world.home.index.get(step.objects[0].node or -1, -1) if step.objects else -1
     box = spot(here, target) if target >= 0 else None
     resting = (world.states[SITTING] | world.states[LYING]) & world.agents[number].bit
-    if box is None or resting and step.action in ("Walk", "Run", "Find"):
+    if box is None or (resting and step.action in ("Walk", "Run", "Find")):
         return here.poses
     if step.action in ("TurnTo", "LookAt", "PointAt", "Watch"):
         moved: Pose | None = pose.towards((box.center[0], box.center[2]))

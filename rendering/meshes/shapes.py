@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +24,7 @@ def triangles(corners: Floats, paint: Paint, normals: Floats | None = None, uvs:
     corners = np.asarray(corners, np.float32).reshape(-1, 3, 3)
     if normals is None and uvs is None:
         # Triangles without an area have no side that could be seen.
-        corners = corners[np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])).max(1) > 1e-14]
+        corners = corners[np.abs(_crossed(corners)).max(1) > 1e-14]
     if normals is None:
         normals = np.repeat(face_normals(corners)[:, None, :], 3, axis=1)
     if uvs is None:
@@ -36,8 +37,19 @@ def triangles(corners: Floats, paint: Paint, normals: Floats | None = None, uvs:
 
 def face_normals(corners: Floats) -> Floats:
     """(T, 3) unit normals of (T, 3, 3) corners, counter-clockwise seen from outside."""
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return (normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)).astype(np.float32)
+    normal = _crossed(corners)
+    length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+    return (normal / np.maximum(length, 1e-12)[:, None]).astype(np.float32)
+
+
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+
+
+def _crossed(corners: Floats) -> Floats:
+    """(T, 3) cross products of two sides."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    crossed: Floats = a[:, _NEXT] * b[:, _LAST] - a[:, _LAST] * b[:, _NEXT]
+    return crossed
 
 
 def flat_uvs(corners: Floats) -> Floats:
@@ -107,6 +119,11 @@ def medallion(center: Point, radius: float, paint: Paint, sides: int = 28) -> Me
 
 def cushion(center: Point, size: Point, paint: Paint, roundness: float = 0.5, steps: int = 5) -> Mesh:
     """A box with soft edges; `roundness` 0 is a box, 1 an ellipsoid."""
+    return shift(_cushion((float(size[0]), float(size[1]), float(size[2])), paint, roundness, steps), *center)
+
+
+@lru_cache(maxsize=1024)
+def _cushion(size: Point, paint: Paint, roundness: float, steps: int) -> Mesh:
     ticks = np.linspace(-1, 1, steps + 1)
     u, v = np.meshgrid(ticks, ticks, indexing="ij")
     faces = []
@@ -124,7 +141,7 @@ def cushion(center: Point, size: Point, paint: Paint, roundness: float = 0.5, st
     blend = unit if roundness >= 1 else _normalised(cube * half - inner + 1e-6 * unit)
     points = unit * half if roundness >= 1 else inner + radius * blend
     normals = _normalised(unit / half) if roundness >= 1 else blend
-    corners = (points + np.array(center)).reshape(-1, 4, 3)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3)
+    corners = points.reshape(-1, 4, 3)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3)
     smooth = normals.reshape(-1, 4, 3)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3, 3)
     return triangles(corners, paint, smooth)
 
@@ -194,9 +211,13 @@ def cylinder(
     center: Point, radius: float, height: float, paint: Paint, top: float | None = None, sides: int = 18
 ) -> Mesh:
     """A closed cylinder or cone standing on `center`; `top` is its upper radius."""
-    upper = radius if top is None else top
+    return shift(_cylinder(float(radius), float(height), paint, radius if top is None else float(top), sides), *center)
+
+
+@lru_cache(maxsize=1024)
+def _cylinder(radius: float, height: float, paint: Paint, upper: float, sides: int) -> Mesh:
     profile = [(0.0, 0.0), (radius, 0.0), (radius, 0.0), (upper, height), (upper, height), (0.0, height)]
-    return shift(lathe(profile, paint, sides), *center)
+    return lathe(profile, paint, sides)
 
 
 def rod(
@@ -204,7 +225,8 @@ def rod(
 ) -> Mesh:
     """A closed cylinder from `start` to `end`."""
     a, b = np.array(start, np.float64), np.array(end, np.float64)
-    length = float(np.linalg.norm(b - a))
+    # Bones keep their lengths but for rounding; rounded, they are found among what was made before.
+    length = round(float(np.linalg.norm(b - a)), 7)
     if length < 1e-6:
         return empty()
     mesh = cylinder((0, 0, 0), radius, length, paint, end_radius, sides)

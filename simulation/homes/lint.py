@@ -19,8 +19,8 @@ from hearth.schemas.vocabulary import (
 )
 
 CATEGORIES = (
-    "Appliances", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor", "Floors", "Food",
-    "Furniture", "Lamps", "Props", "Rooms", "Walls", "Windows", "placable_objects",
+    "Animals", "Appliances", "BodyParts", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor",
+    "Floors", "Food", "Furniture", "Lamps", "People", "Props", "Rooms", "Walls", "Windows", "placable_objects",
 )  # fmt: skip
 """The categories that the release's graphs and ours know; of `Floor` and `Floors` both occur."""
 

@@ -9,11 +9,15 @@ from hearth.grounding.base import prepared
 from hearth.grounding.checking import unmet
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
+from hearth.grounding.soundness import unsound
 from hearth.kb import grammar
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Edge
 from hearth.schemas.syntax import parse_program
+from hearth.simulation.edit import extended
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
+from hearth.simulation.homes.lint import lint
 from hearth.simulation.world import World
 
 BREAKFAST = """Breakfast
@@ -128,3 +132,33 @@ def test_the_release_sample_runs_in_every_home(real_data, knowledge, maple):
                 assert run(environment.world, environment.program).executable
     assert refused == [("file1065_1.txt", Code.CONTRADICTION)]
     assert failed == []
+
+
+def test_what_is_sampled_is_a_sound_graph(breakfast, maple):
+    for seed in range(3):
+        environment, _ = sample(breakfast, maple, seed)
+        assert unsound(environment.world) is None
+        assert lint(environment.world.graph()) == ()
+
+
+@pytest.mark.parametrize(
+    ("edges", "states", "code"),
+    [
+        ([("cup", "INSIDE", "bathroom")], {}, Code.BAD_GRAPH),
+        ([("cup", "INSIDE", "fridge"), ("cup", "INSIDE", "dishwasher")], {}, Code.BAD_GRAPH),
+        ([("fridge", "INSIDE", "fridge")], {}, Code.LOOP),
+        ([("character", "HOLDS_RH", "cup"), ("character", "HOLDS_RH", "fridge")], {}, Code.CONFLICT),
+        ([], {"fridge": ()}, Code.CONDITION_UNMET),
+        ([], {"fridge": ("OPEN", "CLOSED")}, None),
+    ],
+)
+def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, code):
+    home = prepared(maple).home
+    node = {
+        name: home.ids[home.classes.index(name)] for name in ("cup", "fridge", "dishwasher", "bathroom", "character")
+    }
+    added = [Edge(node[a], relation, node[b]) for a, relation, b in edges]
+    changed = extended(home, (), added, (), {node[name]: now for name, now in states.items()})
+    fault = unsound(World.start(changed))
+    assert (fault and fault.code) == code
+    assert bool(lint(World.start(changed).graph())) == (code is not None)
