@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +17,7 @@ from hearth.schemas.text import decode
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.program import Program
 
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Program files; `-` reads standard input.")]
 Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
@@ -25,31 +26,50 @@ Affordances = Annotated[
 ]
 
 
+Lint = Annotated[bool, typer.Option("--lint", help="Warn as well of what is well written and can't be meant.")]
+Fix = Annotated[bool, typer.Option("--fix", help="Make the safe corrections in the files, and show them as a diff.")]
+DryRun = Annotated[bool, typer.Option("--diff", help="Show what --fix would do, and change nothing.")]
+
+
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was found in one file."""
+    """What was found in one file; warnings do not count as faults."""
 
     file: str
     programs: int
     steps: int
     faults: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    diff: str = ""
 
 
-def check(files: Files, affordances: Affordances = False, kb: Kb = None, as_json: output.Json = False) -> None:
+def check(
+    files: Files,
+    affordances: Affordances = False,
+    lint: Lint = False,
+    fix: Fix = False,
+    diff: DryRun = False,
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
     """Check program files and underline what is wrong.
 
     Every fault of every file is reported at once: lines that are no steps, instances that are no numbers, actions and
     objects nobody knows, a wrong number of objects. A file may hold several programs. The status is 1 if there was
-    any fault.
+    any fault. With --lint: things switched on twice, things used that nobody went to, programs that do nothing.
 
     \b
-    Example:
+    Examples:
       python cli.py check morning.txt evening.txt
+      python cli.py check --fix morning.txt
     """
     from hearth.kb import knowledge
 
     known = knowledge.load(overlay=kb) if kb else knowledge.default()
-    checked = [check_file(file, known, affordances=affordances) for file in files]
+    diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}
+    checked = [
+        replace(check_file(file, known, affordances=affordances, lint=lint), diff=diffs.get(file, "")) for file in files
+    ]
     faults = sum(len(each.faults) for each in checked)
     if as_json:
         output.emit({"files": [_json(each) for each in checked], "faults": faults})
@@ -58,7 +78,23 @@ def check(files: Files, affordances: Affordances = False, kb: Kb = None, as_json
     output.status(faults, strict=True)
 
 
-def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False) -> Checked:
+def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
+    """Correct one file where it can be read as text; what it would be is compared with what it is."""
+    from hearth.pipelines import fixes
+    from hearth.pipelines.files import write_bytes
+
+    if str(path) == "-" or not path.is_file():
+        return ""
+    text = decode(path.read_bytes(), str(path))
+    if isinstance(text, Diagnostic):
+        return ""
+    new = fixes.fixed(text, knowledge)
+    if write and new != text:
+        write_bytes(path, new.encode())
+    return fixes.difference(text, new, str(path))
+
+
+def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False, lint: bool = False) -> Checked:
     """Read one file and find every fault in it; a file that can't be read is a fault too."""
     name = "standard input" if path == Path("-") else str(path)
     try:
@@ -68,35 +104,54 @@ def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False) -
         text = Diagnostic(code, (error.strerror or "can't be read").lower(), name)
     if isinstance(text, Diagnostic):
         return Checked(name, 0, 0, (text,))
-    return check_text(text, knowledge, name, affordances=affordances)
+    return check_text(text, knowledge, name, affordances=affordances, lint=lint)
 
 
-def check_text(text: str, knowledge: Knowledge, file: str = "", *, affordances: bool = False) -> Checked:
+def check_text(
+    text: str, knowledge: Knowledge, file: str = "", *, affordances: bool = False, lint: bool = False
+) -> Checked:
     """Find every fault of a text that holds programs: of syntax, names and arity, ordered by line."""
     from hearth.kb import grammar
 
     parsed = parse_programs(text, file)
     source = text.splitlines()
     faults = list(parsed.diagnostics)
+    warnings: list[Diagnostic] = []
     for program in parsed.programs:
         canonical, found = grammar.check(program, knowledge, file, source)
         faults += found
         if affordances:
             faults += grammar.affordances(canonical, knowledge, file, source)
+        if lint and not found:
+            warnings += _warnings(canonical, knowledge, file, source)
     faults.sort(key=lambda fault: (fault.line, fault.column))
     steps = sum(len(program.steps) for program in parsed.programs)
-    return Checked(file, len(parsed.programs), steps, tuple(faults))
+    return Checked(file, len(parsed.programs), steps, tuple(faults), tuple(warnings))
+
+
+def _warnings(program: Program, knowledge: Knowledge, file: str, source: list[str]) -> list[Diagnostic]:
+    from hearth.pipelines import lint
+
+    found = [*lint.contradictions(program), *lint.findings(program, knowledge)]
+    return [lint.diagnostic(each, program, file, source) for each in found]
 
 
 def _json(checked: Checked) -> dict[str, Any]:
     faults = [output.diagnostic_json(fault) for fault in checked.faults]
-    return {"file": checked.file, "programs": checked.programs, "steps": checked.steps, "faults": faults}
+    told = {"file": checked.file, "programs": checked.programs, "steps": checked.steps, "faults": faults}
+    if checked.warnings:
+        told["warnings"] = [output.diagnostic_json(fault) for fault in checked.warnings]
+    return {**told, "diff": checked.diff} if checked.diff else told
 
 
 def _print(checked: list[Checked], faults: int) -> None:
     for each in checked:
+        sys.stdout.write(each.diff)
         output.report(each.faults, sys.stdout)
+        output.report(each.warnings, sys.stdout, kind="warning")
     programs, steps = sum(each.programs for each in checked), sum(each.steps for each in checked)
     said = output.counted(faults, "fault") if faults else "no faults"
+    warnings = sum(len(each.warnings) for each in checked)
+    said += f", {output.counted(warnings, 'warning')}" if warnings else ""
     counts = [output.counted(len(checked), "file"), output.counted(programs, "program"), output.counted(steps, "step")]
     print(f"{', '.join(counts)}: {said}")

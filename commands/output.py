@@ -112,15 +112,15 @@ def diagnostic_json(fault: Diagnostic) -> dict[str, Any]:
     return asdict(fault)
 
 
-def report(faults: Iterable[Diagnostic], stream: TextIO | None = None) -> None:
+def report(faults: Iterable[Diagnostic], stream: TextIO | None = None, kind: str = "error") -> None:
     """Print faults as a compiler does: code, place, the line, and the offending words underlined."""
     out = stream or sys.stderr
     colour = out.isatty()
     for fault in faults:
-        print(explain(fault, colour=colour), file=out)
+        print(explain(fault, colour=colour, kind=kind), file=out)
 
 
-def explain(fault: Diagnostic, *, colour: bool = False) -> str:
+def explain(fault: Diagnostic, *, colour: bool = False, kind: str = "error") -> str:
     """One fault as text of several lines.
 
     error[UNKNOWN_OBJECT]: no object is called `televison`
@@ -130,7 +130,7 @@ def explain(fault: Diagnostic, *, colour: bool = False) -> str:
         |         ^^^^^^^^^^^ did you mean `television`?
     """
     red, blue, bold, reset = (_RED, _BLUE, _BOLD, _RESET) if colour else ("", "", "", "")
-    lines = [f"{red}error[{fault.code}]{reset}: {bold}{_one_line(fault.message)}{reset}"]
+    lines = [f"{red}{kind}[{fault.code}]{reset}: {bold}{_one_line(fault.message)}{reset}"]
     pad = " " * max(3, len(str(fault.line or "")))
     if fault.place():
         lines.append(f"{pad}{blue}-->{reset} {fault.place()}")
