@@ -149,7 +149,7 @@ def test_what_is_sampled_is_a_sound_graph(breakfast, maple):
         ([("fridge", "INSIDE", "fridge")], {}, Code.LOOP),
         ([("character", "HOLDS_RH", "cup"), ("character", "HOLDS_RH", "fridge")], {}, Code.CONFLICT),
         ([], {"fridge": ()}, Code.CONDITION_UNMET),
-        ([], {"fridge": ("OPEN", "CLOSED")}, None),
+        ([("cup", "INSIDE", "fridge")], {"fridge": ("OPEN", "OFF")}, None),
     ],
 )
 def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, code):

@@ -1,0 +1,69 @@
+"""`sample SOURCE`: does every program run in every home, and if not, why?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.pipelines.rehearsal import Rehearsal, Script
+    from hearth.pipelines.surroundings import Homes
+    from hearth.schemas.failures import Failure
+
+AROUND = 10
+"""Environments may have so many nodes more or less than were asked for."""
+
+
+def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
+         as_json: bool) -> None:  # fmt: skip
+    """Rehearse and print; with `strict` the status is 1 if a pair ran neither and is not proven impossible."""
+    from itertools import islice
+
+    from hearth.grounding.sampling import Size
+    from hearth.pipelines.rehearsal import rehearse, scripts
+    from hearth.pipelines.settings import Settings
+    from hearth.pipelines.surroundings import Homes
+
+    homes = Homes(Settings(**settings))
+    programs = islice(scripts(map(str, sources), homes.knowledge), limit)
+    wanted = Size() if size is None else Size(size - AROUND, size + AROUND)
+    found = rehearse(programs, homes, homes.names(), settings["seed"], wanted)
+    if as_json:
+        told = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
+        output.emit({**found.summary(), **told})
+    else:
+        figures = {**found.summary(), "homes": len(found.homes)}
+        figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
+        output.table(("figure", "value"), [(name.replace("_", " "), value) for name, value in figures.items()])
+        for one in (*_impossible(found, homes), *_failures(found)):
+            print(f"{one['place']} in {one['home']}: {one['message']}")
+    output.status(len(found.failed), strict=strict)
+
+
+def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
+    from hearth.grounding.preconditions import at_odds
+
+    for script, failure in found.impossible:
+        yield _told(script, "any home", failure, at_odds(script.program, homes.knowledge))
+
+
+def _failures(found: Rehearsal) -> Iterator[dict[str, Any]]:
+    for script, home, failure in found.failed:
+        yield _told(script, home, failure, (min(failure.tick, len(script.program.steps) - 1),))
+
+
+def _told(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
+    """Why a program does not run, with the lines of the steps that are at odds."""
+    return {
+        "program": script.program_id,
+        "place": script.place,
+        "home": home,
+        "code": str(failure.code),
+        "steps": [{"step": number + 1, "line": script.program.line(number)} for number in steps],
+        "expected": failure.expected,
+        "actual": failure.actual,
+        "message": failure.message(),
+    }
