@@ -160,9 +160,7 @@ def _mark_lit(changed: Mask, shot: Shot, past: Shot, where: Where, things: tuple
 Box = tuple[Floats, Floats]
 
 
-def _mark_sun(
-    changed: Mask, shot: Shot, where: Where, hit: Mask, caster: Caster, boxes: list[Box]
-) -> None:
+def _mark_sun(changed: Mask, shot: Shot, where: Where, hit: Mask, caster: Caster, boxes: list[Box]) -> None:
     day = shot.scene.day if shot.camera.cut is None else from_above(shot.scene.day)
     if day.sun is None:
         return
@@ -177,9 +175,7 @@ def _mark_sun(
     changed[rest[caster.occluded(origins, np.broadcast_to(sun, origins.shape))]] = True
 
 
-def _mark_lamp(
-    changed: Mask, light: Light, where: Where, hit: Mask, caster: Caster, boxes: list[Box]
-) -> None:
+def _mark_lamp(changed: Mask, light: Light, where: Where, hit: Mask, caster: Caster, boxes: list[Box]) -> None:
     points, flat = where
     rest = shading.within(light, points)
     rest = rest[hit[rest] & ~changed[rest]]

@@ -42,4 +42,4 @@ def test_pictures_are_published_with_the_dataset(filmed):
 def test_what_has_no_geometry_is_not_chosen(made):
     from hearth.pipelines.render import prepare
 
-    assert prepare(made.settings)["executions"] == []
+    assert prepare(made.settings)["executions"] == {}
