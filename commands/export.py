@@ -1,0 +1,43 @@
+"""`export`: a published dataset in another form."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hearth.commands import output
+
+Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
+Format = Annotated[str, typer.Option("--format", "-f", metavar="FORM", help="release, nl, jsonl, code, networkx, ...")]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new or empty folder.")]
+Programs = Annotated[
+    list[str] | None, typer.Option("--program", metavar="ID", help="Only this one; may be given several times.")
+]
+Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=0, help="At most N programs.")]
+
+
+def export(
+    dataset: Folder, form: Format, out: Out, program: Programs = None, limit: Limit = None, as_json: output.Json = False
+) -> None:
+    """Write a published dataset in another form.
+
+    Forms: release (the original layout, which `ingest` reads back), nl (steps in words, pairs for instruction tuning,
+    the planning papers' examples), jsonl (every table), code (Python functions), networkx (node-link JSON) and graphml
+    (graphs before and after), rdf (Turtle).
+
+    \b
+    Example:
+      python cli.py export data_out --format nl --out words
+    """
+    from hearth.exports.reading import Wanted
+    from hearth.exports.registry import COUNTED
+    from hearth.exports.registry import export as exported
+    from hearth.pipelines.dataset import Dataset
+
+    number = exported(Dataset.open(dataset), form, out, Wanted(tuple(program or ()), limit))
+    if as_json:
+        output.emit({"format": form, "out": str(out), "count": number})
+    else:
+        print(f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}")

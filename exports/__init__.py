@@ -1,0 +1,1 @@
+"""A published dataset in other forms: the release's layout, words, JSON Lines, Python, graphs, triples."""
