@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import atan, degrees, radians, tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from hearth.schemas.graph import Box
 
 Point = tuple[float, float, float]
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,11 @@ def look_at(name: str, eye: Point, target: Point, width: int = 320, height: int 
     return Camera(name, eye, target, width, height, fov)
 
 
+def point_of(vector: NDArray[Any]) -> Point:
+    """A vector as plain numbers."""
+    return float(vector[0]), float(vector[1]), float(vector[2])
+
+
 ROOM_FOV = 68.0
 ROOM_HEIGHT = 2.05
 ROOM_INSET = 0.25
@@ -139,4 +145,4 @@ def follow(name: str, position: Point, yaw: float, width: int = 320, height: int
     forward = np.array((np.sin(radians(yaw)), 0.0, np.cos(radians(yaw))))
     eye = np.array(position) - forward * 1.7 + (0.0, 1.9, 0.0)
     target = np.array(position) + forward * 0.5 + (0.0, 0.9, 0.0)
-    return Camera(name, tuple(map(float, eye)), tuple(map(float, target)), width, height, 65.0)
+    return Camera(name, point_of(eye), point_of(target), width, height, 65.0)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.meshes.mesh import Floats, Mesh, join
 from hearth.rendering.meshes.shapes import face_normals
-from hearth.rendering.rays import Caster, Hits
+from hearth.rendering.rays import Caster, Hits, put
 from hearth.rendering.things import Thing, placed
 
 Ids = NDArray[np.int64]
@@ -79,7 +79,8 @@ def _density(mesh: Mesh) -> Floats:
     spans, tiles = (
         np.sqrt(((values[:, 1:] - values[:, :1]) ** 2).sum(axis=2).max(axis=1)) for values in (mesh.corners, mesh.uvs)
     )
-    return (tiles / np.maximum(spans, 1e-6)).astype(np.float32)
+    density: Floats = (tiles / np.maximum(spans, 1e-6)).astype(np.float32)
+    return density
 
 
 @lru_cache(maxsize=4)
@@ -146,10 +147,9 @@ class Geometry:
 
 
 def nearer(one: Hits, other: Hits, first: int) -> Hits:
-    """The nearer of two hits of the same rays; the other's triangles are counted from `first`."""
+    """The nearer of two hits of the same rays, in `one`; the other's triangles are counted from `first`."""
     won = np.flatnonzero(other.distance < one.distance)
     if len(won):
-        for values, better in zip(one, other, strict=True):
-            values[won] = better[won]
-        one.triangle[won] += first
+        found = other.part(won)
+        put(one, won, found._replace(triangle=found.triangle + first))
     return one

@@ -20,7 +20,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
 Image = NDArray[Any]
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 
 QUALITIES = ("draft", "fine")
 SUBPIXELS = ((0.625, 0.125), (0.125, 0.375), (0.875, 0.625), (0.375, 0.875))

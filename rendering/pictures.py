@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.weave import SIDE, blend, noise
 
-Image = NDArray[np.float32]
+Image = NDArray[np.floating[Any]]
 Bytes = NDArray[np.uint8]
 Color = tuple[int, int, int]
 
@@ -108,13 +109,22 @@ def _clock() -> Image:
     return _linear(image)
 
 
+_STROKES: dict[str, tuple[float, float, float, float]] = {
+    "a": (0, 0, 0.14, 0.06),
+    "b": (0.1, 0, 0.14, 0.25),
+    "c": (0.1, 0.25, 0.14, 0.5),
+    "d": (0, 0.44, 0.14, 0.5),
+    "e": (0, 0.25, 0.04, 0.5),
+    "f": (0.1, 0, 0.14, 0.25),
+    "g": (0, 0.22, 0.14, 0.28),
+}
+
+
 def _digits() -> Image:
     image = _canvas((14, 18, 20))
     for x, strokes in ((0.12, "cf"), (0.3, "abged"), (0.56, "abgcd"), (0.76, "abcdef")):
         for stroke in strokes:
-            box = {"a": (0, 0, 0.14, 0.06), "g": (0, 0.22, 0.14, 0.28), "d": (0, 0.44, 0.14, 0.5)}.get(stroke)
-            box = box or {"b": (0.1, 0, 0.14, 0.25), "c": (0.1, 0.25, 0.14, 0.5), "f": (0.1, 0, 0.14, 0.25),
-                          "e": (0, 0.25, 0.04, 0.5)}[stroke]  # fmt: skip
+            box = _STROKES[stroke]
             _fill(image, x + box[0], 0.25 + box[1], x + box[2], 0.25 + box[3], (255, 70, 50))
     _disc(image, 0.51, 0.42, 0.02, (255, 70, 50))
     _disc(image, 0.51, 0.58, 0.02, (255, 70, 50))

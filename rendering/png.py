@@ -36,8 +36,15 @@ def encode(image: NDArray[Any]) -> bytes:
 
 
 def decode(data: bytes) -> NDArray[Any]:
-    """The image that `encode` wrote; components in the order red, green, blue."""
+    """The image that `encode` wrote; components in the order red, green, blue.
+
+    Raises:
+        HearthError: it is no picture.
+    """
     import cv2
 
-    image: NDArray[Any] = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    return image[..., ::-1] if image.ndim == 3 else image
+    image: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise HearthError.of(Code.NOT_RENDERED, "not a PNG picture")
+    found: NDArray[Any] = image[..., ::-1] if image.ndim == 3 else image
+    return found

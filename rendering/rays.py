@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 
 SYSTEM_LIBRARIES = "libusb-1.0-0 libgl1 libegl1 libx11-6 libgomp1"
 """Debian packages that open3d is linked against."""
@@ -63,7 +63,18 @@ class Hits(NamedTuple):
 
     def part(self, found: NDArray[np.int64]) -> Hits:
         """Only those rays."""
-        return Hits(*(values.take(found) for values in self))
+        distance, triangle, u, v = self
+        return Hits(distance.take(found), triangle.take(found), u.take(found), v.take(found))
+
+    def copy(self) -> Hits:
+        """The same, to be written to."""
+        return Hits(self.distance.copy(), self.triangle.copy(), self.u.copy(), self.v.copy())
+
+
+def put(hits: Hits, where: NDArray[np.int64], found: Hits) -> None:
+    """Write what some rays found into the hits of all."""
+    for name in Hits._fields:
+        getattr(hits, name)[where] = getattr(found, name)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,11 +20,11 @@ from hearth.rendering.geometry import Geometry, Ids, Part
 from hearth.rendering.lights import Light, from_above
 from hearth.rendering.modalities import NO_NOISE, Shot, draft, shoot
 from hearth.rendering.modalities import pictures_of as others
-from hearth.rendering.rays import Caster, Hits
+from hearth.rendering.rays import Caster, Hits, put
 from hearth.rendering.scene import Scene
 from hearth.rendering.things import Thing, placed
 
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 Mask = NDArray[np.bool_]
 Where = tuple[Floats, Floats]
 
@@ -133,10 +133,8 @@ def _seen_anew(past: Shot, hits: Hits, came: tuple[Thing, ...]) -> Ids:
 def _recast(geometry: Geometry, rays: Floats, hits: Hits, seen: Ids) -> Hits:
     if not len(seen):
         return hits
-    fresh = geometry.cast(rays.take(seen, axis=1))
-    whole = Hits(*(values.copy() for values in hits))
-    for values, better in zip(whole, fresh, strict=True):
-        values[seen] = better
+    whole = hits.copy()
+    put(whole, seen, geometry.cast(rays.take(seen, axis=1)))
     return whole
 
 

@@ -6,6 +6,7 @@ Points and vectors are rows of x, y and z, (3, N): numpy is several times as fas
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from hearth.rendering.geometry import Geometry
 from hearth.rendering.lights import Daylight, Light
 from hearth.rendering.rays import Hits
 
-Floats = NDArray[np.float32]
+Floats = NDArray[np.floating[Any]]
 Ids = NDArray[np.int64]
 
 LIFT = 2e-3
@@ -250,10 +251,12 @@ def _strength(source: Light, toward: Floats, normals: Floats, square: Floats) ->
     """(K,) how much of a light reaches points at squared distances, before shadows."""
     cosine = dot(normals, toward)
     if source.facing is None:
-        return np.maximum(cosine, 0) * np.maximum(1 - (square / REACH**2) ** 2, 0) / (square + 0.35)
+        bare: Floats = np.maximum(cosine, 0) * np.maximum(1 - (square / REACH**2) ** 2, 0) / (square + 0.35)
+        return bare
     # The sky is wide: surfaces turned a little away from the window still see some of it.
     leaving = 0.25 + 0.75 * np.maximum(-dot(np.array(source.facing, np.float32), toward), 0)
-    return np.maximum((cosine + 0.25) / 1.25, 0) * leaving / (square + 0.8)
+    wide: Floats = np.maximum((cosine + 0.25) / 1.25, 0) * leaving / (square + 0.8)
+    return wide
 
 
 def _highlight(surface: Surface, spots: Ids, toward: Floats, strength: Floats) -> Floats:
@@ -301,7 +304,8 @@ def background(day: Daylight, rays: Floats, plain: bool) -> Floats:
         lawn *= np.array(((0.17,), (0.30,), (0.08,)), np.float32) * (0.25 + 0.75 * min(1.0, day.sky))
         haze = np.clip(far / 90.0, 0, 0.75)
         color[:, low] = lawn * (1 - haze) + horizon * haze * 0.85
-    return color.astype(np.float32)
+    outside: Floats = color.astype(np.float32)
+    return outside
 
 
 EXPOSURE = 1.5

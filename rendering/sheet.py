@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering.camera import Camera
+from hearth.rendering.camera import Camera, point_of
 from hearth.rendering.lights import Daylight, Light
 from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look, Size
@@ -44,7 +44,7 @@ def portrait(model: Model, size: Size, side: int = TILE, quality: str = "fine") 
     direction /= np.linalg.norm(direction)
     fov = 26.0
     eye = middle + direction * radius * 1.04 / tan(radians(fov) / 2)
-    camera = Camera("portrait", tuple(map(float, eye)), tuple(map(float, middle)), side, side, fov)
+    camera = Camera("portrait", point_of(eye), point_of(middle), side, side, fov)
     ground = Thing(
         0, "floor", Model("ceiling", Look((radius * 40, 0.02, radius * 40))), (0.0, float(low[1]) - 0.022, 0.0)
     )

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import acos, cos, radians, sin, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Point = tuple[float, float, float]
-Vector = NDArray[np.float64]
+Vector = NDArray[np.floating[Any]]
 Joints = dict[str, Vector]
 
 POSTURES = ("standing", "sitting", "lying")
@@ -140,11 +141,13 @@ def _at_rest(found: Joints, side: str, sign: float, height: float, stance: Stanc
     shoulder = found[f"shoulder_{side}"]
     if stance.posture == "sitting":
         knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
-        return hip + (knee - hip) * 0.62 + np.array((0, 0.075, 0))
+        on_thigh: Vector = hip + (knee - hip) * 0.62 + np.array((0, 0.075, 0))
+        return on_thigh
     swing = -sign * stance.stride * 0.13 * height
-    return shoulder + np.array(
+    hanging: Vector = shoulder + np.array(
         (sign * 0.035 * height, -(UPPER_ARM + FOREARM + HAND) * height * 0.97, 0.02 * height + swing)
     )
+    return hanging
 
 
 def _head(found: Joints, height: float, gaze: Point | None) -> None:

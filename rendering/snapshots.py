@@ -117,8 +117,9 @@ def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
 def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed: int) -> Iterator[Moment]:
     """The moments of an execution, their scenes made of moving things only."""
     ground = Ground.of(prepared.rooms.values(), home.nodes)
-    ticks = [(), *execution.program.ticks()]
-    places, actors = Places.start(home, prepared.knowledge), ()
+    ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
+    places = Places.start(home, prepared.knowledge)
+    actors: tuple[Actor, ...] = ()
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
             places = places.settled(graph)

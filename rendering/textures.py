@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from hearth.rendering import pictures
 from hearth.rendering.weave import SIDE, blend, grid_lines, noise, squares
 
-Image = NDArray[np.float32]
+Image = NDArray[np.floating[Any]]
 
 
 def _grey(values: Image) -> Image:
@@ -213,4 +214,5 @@ def sample(slots: NDArray[np.int64], uvs: Image, footprint: Image) -> Image:
     wrapped = uvs - np.floor(uvs)
     column, row = (np.minimum((w * side).astype(np.int32), side - 1) for w in wrapped)
     index = slots * int(OFFSETS[-1]) + (_STARTS.take(level) + row * side + column)
-    return decode().take(_texels().take(index, axis=1))
+    found: Image = decode().take(_texels().take(index, axis=1))
+    return found

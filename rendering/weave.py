@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 SIDE = 256
 
-Image = NDArray[np.float32]
+Image = NDArray[np.floating[Any]]
 
 
 def noise(seed: int, scale: tuple[float, float]) -> Image:
@@ -17,7 +19,8 @@ def noise(seed: int, scale: tuple[float, float]) -> Image:
     weight = np.exp(-((across / scale[0]) ** 2 + (down / scale[1]) ** 2) / 2)
     weight[0, 0] = 0
     smooth = np.fft.ifft2(np.fft.fft2(white) * weight).real
-    return (smooth / smooth.std()).astype(np.float32)
+    found: Image = (smooth / smooth.std()).astype(np.float32)
+    return found
 
 
 def squares(seed: int, count: int) -> Image:

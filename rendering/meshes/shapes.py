@@ -39,7 +39,8 @@ def face_normals(corners: Floats) -> Floats:
     """(T, 3) unit normals of (T, 3, 3) corners, counter-clockwise seen from outside."""
     normal = _crossed(corners)
     length = np.sqrt(np.einsum("ij,ij->i", normal, normal))
-    return (normal / np.maximum(length, 1e-12)[:, None]).astype(np.float32)
+    unit: Floats = (normal / np.maximum(length, 1e-12)[:, None]).astype(np.float32)
+    return unit
 
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
@@ -151,7 +152,8 @@ def _grid_quads(grid: Floats) -> Floats:
 
 
 def _normalised(vectors: Floats) -> Floats:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+    unit: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+    return unit
 
 
 def ball(center: Point, radii: Point | float, paint: Paint, steps: int = 5) -> Mesh:
@@ -180,7 +182,8 @@ def _ring(profile: Sequence[tuple[float, float]], i: int, paint: Paint, sides: i
     points = quad(ring(r0, y0), ring(r1, y1))
     normals = quad(ring(n0[0], n0[1]), ring(n1[0], n1[1]))
     length = max(r0, r1) * angle
-    low, high = np.stack([length, np.full_like(length, y0)], 1), np.stack([length, np.full_like(length, y1)], 1)
+    low: Floats = np.stack([length, np.full_like(length, y0)], 1)
+    high: Floats = np.stack([length, np.full_like(length, y1)], 1)
     if abs(y1 - y0) < abs(r1 - r0):
         low, high = ring(r0, 0)[:, ::2], ring(r1, 0)[:, ::2]
     halves = [h for h, wide in (([0, 1, 2], r0), ([0, 2, 3], r1)) if wide > 1e-6]

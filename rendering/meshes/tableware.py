@@ -341,12 +341,12 @@ def packet(look: Look) -> Mesh:
             + block(-w * 0.46, w * 0.46, h * 0.84, h, -0.006, 0.006, paint)
             + panel((0, h * 0.45, d / 2 + 0.001), w * 0.6, h * 0.4, Paint("#ffffff", "label"))
         )
-    body = block(-w / 2, w / 2, 0, h, -d / 2, d / 2, paint)
+    box = block(-w / 2, w / 2, 0, h, -d / 2, d / 2, paint)
     front = [
         panel((0, h * 0.5, s * (d / 2 + 0.001)), w * 0.86, h * 0.7, Paint("#ffffff", "label"), "+z" if s > 0 else "-z")
         for s in (-1, 1)
     ]
-    return join([body, *front])
+    return join([box, *front])
 
 
 def can(look: Look) -> Mesh:
