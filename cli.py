@@ -60,6 +60,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "verify": Entry("verify:verify", "Check a dataset: hashes, counts, references, every execution run again."),
         "export": Entry("export:export", "Write a dataset in another form: release, words, JSON Lines, code, graphs."),
         "score": Entry("score:app", "Score predicted programs against references."),
+        "corpus": Entry("corpus:app", "What people wrote: statistics, synthesis, ratings, faults."),
     },
     "Try a program": {
         "check": Entry("check:check", "Check program files and underline what is wrong."),

@@ -55,11 +55,12 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
     return Item(str(own) if own else f"{NAME}:{name}", NAME, place, value, line=line)
 
 
-def read(item: Item) -> dict[str, Any] | Reject:
-    """The record of an item, in the columns of `tables.INGESTED`."""
+def read(item: Item) -> dict[str, Any] | Reject | list[dict[str, Any]]:
+    """The record of an item, in the columns of `tables.INGESTED`; with further descriptions, one record for each."""
     value: Mapping[str, Any] = item.value
     try:
-        return _row(item, value)
+        row = _row(item, value)
+        return row if isinstance(row, Reject) else [row, *_others(row, value)] if value.get("descriptions") else row
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         message = f"not a record of ours: {error}"
         return Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)
@@ -88,6 +89,15 @@ def _row(item: Item, value: Mapping[str, Any]) -> dict[str, Any] | Reject:
         "text": text or None,
         "line": max(item.line - 1, 0),
     }
+
+
+def _others(row: Mapping[str, Any], value: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Other ways to tell the same program."""
+    for number, text in enumerate(value["descriptions"], 2):
+        name = f"{row['program_id']}~{number}"
+        kept = {key: row[key] for key in ("origin", "place", "title", "scene", "worker", "platform", "line")}
+        told = {"kind": "description", "program_id": name, "description_id": name, "description": str(text)}
+        yield {**kept, **told}
 
 
 def _word(value: Mapping[str, Any], name: str) -> str | None:
