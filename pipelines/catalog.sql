@@ -10,6 +10,7 @@ CREATE VIEW home_edges AS SELECT * FROM read_parquet('{root}home_edges/*.parquet
 CREATE VIEW environments AS SELECT * FROM read_parquet('{root}environments/*.parquet');
 CREATE VIEW executions AS SELECT * FROM read_parquet('{root}executions/*.parquet');
 CREATE VIEW repairs AS SELECT * FROM read_parquet('{root}repairs/*.parquet');
+CREATE VIEW splits AS SELECT * FROM read_parquet('{root}splits/*.parquet');
 CREATE VIEW sketches AS SELECT * FROM read_parquet('{root}sketches/*.parquet');
 CREATE VIEW frames AS SELECT * FROM read_parquet('{root}frames/*.parquet');
 CREATE VIEW vocabulary AS SELECT * FROM read_parquet('{root}vocabulary/*.parquet');

@@ -77,6 +77,7 @@ STAGE = Stage(
         "pipelines/publish.py",
         "pipelines/publishing.py",
         "pipelines/naming.py",
+        "pipelines/splits.py",
         "pipelines/cases.py",
         "pipelines/catalog.py",
         "pipelines/catalog.sql",

@@ -13,8 +13,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.kb.knowledge import Knowledge
+from hearth.pipelines import splits
 from hearth.pipelines.catalog import write_catalog
-from hearth.pipelines.files import TEMPORARY, commit, sync_folder
+from hearth.pipelines.files import TEMPORARY, commit, sync_folder, write_json
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.naming import STAMP, activity_id
 from hearth.pipelines.parts import Counts, Row, part_path, read_rows, write_table
@@ -48,6 +49,7 @@ def finish(job: Job, counts: Counts) -> None:
         "homes": lambda: _homes(job, homes),
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
+        "splits": lambda: _splits(job),
         "sketches": lambda: _sketches(job),
         "frames": lambda: _frames(job),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
@@ -227,6 +229,28 @@ def _frames(job: Job) -> Iterator[Row]:
         for row in read_rows(path):
             if row["execution_id"] in home:
                 yield {**row, "home": home[row["execution_id"]]}
+
+
+def _splits(job: Job) -> list[Row]:
+    told, runs = _told_for_splits(job.folder), []
+    for path in sorted((job.folder / "executions").glob("part-*.parquet")):
+        table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
+        runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
+    rows = list(splits.parts(told, runs, job.settings.seed))
+    write_json(job.folder / "splits.json", splits.summary(told, rows, job.settings.seed))
+    return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
+
+
+def _told_for_splits(folder: Path) -> list[splits.Told]:
+    columns = ["program_id", "activity_id", "split", "parent_id", "steps", "description"]
+    rows = [row for path in sorted((folder / "programs").glob("part-*.parquet")) for row in read_rows(path, columns)]
+    tops = splits.roots({row["program_id"]: row["parent_id"] for row in rows})
+    told = []
+    for row in rows:
+        steps = tuple(" ".join((step["action"], *(ref["name"] for ref in step["objects"]))) for step in row["steps"])
+        name = row["program_id"]
+        told.append(splits.Told(name, row["activity_id"], row["split"], tops[name], steps, row["description"]))
+    return told
 
 
 def _copy_pictures(job: Job) -> None:

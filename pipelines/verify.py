@@ -39,6 +39,8 @@ REFERENCES = (
     ("executions", "home", "homes", "home"),
     ("repairs", "program_id", "programs", "program_id"),
     ("repairs", "execution_id", "executions", "execution_id"),
+    ("splits", "execution_id", "executions", "execution_id"),
+    ("splits", "program_id", "programs", "program_id"),
     ("sketches", "program_id", "programs", "program_id"),
     ("frames", "execution_id", "executions", "execution_id"),
 )

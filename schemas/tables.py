@@ -268,6 +268,12 @@ TABLES: Final[dict[str, pa.Schema]] = {
         *_of(CASE, "parent_id", "execution_id", "environment_id", "home", "perturbations"),
         *[_column(field.name, field.type, f"repair: {field.name}") for field in REPAIR],
     ),
+    "splits": _published(
+        _column("split", TEXT, "activities, homes_1_4 or homes_1_5; splits.json says what they mean"),
+        _column("execution_id", TEXT, "the execution"),
+        _column("program_id", TEXT, "its program"),
+        _column("part", TEXT, "train, validation, test...; none where the split has no place for it"),
+    ),
     "sketches": _published(
         _column("program_id", TEXT, "the program"),
         _column("keep", pa.list_(pa.bool_()), "for each step, whether the sketch keeps it"),
