@@ -76,7 +76,8 @@ def render(
 
     Returns:
         For each modality an array of (height, width) or (height, width, 3): `rgb` uint8; `depth` uint16 millimetres
-        along the camera's axis, 0 for nothing; `instance_ids` uint16 node ids, 0 for nothing; `class_ids` uint16;
+        along the camera's axis, 0 for nothing; `instance_ids` uint16 node ids (int32 if one needs it), 0 for nothing;
+        `class_ids` uint16;
         `normals` float32 unit vectors of the world, 0 for nothing.
 
     Raises:
@@ -170,7 +171,8 @@ def _depth(shot: Shot, quality: str) -> Image:
 
 def _per_thing(shot: Shot, values: Sequence[int]) -> Image:
     """(H, W) a value of each thing where it is seen, 0 elsewhere."""
-    return shot.image(np.array([*values, 0], np.uint16).take(shot.owner, mode="wrap"))
+    dtype = np.uint16 if max(values, default=0) < 1 << 16 else np.int32
+    return shot.image(np.array([*values, 0], dtype).take(shot.owner, mode="wrap"))
 
 
 def _instances(shot: Shot, quality: str) -> Image:

@@ -113,11 +113,11 @@ def _shaded(lights: tuple[Light, ...], geometry: Geometry, view: View, day: Dayl
 def _in_reach(lights: tuple[Light, ...], points: Floats) -> list[Light]:
     """The lights that reach some of the points' neighbourhood."""
     (west, east), (south, north) = ((axis.min(), axis.max()) for axis in (points[0], points[2]))
-    areas = [(light, _area(light)) for light in lights]
+    areas = [(light, area(light)) for light in lights]
     return [light for light, (x0, x1, z0, z1) in areas if x0 < east and x1 > west and z0 < north and z1 > south]
 
 
-def _area(source: Light) -> tuple[float, float, float, float]:
+def area(source: Light) -> tuple[float, float, float, float]:
     """(x0, x1, z0, z1) beyond which a light is not looked at."""
     x, _, z = source.position
     return source.room or (x - REACH, x + REACH, z - REACH, z + REACH)
@@ -231,7 +231,7 @@ def _add_light(source: Light, surface: Surface, geometry: Geometry, fine: bool) 
 
 def within(source: Light, points: Floats) -> Ids:
     """Which points a light may reach: those in its room; a lamp's also a little beyond, through doors."""
-    x0, x1, z0, z1 = _area(source)
+    x0, x1, z0, z1 = area(source)
     x, z = points[0], points[2]
     return np.flatnonzero((x > x0) & (x < x1) & (z > z0) & (z < z1))
 
