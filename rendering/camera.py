@@ -70,7 +70,7 @@ class Camera:
         rays[..., 3:] = self.pose[:3, 2] + x[None, :, None] * self.pose[:3, 0] + y[:, None, None] * self.pose[:3, 1]
         return rays.reshape(-1, 6)
 
-    def project(self, points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def project(self, points: NDArray[np.floating[Any]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(N, 2) pixels and (N,) depths of (N, 3) world points."""
         local = (np.asarray(points) - self.pose[:3, 3]) @ self.pose[:3, :3]
         image = local @ self.intrinsics.T

@@ -19,13 +19,16 @@ def encode(image: NDArray[Any]) -> bytes:
 
     Args:
         image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
-            are written as 16 bits a component, (n + 1) / 2 * 65535.
+            are written as 16 bits a component, (n + 1) / 2 * 65535; (H, W, 2) float32 (flow) as 16 bits
+            64 * f + 32768 in red and green, with blue 1 where it is known, as KITTI writes it.
 
     Raises:
         HearthError: the picture can't be written as PNG.
     """
     import cv2
 
+    if image.dtype == np.float32 and image.shape[-1] == 2:
+        image = _flow_code(image)
     if image.dtype == np.float32:
         image = np.rint((np.clip(image, -1, 1) + 1) / 2 * 65535).astype(np.uint16)
     flipped = np.ascontiguousarray(image[..., ::-1]) if image.ndim == 3 else image
@@ -33,6 +36,15 @@ def encode(image: NDArray[Any]) -> bytes:
     if not done:
         raise HearthError.of(Code.NOT_RENDERED, f"no PNG of {image.shape} {image.dtype}")
     return bytes(data)
+
+
+def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
+    known = np.isfinite(flow).all(axis=2)
+    code = np.zeros((*flow.shape[:2], 3), np.uint16)
+    code[..., :2] = np.clip(np.rint(np.where(known[..., None], flow, 0) * 64 + 32768), 0, 65535)
+    code[~known, :2] = 0
+    code[..., 2] = known
+    return code
 
 
 def decode(data: bytes) -> NDArray[Any]:

@@ -1,0 +1,166 @@
+"""What a picture shows, in words and numbers: camera, boxes of things, joints of people (thesis 2.4, 4.4)."""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.camera import Camera, point_of
+from hearth.rendering.figure import Figure, figure_mesh
+from hearth.rendering.modalities import Shot
+from hearth.rendering.models import draw
+from hearth.rendering.things import Thing
+
+Point = tuple[float, float, float]
+
+
+class Seen(NamedTuple):
+    """One thing in a picture.
+
+    Attributes:
+        node, class_name: whose.
+        pixels: how many show it.
+        box: (left, top, right, bottom) of those pixels; right and bottom are outside.
+        center, size, yaw: its box in the world: metres, and degrees about y from +z.
+        corners: (8, 2) where the corners of that box fall in the picture, pixels; NaN behind the camera.
+    """
+
+    node: int
+    class_name: str
+    pixels: int
+    box: tuple[int, int, int, int]
+    center: Point
+    size: Point
+    yaw: float
+    corners: NDArray[np.floating[Any]]
+
+
+class Skeleton(NamedTuple):
+    """Someone in a picture.
+
+    Attributes:
+        node: whose.
+        joints: name -> place in the world, metres.
+        pixels: name -> (column, row, depth in metres); outside the picture, too.
+        visible: names of the joints that nothing but the body itself hides.
+    """
+
+    node: int
+    joints: dict[str, Point]
+    pixels: dict[str, Point]
+    visible: tuple[str, ...]
+
+
+def seen(shot: Shot) -> list[Seen]:
+    """The things that have a pixel, by node id; characters, too. A thing drawn in parts is told as its first part."""
+    things = shot.geometry.things
+    ids = np.array([*(thing.id for thing in things), 0]).take(shot.owner, mode="wrap")
+    order = np.argsort(ids, kind="stable")
+    numbers, starts = np.unique(ids[order], return_index=True)
+    parts = dict(zip(numbers.tolist(), np.split(order, starts[1:]), strict=True))
+    first: dict[int, Thing] = {}
+    for thing in things:
+        first.setdefault(thing.id, thing)
+    return [_seen(shot.camera, first[node], pixels) for node, pixels in parts.items() if node in first]
+
+
+def _seen(camera: Camera, thing: Thing, pixels: NDArray[np.int64]) -> Seen:
+    row, column = np.divmod(pixels, camera.width)
+    box = (int(column.min()), int(row.min()), int(column.max()) + 1, int(row.max()) + 1)
+    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
+    low, high = (bound.astype(np.float64) for bound in mesh.bounds())
+    middle = (low + high) / 2
+    corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
+    places, depths = camera.project(corners)
+    places[depths <= 0] = np.nan
+    center = _placed(thing, point_of(middle))
+    return Seen(thing.id, thing.class_name, len(pixels), box, center, point_of(high - low), thing.yaw, places)
+
+
+def _corners(low: NDArray[Any], high: NDArray[Any]) -> list[Point]:
+    pairs = list(zip(low.tolist(), high.tolist(), strict=True))
+    return [(x, y, z) for x in pairs[0] for y in pairs[1] for z in pairs[2]]
+
+
+def _placed(thing: Thing, point: Point) -> Point:
+    """A point of a thing's own frame in the world."""
+    c, s = cos(radians(thing.yaw)), sin(radians(thing.yaw))
+    (x, y, z), (px, py, pz) = point, thing.position
+    return px + x * c + z * s, py + y, pz - x * s + z * c
+
+
+BEHIND = 0.2
+"""Metres that a joint may lie behind the surface of its own body."""
+
+
+def skeletons(shot: Shot) -> list[Skeleton]:
+    """The joints of everyone in the scene, by node id."""
+    camera = shot.camera
+    found = []
+    for thing in sorted(shot.geometry.things, key=lambda thing: thing.id):
+        if not isinstance(thing.model, Figure):
+            continue
+        joints = {name: _placed(thing, point_of(at)) for name, at in sorted(thing.model.joints().items())}
+        places, depths = camera.project(np.array(list(joints.values())))
+        pixels = {
+            name: (float(x), float(y), float(depth)) for name, (x, y), depth in zip(joints, places, depths, strict=True)
+        }
+        visible = tuple(name for name, place in pixels.items() if _is_visible(shot, thing, place))
+        found.append(Skeleton(thing.id, joints, pixels, visible))
+    return found
+
+
+def _is_visible(shot: Shot, thing: Thing, place: Point) -> bool:
+    column, row, depth = place
+    camera = shot.camera
+    if depth <= 0 or not (0 <= column < camera.width and 0 <= row < camera.height):
+        return False
+    pixel = int(row) * camera.width + int(column)
+    owner = int(shot.owner[pixel])
+    skipped = shot.skipped if isinstance(shot.skipped, float) else float(shot.skipped[pixel])
+    there = float(shot.hits.distance[pixel]) + skipped
+    return there > depth or (owner >= 0 and shot.geometry.things[owner].id == thing.id and there > depth - BEHIND)
+
+
+def camera_of(camera: Camera) -> dict[str, Any]:
+    """A camera in plain numbers: name, size, (3, 3) intrinsics and (4, 4) pose, from camera to world."""
+    return {
+        "name": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "intrinsics": _rounded(camera.intrinsics),
+        "pose": _rounded(camera.pose),
+    }
+
+
+def described(shot: Shot) -> dict[str, Any]:
+    """Camera, boxes and joints of a picture as plain values, ready for JSON; metres and pixels, rounded to 1e-4."""
+    return {
+        "camera": camera_of(shot.camera),
+        "objects": [
+            {
+                "node": one.node,
+                "class_name": one.class_name,
+                "pixels": one.pixels,
+                "box_2d": list(one.box),
+                "box_3d": {"center": _rounded(one.center), "size": _rounded(one.size), "yaw": round(one.yaw, 4)},
+            }
+            for one in seen(shot)
+        ],
+        "people": [
+            {
+                "node": one.node,
+                "joints_3d": {name: _rounded(at) for name, at in one.joints.items()},
+                "joints_2d": {name: _rounded(at[:2]) for name, at in one.pixels.items()},
+                "visible": list(one.visible),
+            }
+            for one in skeletons(shot)
+        ],
+    }
+
+
+def _rounded(values: Any) -> Any:
+    return np.round(np.asarray(values, np.float64) + 0.0, 4).tolist()
