@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import Kb
+
+if TYPE_CHECKING:
+    from hearth.pipelines.corpus import Corpus, Similarities
 
 app = typer.Typer(help="What people say and write: statistics, synthesis, ratings, and how well faults are found.")
 
@@ -60,6 +63,92 @@ def synthesize(
         output.emit({"programs": count, "seed": seed, "file": out})
     else:
         print(f"{output.counted(count, 'program')} in {out}")
+
+
+Sources = Annotated[
+    list[Path] | None, typer.Argument(metavar="[DATASET]...", help="A dataset, or any source; our corpus if none.")
+]
+
+
+@app.command()
+def stats(
+    sources: Sources = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Gets the figures and the numbers as Parquet.")
+    ] = None,
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Say what a corpus looks like, beside the thesis's numbers: funnel, variety, diversity, averages, missing actions.
+
+    With --out: histograms of actions and objects, the funnel and the similarity matrix of activities as PNG and SVG,
+    and all numbers as Parquet.
+
+    \b
+    Examples:
+      python cli.py corpus stats data_out --out figures
+      python cli.py corpus stats release.zip
+    """
+    from hearth.commands.inputs import read_knowledge
+    from hearth.pipelines import corpus as numbers
+    from hearth.pipelines import corpus_figures
+    from hearth.pipelines.build import corpus as embedded
+
+    paths = [str(path) for path in sources or embedded()]
+    found = numbers.gather(paths, read_knowledge(kb))
+    alike = numbers.similarities(found)
+    files = corpus_figures.write(found, alike, out) if out else []
+    if as_json:
+        output.emit(_stats_json(found, alike, files))
+    else:
+        _print_stats(found, alike)
+        for file in files:
+            print(file)
+
+
+def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[str, Any]:
+    from hearth.pipelines import corpus as numbers
+
+    actions, objects = numbers.frequencies(found)
+    return {
+        "funnel": numbers.funnel(found),
+        "variety": numbers.variety(found),
+        "averages": dict(zip(("programs", "steps", "sentences", "words"), numbers.averages(found), strict=True)),
+        "refused": dict(found.refused.most_common()),
+        "warnings": dict(found.warnings.most_common()),
+        "specials": dict(found.specials.most_common()),
+        "actions": dict(actions.most_common()),
+        "objects": dict(objects.most_common()),
+        "activities": [
+            {"title": one.title, "programs": one.programs, "lcs": one.lcs, "normalised": one.normalised}
+            for one in alike.activities
+        ],
+        "files": files,
+    }
+
+
+def _print_stats(found: Corpus, alike: Similarities) -> None:
+    from hearth.pipelines import corpus as numbers
+
+    ours = numbers.funnel(found)
+    rows = [(name, ours[name], theirs) for name, theirs in numbers.THESIS_FUNNEL.items()]
+    _say("What became of the descriptions", ("", "here", "thesis 3.4"), rows)
+    counted = numbers.variety(found)
+    rows = [(name, counted[name], theirs) for name, theirs in numbers.THESIS_VARIETY.items()]
+    _say("How various they are", ("", "here", "thesis 3.4"), rows)
+    table = [("here", *numbers.averages(found)), *((name, *row) for name, row in numbers.THESIS_AVERAGES.items())]
+    _say("Averages (table 4.1)", ("dataset", "programs", "steps", "sentences", "words"), table)
+    compared = [
+        (title, *((own.programs, own.lcs, own.normalised) if own else (0, None, None)), *row)
+        for title, row, own in numbers.beside_thesis(alike.activities)
+    ]
+    columns = ("activity", "programs", "LCS", "norm. LCS", "thesis: programs", "LCS", "norm. LCS")
+    _say("Diversity of programs (table 3.1)", columns, compared)
+    common = [(one.title, one.programs, one.lcs, one.normalised) for one in alike.activities[:8] if one.programs > 1]
+    _say("The commonest activities", ("activity", "programs", "LCS", "norm. LCS"), common)
+    for title, counts in (("Refused", found.refused), ("Warnings", found.warnings), ("Special blocks", found.specials)):
+        if counts:
+            _say(title, ("", "times"), [*counts.most_common(12)])
 
 
 def _say(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:

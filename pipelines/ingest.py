@@ -79,8 +79,9 @@ def _first(item: Item, seen: set[bytes]) -> Item:
     for twin, twins in ((item.record_id, "this id"), (_answer(item), what)):
         digest = twin and _short(twin)
         if digest and digest in seen:
-            told = {"file": item.place, "line": item.line, "found": item.record_id}
-            return refused(item.place, Reject.of(Code.DUPLICATE, f"{twins} was read before", **told), item.record_id)
+            message, name = f"{twins} was read before", item.record_id
+            fault = Reject.of(Code.DUPLICATE, message, file=item.place, line=item.line, found=name)
+            return refused(item.place, fault, name)
         if digest:
             seen.add(digest)
     return item

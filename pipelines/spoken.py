@@ -155,7 +155,8 @@ def blocks(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
 
     A program begins with a line that is not numbered, once steps were seen, or where the numbers begin again.
     """
-    first, block, last = 0, [], 0
+    block: list[str] = []
+    first, last = 0, 0
     for number, line in lines:
         match = NUMBERED.match(line)
         digits = re.search(r"\d+", match[0]) if match else None

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
-from typing import IO, BinaryIO
+from typing import IO, BinaryIO, cast
 
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import HearthError
@@ -112,14 +112,18 @@ def raw(place: Place) -> BinaryIO:
     start = file.read(4)
     file.seek(0)
     if start.startswith(GZIP):
-        return io.BufferedReader(_Guarded(gzip.open(file), str(place), place.stat().st_size, file))
+        return _buffered(_Guarded(cast("IO[bytes]", gzip.open(file)), str(place), place.stat().st_size, file))
     if start.startswith(ZSTD):
         file.close()
         import pyarrow as pa
 
         stream = pa.CompressedInputStream(pa.OSFile(str(place)), "zstd")
-        return io.BufferedReader(_Guarded(stream, str(place), place.stat().st_size))
+        return _buffered(_Guarded(stream, str(place), place.stat().st_size))
     return file
+
+
+def _buffered(stream: io.RawIOBase) -> BinaryIO:
+    return io.BufferedReader(stream)
 
 
 class _Guarded(io.RawIOBase):

@@ -62,5 +62,6 @@ def read(item: Item) -> dict[str, Any] | Reject:
         del value["steps"]
     row = ours.read(Item(item.record_id, ours.NAME, item.place, value))
     if isinstance(row, dict):
-        row["origin"] = item.value["origin"]
+        return {**row, "origin": item.value["origin"]}
+    assert isinstance(row, Reject)
     return row
