@@ -78,6 +78,8 @@ STAGE = Stage(
         "pipelines/publishing.py",
         "pipelines/naming.py",
         "pipelines/splits.py",
+        "pipelines/card.py",
+        "pipelines/croissant.py",
         "pipelines/cases.py",
         "pipelines/catalog.py",
         "pipelines/catalog.sql",

@@ -14,7 +14,9 @@ import pyarrow.parquet as pq
 
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import splits
+from hearth.pipelines.card import write_card
 from hearth.pipelines.catalog import write_catalog
+from hearth.pipelines.croissant import write_croissant
 from hearth.pipelines.files import TEMPORARY, commit, sync_folder, write_json
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.naming import STAMP, activity_id
@@ -59,6 +61,8 @@ def finish(job: Job, counts: Counts) -> None:
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
     _copy_pictures(job)
+    write_card(job.folder)
+    write_croissant(job.folder)
     write_catalog(job.folder)
 
 
