@@ -18,6 +18,17 @@ INPUT = GOLDEN / "input"
 GOLDEN_SOURCES = (INPUT / "crowd", INPUT / "programs/evening.txt", INPUT / "release")
 
 
+SHARED = ("made", "published", "filmed")
+"""Fixtures that take seconds: their tests run in one process, one after another."""
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        for name in SHARED:
+            if name in item.fixturenames:
+                item.add_marker(pytest.mark.xdist_group(name))
+
+
 class Built:
     """A folder of stages, and their rows."""
 
