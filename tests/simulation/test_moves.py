@@ -1,6 +1,7 @@
 """Moving by metres over the floor of a home."""
 
 import math
+from itertools import pairwise
 
 import pytest
 
@@ -43,7 +44,7 @@ def test_a_path_is_free_and_no_shorter_than_the_straight_line(ways, here, maple)
     for x, z in path:
         i, j = ways.floor.index(x, z)
         assert ways.floor.walkable[i, j]
-    assert all(math.dist(a, b) < 0.15 for a, b in zip(path, path[1:], strict=False))
+    assert all(math.dist(a, b) < 0.15 for a, b in pairwise(path))
 
 
 def test_walktowards_goes_a_stride_at_a_time_and_arrives_with_a_walk(ways, here, maple):
