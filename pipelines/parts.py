@@ -75,7 +75,7 @@ class Counts:
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> Counts:
         """The inverse of `to_json`."""
-        counters = {name: Counter(value[name]) for name in ("rows", "codes", "tally")}
+        counters: dict[str, Any] = {name: Counter(value[name]) for name in ("rows", "codes", "tally")}
         numbers = {name: value[name] for name in ("records_in", "through", "rejected", "partial")}
         return cls(**numbers, **counters)
 

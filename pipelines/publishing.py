@@ -225,7 +225,7 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[Row]:
 
 
 def _frames(job: Job) -> Iterator[Row]:
-    home = {}
+    home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet"):
         table = pq.read_table(path, columns=["execution_id", "home"])
         home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
@@ -236,7 +236,8 @@ def _frames(job: Job) -> Iterator[Row]:
 
 
 def _splits(job: Job) -> list[Row]:
-    told, runs = _told_for_splits(job.folder), []
+    told = _told_for_splits(job.folder)
+    runs: list[Any] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))

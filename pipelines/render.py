@@ -97,7 +97,9 @@ def prepare(settings: Settings) -> dict[str, Any]:
 def _sampled(settings: Settings) -> Iterator[tuple[str, Row]]:
     """Every case with the file it stands in, without what only running it needs."""
     manifest = read_manifest(settings.folder("sample"))
-    for part in manifest.parts if manifest else ():
+    if manifest is None:
+        return
+    for part in manifest.parts:
         for file in part["files"]:
             for row in read_rows(manifest.folder / file, ["program_id", "execution_id", "home", "executable"]):
                 yield file, row

@@ -84,7 +84,7 @@ def _one(value: dict[str, Any], home: str, knowledge: Knowledge, rules: Rules) -
     begun = perf_counter()
     read = _read(value, home, knowledge)
     if isinstance(read, tuple) and isinstance(read[0], Diagnostic):
-        return Replayed(key, home, faults=read)  # type: ignore[arg-type]
+        return Replayed(key, home, faults=read)
     program, graphs = read
     read_at = perf_counter()
     try:

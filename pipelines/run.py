@@ -109,7 +109,7 @@ def _total(stage: Stage, settings: Settings) -> int | None:
     if stage.partitions is not None:
         return None
     manifests = [read_manifest(settings.folder(name)) for name in stage.reads]
-    return sum(part["rows"] for manifest in manifests if manifest for part in manifest.parts)
+    return sum(int(part["rows"]) for manifest in manifests if manifest for part in manifest.parts)
 
 
 def _clear(folder: Path) -> None:
@@ -156,7 +156,7 @@ def _partitions(job: Job, workers: Workers, progress: Progress) -> tuple[list[in
 
 def _forget(job: Job, number: int) -> None:
     """Remove a partition that is to be made again, its commit point first."""
-    for table in reversed(job.stage.tables):
+    for table in reversed([*job.stage.tables]):
         part_path(job.folder, table, number).unlink(missing_ok=True)
 
 

@@ -167,8 +167,8 @@ def _parse_block(block: _Block, file: str) -> tuple[Program, list[Diagnostic]]:
     if not block.steps:
         suggestion = "write steps such as `[Walk] <kitchen> (1)` below the description"
         message = f"`{title[:60]}` has no steps"
-        column, found = raw.find(title) + 1, title[:200]
-        fault = Diagnostic(Code.EMPTY, message, "", 0, column, len(found), found, suggestion)
+        shown = title[:200]
+        fault = Diagnostic(Code.EMPTY, message, "", 0, raw.find(title) + 1, len(shown), shown, suggestion)
         faults.append(_placed(fault, file, first, raw))
     description = "\n".join(line.strip() for _, line in block.header[1:])
     return Program(title, description, tuple(steps), tuple(lines)), faults

@@ -133,17 +133,17 @@ def _walk_forward(here: Located, step: Step, ways: Ways, stride: float, rules: R
     for metres in _steps(stride, ways.floor.cell / 2):
         point = (pose.x + math.sin(angle) * metres, pose.z + math.cos(angle) * metres)
         i, j = ways.floor.index(*point)
-        inside = 0 <= i < ways.number.shape[0] and 0 <= j < ways.number.shape[1]
+        inside = 0 <= i < ways.floor.walkable.shape[0] and 0 <= j < ways.floor.walkable.shape[1]
         if not inside or ways.number[i, j] < 0 or taken[ways.number[i, j]]:
             return refuse(here.world, Code.NO_PATH, f"{stride:g} m of free floor ahead", f"{metres:.2f} m")
-    return _at(here, number, Pose(*point, pose.yaw), _departed(here.world, number, point))
+    return _at(here, number, Pose(point[0], point[1], pose.yaw), _departed(here.world, number, point))
 
 
 def _turn(degrees: float) -> Move:
     def turn(here: Located, step: Step, ways: Ways, stride: float, rules: Rules) -> Located | Failure:
         pose = here.poses[step.agent]
         agent = here.world.agents[step.agent]
-        world = here.world.with_agent(step.agent, Agent(*agent[:3], 0, *agent[4:]))
+        world = here.world.with_agent(step.agent, agent._replace(facing=0))
         return _at(here, step.agent, Pose(pose.x, pose.z, (pose.yaw + degrees) % 360), world)
 
     return turn

@@ -105,9 +105,9 @@ def size_of(place: Place) -> int:
 def raw(place: Place) -> BinaryIO:
     """A file's bytes, unpacked."""
     if isinstance(place, Member):
-        return io.BufferedReader(
-            _Guarded(archive(place.archive).open(place.name), place.name, place.info().compress_size)
-        )
+        member = _opened(place)
+        guarded: io.RawIOBase = _Guarded(member, place.name, place.info().compress_size)
+        return io.BufferedReader(guarded)
     file = place.open("rb")
     start = file.read(4)
     file.seek(0)
@@ -120,6 +120,17 @@ def raw(place: Place) -> BinaryIO:
         stream = pa.CompressedInputStream(pa.OSFile(str(place)), "zstd")
         return _buffered(_Guarded(stream, str(place), place.stat().st_size))
     return file
+
+
+def _opened(member: Member) -> IO[bytes]:
+    try:
+        return archive(member.archive).open(member.name)
+    except Exception as error:  # a directory that lies: BadZipFile, KeyError, NotImplementedError, RuntimeError, ...
+        raise _damaged(member.name, f"can't be unpacked: {error}") from error
+
+
+def _damaged(name: str, message: str) -> DamagedError:
+    return DamagedError(Reject.of(Code.BAD_ARCHIVE, message, file=name, suggestion="download it again").diagnostics)
 
 
 def _buffered(stream: io.RawIOBase) -> BinaryIO:
@@ -140,9 +151,7 @@ class _Guarded(io.RawIOBase):
         try:
             data = self._stream.read(len(buffer))
         except Exception as error:  # archives raise what their compression raises: zlib, lzma, EOFError, ArrowIOError
-            message = f"can't be unpacked: {error}"
-            fault = Reject.of(Code.BAD_ARCHIVE, message, file=self._name, suggestion="download it again")
-            raise DamagedError(fault.diagnostics) from error
+            raise _damaged(self._name, f"can't be unpacked: {error}") from error
         self._size += len(data)
         if bomb(self._size, self._packed):
             fault = Reject.of(Code.FILE_TOO_LARGE, _told(self._size, self._packed), file=self._name)
