@@ -1,4 +1,4 @@
-"""`home`: list, show, check, convert and generate homes."""
+"""`home`: list, show, check, convert, edit and generate homes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
+    from hearth.simulation.homes.graph_layout import LaidOut
 
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="The homes: list, show, check and convert them, or draw up new ones.",
+    help="The homes: list, show, check, convert and edit them, or draw up new ones.",
 )
 
 Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
@@ -78,28 +79,69 @@ def show(
 
 
 @app.command()
-def lint(home: Home, homes: Homes = None, as_json: output.Json = False) -> None:
+def lint(
+    home: Home,
+    layout: Annotated[
+        bool, typer.Option("--layout", help="Lay a scene graph out, and say what of it no geometry could show.")
+    ] = False,
+    homes: Homes = None,
+    as_json: output.Json = False,
+) -> None:
     """Report what is wrong with a home or with any scene graph; the status is 1 if something is.
 
+    With --layout, a graph without geometry is given some, and every relation that this could not show is named; that
+    is no fault.
+
     \b
-    Example:
+    Examples:
       python cli.py home lint TrimmedTestScene1_graph.json
+      python cli.py home lint TrimmedTestScene1_graph.json --layout
     """
     from hearth.simulation.homes.lint import lint as check
 
-    faults = check(_graph(home, homes), file=home if Path(home).suffix else "")
+    graph = _graph(home, homes)
+    faults = check(graph, file=home if Path(home).suffix else "")
+    laid = _laid_out(graph, home) if layout else None
     if as_json:
-        output.emit({"home": home, "faults": [output.diagnostic_json(fault) for fault in faults]})
+        told = {"home": home, "faults": [output.diagnostic_json(fault) for fault in faults]}
+        if laid is not None:
+            told |= {"met": met(laid), "unmet": [output.diagnostic_json(fault) for fault in laid.unmet]}
+        output.emit(told)
     else:
         output.report(faults)
+        if laid is not None:
+            for fault in laid.unmet:
+                print(f"{fault.message} ({fault.suggestion})")
+            output.table(("of the graph", "there are", "shown by the layout"), [
+                (row["what"], row["all"], row["shown"]) for row in met(laid)])  # fmt: skip
         print(f"{home}: {output.counted(len(faults), 'fault')}")
     output.status(len(faults), strict=True)
+
+
+def met(laid: LaidOut) -> list[dict[str, Any]]:
+    """Of each relation, and of the things, how many there are and how many the layout shows."""
+    said = Counter(edge.relation for edge in laid.graph.edges)
+    lost = Counter(
+        "things" if fault.code == "NO_PLACE" else next(name for name in said if f") {name} " in fault.message)
+        for fault in laid.unmet
+    )
+    rows = {"things": len(laid.graph.nodes), **{name: said[name] for name in ("ON", "INSIDE", "CLOSE", "FACING")}}
+    return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
+
+
+def _laid_out(graph: EnvironmentGraph, home: str) -> LaidOut:
+    from hearth.simulation.homes.graph_layout import lay_out
+
+    return lay_out(graph, Path(home).stem)
 
 
 @app.command()
 def convert(
     home: Home,
     out: Annotated[Path, typer.Argument(metavar="FILE", help="`.json`: the release's layout; `.ids.csv`: node ids.")],
+    layout: Annotated[
+        bool, typer.Option("--layout", help="Give a scene graph the geometry that its relations suggest.")
+    ] = False,
     homes: Homes = None,
     as_json: output.Json = False,
 ) -> None:
@@ -112,13 +154,15 @@ def convert(
     Examples:
       python cli.py home convert maple maple.json
       python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
+      python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
     from hearth.simulation.homes import exporting
 
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
-        written = exporting.write_release(_graph(home, homes), out)
+        graph = _graph(home, homes)
+        written = exporting.write_release(_laid_out(graph, home).graph if layout else graph, out)
     if as_json:
         output.emit({"home": home, "file": out, "nodes": written})
     else:
@@ -154,6 +198,39 @@ def generate(
     else:
         names = ", ".join(room.name for room in layout.plan.rooms)
         print(f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else ""))
+
+
+@app.command()
+def edit(
+    home: Home,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")],
+    add: Annotated[
+        list[str] | None, typer.Option("--add", metavar="CLASS:on:ID", help="A new thing, on or inside.")
+    ] = None,
+    remove: Annotated[list[int] | None, typer.Option("--remove", metavar="ID", help="A thing that vanishes.")] = None,
+    move: Annotated[list[str] | None, typer.Option("--move", metavar="ID:on:ID", help="A thing put elsewhere.")] = None,
+    states: Annotated[list[str] | None, typer.Option("--set", metavar="ID:STATE", help="A state to be in.")] = None,
+    homes: Homes = None,
+    as_json: output.Json = False,
+) -> None:
+    """Add, remove and move things of a home and set states, each as often as wanted, as far as the knowledge allows.
+
+    \b
+    Example:
+      python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
+    """
+    from hearth.commands.edits import edited
+    from hearth.kb.knowledge import default
+    from hearth.simulation.homes import exporting
+
+    graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
+                        knowledge=default(), name=home)  # fmt: skip
+    exporting.write_release(graph, out)
+    if as_json:
+        output.emit({"home": home, "file": out, "added": list(new), **_figures(graph)})
+    else:
+        ids = f", new ids {', '.join(map(str, new))}" if new else ""
+        print(f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}")
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:

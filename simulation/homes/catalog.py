@@ -13,6 +13,8 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
 from hearth.schemas.text import decode
+from hearth.simulation.homes.graph_layout import LaidOut, lay_out
+from hearth.simulation.homes.graph_measured import has_geometry, measured
 from hearth.simulation.homes.layout import Layout, read
 from hearth.simulation.homes.plan import Plan
 from hearth.simulation.homes.scene import scene
@@ -41,15 +43,12 @@ def load_graph(name: str, directory: Path | str | None = None) -> EnvironmentGra
 
 
 def load_layout(name: str, directory: Path | str | None = None) -> Layout:
-    """A home's plan with everything in its place.
+    """A home's plan with everything in its place; a scene graph is laid out by its relations.
 
     Raises:
-        HearthError: UNKNOWN_HOME; UNSUPPORTED_FILE: it is a graph without a plan; or every fault of its plan.
+        HearthError: UNKNOWN_HOME; every fault of its plan; or NO_ROOM: a graph without rooms.
     """
-    path = _file(name, directory)
-    if path.suffix == ".json":
-        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{name}` is a scene graph and has no plan", file=str(path))
-    return _layout(path)
+    return layout_of(_file(name, directory))
 
 
 def load_plan(name: str, directory: Path | str | None = None) -> Plan:
@@ -58,8 +57,18 @@ def load_plan(name: str, directory: Path | str | None = None) -> Plan:
 
 
 def layout_of(path: Path | str) -> Layout:
-    """A plan file with everything in its place; errors as of `load_layout`."""
-    return _layout(Path(path))
+    """A plan file with everything in its place, or a graph laid out; errors as of `load_layout`."""
+    found = Path(path)
+    if found.suffix != ".json":
+        return _layout(found)
+    graph = _graph(found)
+    return measured(graph, found.stem) if has_geometry(graph) else laid_out(found).layout
+
+
+@lru_cache(maxsize=16)
+def laid_out(path: Path) -> LaidOut:
+    """A scene graph file with the geometry that its relations suggest, and what of them it does not show."""
+    return lay_out(_graph(path), path.stem)
 
 
 def graph_of(path: Path | str) -> EnvironmentGraph:

@@ -82,5 +82,61 @@ def test_a_generated_plan_is_a_home_like_others(tmp_path):
 
 
 def test_each_help_has_an_example():
-    for command in ("list", "show", "lint", "convert", "generate"):
+    for command in ("list", "show", "lint", "convert", "edit", "generate"):
         assert f"python cli.py home {command}" in run(command, "--help").stdout
+
+
+def test_things_are_added_moved_removed_and_set(tmp_path):
+    out = tmp_path / "mine.json"
+    nodes = {node["class_name"]: node["id"] for node in json.loads(_copied(tmp_path).read_text())["nodes"]}
+    fridge, cup, table = nodes["fridge"], nodes["cup"], nodes["coffee_table"]
+    orders = ("--add", f"apple:in:{fridge}", "--move", f"{cup}:on:{table}", "--set", f"{fridge}:open")
+    result = run("edit", "maple", *orders, "--remove", nodes["mouse"], "--out", out, "--json")
+    assert result.exit_code == 0, result.output
+    (apple,) = json.loads(result.stdout)["added"]
+    graph = json.loads(out.read_text())
+    edges = {(e["from_id"], e["relation_type"], e["to_id"]) for e in graph["edges"]}
+    states = {node["id"]: node["states"] for node in graph["nodes"]}
+    assert {(apple, "INSIDE", fridge), (cup, "ON", table)} <= edges
+    assert "OPEN" in states[fridge] and nodes["mouse"] not in states
+    assert run("lint", out).exit_code == 0
+    assert run("show", out, "--out", tmp_path / "mine.svg").exit_code == 0
+
+
+def _copied(tmp_path):
+    assert run("convert", "maple", tmp_path / "copy.json").exit_code == 0
+    return tmp_path / "copy.json"
+
+
+@pytest.mark.parametrize(
+    ("order", "code"),
+    [
+        (("--add", "appel:on:44"), "UNKNOWN_OBJECT"),
+        (("--add", "apple"), "SYNTAX"),
+        (("--add", "apple:inside:44"), "NO_PLACE"),
+        (("--move", "cup:on:44"), "SYNTAX"),
+        (("--remove", "9999"), "UNKNOWN_ID"),
+        (("--set", "44:LOUD"), "SYNTAX"),
+    ],
+)
+def test_orders_that_make_no_sense_are_refused(tmp_path, order, code):
+    result = run("edit", "maple", *order, "--out", tmp_path / "x.json", "--json")
+    assert result.exit_code == 1
+    (fault,) = json.loads(result.stdout)["errors"]
+    assert fault["code"] == code and fault["suggestion"]
+    assert not (tmp_path / "x.json").exists()
+
+
+def test_a_graph_is_laid_out(tmp_path):
+    graph = json.loads(_copied(tmp_path).read_text())
+    for node in graph["nodes"]:
+        node.pop("bounding_box"), node.pop("yaw", None)
+    bare = tmp_path / "bare.json"
+    bare.write_text(json.dumps(graph))
+    told = json.loads(run("lint", bare, "--layout", "--json").stdout)
+    assert {row["what"] for row in told["met"]} == {"things", "ON", "INSIDE", "CLOSE", "FACING"}
+    assert all(row["shown"] > 0.6 * row["all"] for row in told["met"])
+    assert run("convert", bare, tmp_path / "laid.json", "--layout").exit_code == 0
+    laid = json.loads((tmp_path / "laid.json").read_text())
+    assert sum("bounding_box" in node for node in laid["nodes"]) > 250
+    assert run("show", bare, "--out", tmp_path / "bare.svg").exit_code == 0
