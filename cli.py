@@ -66,6 +66,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "check": Entry("check:check", "Check program files and underline what is wrong."),
         "run": Entry("run:run", "Run a program in a home and print what happens."),
         "repair": Entry("repair:repair", "Perturb what a program relies on, and show how it is repaired."),
+        "sketch": Entry("sketch:sketch", "Tell the steps that are the activity from those due to the environment."),
         "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
     },
     "Make pictures": {

@@ -53,8 +53,8 @@ def achieved(execution: Execution) -> Postconditions:
     program, world = execution.program, execution.final
     nodes = nodes_of(program, world)
     home = world.home
-    before = frozenset(_facts(execution.worlds[0], nodes))
-    now = tuple(_facts(world, nodes))
+    before = frozenset(facts(execution.worlds[0], nodes))
+    now = tuple(facts(world, nodes))
     new = [fact for fact in now if fact not in before]
     rooms = {key for key, node in nodes.items() if home.rooms >> home.index[node] & 1}
     held = {fact.target for fact in now if fact.name == "HOLDS"}
@@ -74,14 +74,14 @@ def achieved(execution: Execution) -> Postconditions:
     return tuple(sorted(filter(is_meant, new), key=_order))
 
 
-def missing(facts: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
+def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
     """The facts that do not hold in a world; `nodes` says which node each object is."""
-    return tuple(fact for fact in facts if not holds(fact, nodes, world))
+    return tuple(fact for fact in wanted if not holds(fact, nodes, world))
 
 
-def reached(facts: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
+def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
     """Whether every fact holds in a world."""
-    return all(holds(fact, nodes, world) for fact in facts)
+    return all(holds(fact, nodes, world) for fact in wanted)
 
 
 def holds(fact: Fact, nodes: Mapping[Key, int], world: World) -> bool:
@@ -124,7 +124,8 @@ def _row(world: World, relation: str, i: int) -> int:
     return row
 
 
-def _facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
+def facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
+    """All states and relations of these objects in a world."""
     index = world.home.index
     keys: dict[int, list[Key]] = {}
     for key, node in nodes.items():

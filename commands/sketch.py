@@ -1,0 +1,129 @@
+"""`sketch`: which steps of a program are the activity, and which are due to the environment?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+from hearth.commands.inputs import Homes, Kb, read_knowledge
+
+if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
+    from hearth.pipelines.rehearsal import Script
+    from hearth.pipelines.sketch_judging import Judgement
+    from hearth.simulation.home import Home
+
+Sources = Annotated[list[Path], typer.Argument(metavar="SOURCE...", help="Programs, in any form that is read.")]
+Judge = Annotated[
+    Path | None, typer.Option("--judge", metavar="FILE", help="Sketches that people drew; compare with them.")
+]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of the environments.")]
+Every = Annotated[bool, typer.Option("--disagreements", help="With --judge: list the programs that differ.")]
+
+
+def sketch(
+    sources: Sources,
+    judge: Judge = None,
+    disagreements: Every = False,
+    homes: Homes = None,
+    kb: Kb = None,
+    seed: Seed = 0,
+    as_json: output.Json = False,
+) -> None:
+    """Print the sketch of programs: the steps that any environment would ask for.
+
+    Those are the fewest steps from which, in several homes, repairing still reaches what the program is for, and the
+    steps that only the description asks for. With --judge the sketches are compared with people's: precision, recall
+    and F1 over steps, beside two baselines, of which one knows the answers.
+
+    \b
+    Examples:
+      python cli.py sketch watch_tv.txt
+      python cli.py sketch release.zip --judge sketch_annotation.json --disagreements
+    """
+    from hearth.pipelines.rehearsal import scripts
+    from hearth.pipelines.rejects import Reject
+    from hearth.schemas.errors import HearthError
+
+    known = read_knowledge(kb)
+    found = list(scripts(map(str, sources), known))
+    programs = [one for one in found if not isinstance(one, Reject)]
+    if not programs:
+        raise HearthError([fault for one in found if isinstance(one, Reject) for fault in one.diagnostics])
+    places = _homes(homes, known)
+    if judge is None:
+        _show(programs, places, known, seed, as_json)
+    else:
+        _judge(judge, programs, places, known, seed, as_json=as_json, every=disagreements)
+
+
+def _homes(folder: Path | None, known: Knowledge) -> list[Home]:
+    from hearth.pipelines.sketching import ENVIRONMENTS
+    from hearth.simulation.home import Home
+    from hearth.simulation.homes import catalog
+
+    names = catalog.names(folder)[:ENVIRONMENTS]
+    return [Home.from_graph(catalog.load_graph(name, folder), name, known) for name in names]
+
+
+def _show(programs: list[Script], places: list[Home], known: Knowledge, seed: int, as_json: bool) -> None:
+    from hearth.pipelines.sketching import sketch as inferred
+    from hearth.schemas.syntax import print_step
+
+    told = []
+    for script in programs:
+        keep = inferred(script.program, places, known, seed, script.program_id)
+        steps = [print_step(step) for step in script.program.steps]
+        told.append({"program_id": script.program_id, "title": script.program.title, "steps": steps, "keep": keep})
+        if not as_json:
+            _print_steps(f"{script.program.title or script.program_id}: {sum(keep)} of {len(keep)} steps", steps, keep)
+    if as_json:
+        output.emit(told)
+
+
+def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None:
+    print(heading)
+    for step, kept in zip(steps, keep, strict=True):
+        print(f"  {'*' if kept else ' '} {step}")
+
+
+def _judge(
+    file: Path, programs: list[Script], places: list[Home], known: Knowledge, seed: int, *, as_json: bool, every: bool
+) -> None:
+    from hearth.pipelines.sketch_judging import annotated, judge
+    from hearth.schemas.errors import HearthError
+    from hearth.schemas.failures import Code
+
+    if not file.is_file():
+        raise HearthError.of(Code.MISSING_FILE, "there is no such file", file=str(file))
+    found = judge(annotated(file, file.name, programs, known), places, known, seed)
+    if not found.rows:
+        hint = "give the programs that the sketches are of: the release they were drawn for"
+        raise HearthError.of(Code.EMPTY, "no sketch is of one of these programs", file=str(file), suggestion=hint)
+    if as_json:
+        more = {"disagreements": list(found.disagreements())} if every else {}
+        output.emit({**found.summary(), **more})
+    else:
+        _print_judgement(found, every)
+
+
+def _print_judgement(found: Judgement, every: bool) -> None:
+    told: dict[str, Any] = found.summary()
+    kinds = ("inferred", "dropping_what_is_by_the_way", "keeping_what_people_usually_keep")
+    rows = [
+        (kind.replace("_", " "), *(f"{told[kind][name]:.3f}" for name in ("precision", "recall", "f1")))
+        for kind in kinds
+    ]
+    output.table(("sketch", "precision", "recall", "F1"), rows)
+    lengths = ", ".join(f"{name} {value}" for name, value in told["average_length"].items())
+    print(f"\n{told['programs']} programs, {told['steps']} steps; {told['alike']} sketches alike.")
+    print(f"Steps on average: {lengths}.")
+    for action, kinds_of in told["disagreements_by_action"].items():
+        print(f"  {action:10} {', '.join(f'{kind} {count}' for kind, count in kinds_of.items())}")
+    for one in found.disagreements() if every else ():
+        print(f"\n{one['title']}: {one['description']}")
+        for step in one["steps"]:
+            print(f"  {'*' if step['inferred'] else ' '}{'p' if step['people'] else ' '} {step['step']}")

@@ -1,0 +1,106 @@
+"""Inferring sketches: the steps from which the repairer can make the rest, in several environments (thesis 5.5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from hearth.grounding.postconditions import Postconditions, achieved, holds, nodes_of
+from hearth.grounding.preconditions import infer
+from hearth.grounding.sampling import Environment, sample
+from hearth.grounding.sketches import REPLACEABLE, asked, meant, milestones
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.handlers.common import Handler
+from hearth.pipelines.handlers.registry import HANDLERS
+from hearth.pipelines.repairing import repair
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import Program
+from hearth.simulation.engine import Execution
+from hearth.simulation.home import Home
+
+ENVIRONMENTS = 3
+"""In how many homes a sketch has to be enough."""
+
+_EXPANDING: Mapping[Code, Handler] = {code: one for code, one in HANDLERS.items() if code is not Code.GOAL_LOST}
+"""All handlers but the one that brings about what is missing at the end: it would make any step needless."""
+
+Keep = tuple[bool, ...]
+"""For each step of a program, whether its sketch keeps it."""
+
+
+def sketch(program: Program, homes: Sequence[Home], knowledge: Knowledge, seed: int = 0, record_id: str = "") -> Keep:
+    """The smallest part of a program from which repairing reaches what it is for, and what only its words ask for.
+
+    Steps are left out one by one, from the first; one stays out if in every environment the rest can still be
+    repaired so that it reaches the effects meant. Actions that no repair inserts stay. What is left out comes back
+    where the description asks for it and no kept step after it is about the same thing.
+
+    Args:
+        program: with instances as counters.
+        homes: the first of them are tried, each in an environment sampled for the program.
+        knowledge: what homes and program go by.
+        seed, record_id: all the randomness there is.
+    """
+    conditions = infer(program, knowledge)
+    found: list[Environment] = []
+    goal: Postconditions = ()
+    passed: Postconditions = ()
+    for home in homes[:ENVIRONMENTS]:
+        if isinstance(conditions, Failure):
+            break
+        drawn = sample(program, home, seed, f"{record_id}/sketch", conditions)
+        if not isinstance(drawn, Failure):
+            if not found:
+                goal = meant(achieved(drawn[1]), program, drawn[0].conditions, knowledge)
+                passed = tuple(fact for fact in milestones(drawn[1]) if fact not in goal)
+            found.append(drawn[0])
+    keep = _smallest(program, found, goal, passed)
+    return _with_asked(program, keep, asked(program, knowledge))
+
+
+def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
+    """The sketch of a program made from another: the same steps, wherever they now stand.
+
+    Args:
+        keep: the parent's sketch.
+        sources: for each step of the child, which of the parent's it is; -1 for a new one.
+    """
+    return tuple(source >= 0 and keep[source] for source in sources)
+
+
+def _smallest(
+    program: Program, environments: Sequence[Environment], goal: Postconditions, passed: Postconditions
+) -> Keep:
+    keep = [True] * len(program.steps)
+    for number, step in enumerate(program.steps):
+        if step.action in REPLACEABLE:
+            keep[number] = False
+            keep[number] = not _suffices(keep, environments, goal, passed)
+    return tuple(keep)
+
+
+def _suffices(
+    keep: Sequence[bool], environments: Sequence[Environment], goal: Postconditions, passed: Postconditions
+) -> bool:
+    for environment in environments:
+        steps = [step for step, kept in zip(environment.program.steps, keep, strict=True) if kept]
+        rest = environment.program.with_steps(steps)
+        done = repair(rest, environment.world, goal, environment.base.knowledge, handlers=_EXPANDING)
+        if done.failure is not None or not _passes(environment, done.execution, passed):
+            return False
+    return True
+
+
+def _passes(environment: Environment, execution: Execution, passed: Postconditions) -> bool:
+    """Whether each of some effects is there at some time."""
+    nodes = nodes_of(environment.program, environment.world)
+    return all(any(holds(fact, nodes, world) for world in execution.worlds) for fact in passed)
+
+
+def _with_asked(program: Program, keep: Keep, wanted: Sequence[bool]) -> Keep:
+    found = list(keep)
+    for number in range(len(program.steps) - 1, -1, -1):
+        if wanted[number] and not keep[number]:
+            first = program.steps[number].objects[:1]
+            later = (s for n, s in enumerate(program.steps) if n > number and found[n])
+            found[number] = not any(ref in step.objects for step in later for ref in first)
+    return tuple(found)
