@@ -12,7 +12,7 @@ DOOR_WALL = 1.2
 STEP = 0.4
 BRANCHES = 10
 """Places tried for a room, the most compact first."""
-MOST_TRIES, FEWER_TRIES = 2_000, 200
+MOST_TRIES, FEWER_TRIES = 400, 100
 """Places tried before the first door is given up, and before each further one."""
 
 Pair = tuple[int, int]
