@@ -13,6 +13,7 @@ from hearth.commands.inputs import Kb
 
 if TYPE_CHECKING:
     from hearth.pipelines.corpus import Corpus, Similarities
+    from hearth.schemas.program import Program
 
 app = typer.Typer(help="What people say and write: statistics, synthesis, ratings, and how well faults are found.")
 
@@ -149,6 +150,152 @@ def _print_stats(found: Corpus, alike: Similarities) -> None:
     for title, counts in (("Refused", found.refused), ("Warnings", found.warnings), ("Special blocks", found.specials)):
         if counts:
             _say(title, ("", "times"), [*counts.most_common(12)])
+
+
+@app.command()
+def dirt(
+    key: Annotated[Path, typer.Argument(metavar="KEY", help="A CSV of the faulty records: HITId, fault.")],
+    sources: Annotated[
+        list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="What it is the key of; our corpus if none.")
+    ] = None,
+    kb: Kb = None,
+    as_json: output.Json = False,
+) -> None:
+    """Say how well faults are found in a corpus whose faults are known: precision and recall.
+
+    \b
+    Example:
+      python cli.py corpus dirt data_raw/crowd/key.csv
+    """
+    from hearth.commands.inputs import read_knowledge
+    from hearth.pipelines import dirt as finding
+    from hearth.pipelines.build import corpus as embedded
+
+    paths = [str(path) for path in sources or embedded()]
+    report = finding.score(finding.find(paths, read_knowledge(kb)), finding.read_key(key))
+    if as_json:
+        output.emit(report)
+        return
+    rows = [(one.fault, one.labelled, one.found, one.recall, _codes(one.codes)) for one in report.scores]
+    _say("Found, by kind of fault", ("fault", "labelled", "found", "recall", "as (! refused)"), rows)
+    _say("Found where the key says nothing", ("as", "records"), [*report.false])
+    total = [("all findings", report.precision, report.recall), ("refusals", report.rejected_precision, None)]
+    _say("Altogether", ("", "precision", "recall"), total)
+
+
+def _codes(codes: tuple[tuple[str, int], ...]) -> str:
+    return ", ".join(f"{code} {count}" for code, count in codes)
+
+
+@app.command()
+def fuzz(
+    seconds: Annotated[float, typer.Option("--seconds", metavar="S", min=0, help="How long to go on.")] = 300,
+    seed: Seed = 0,
+    most: Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="At most so many cases.")] = None,
+    as_json: output.Json = False,
+) -> None:
+    """Give every reader mutated input; the status is 1 if any of it made a traceback or vanished.
+
+    \b
+    Example:
+      python cli.py corpus fuzz --seconds 60 --seed 7
+    """
+    from hearth.kb import knowledge
+    from hearth.pipelines import fuzzing
+
+    report = fuzzing.fuzz(knowledge.default(), seconds, seed, most)
+    if as_json:
+        output.emit(report)
+    else:
+        counts = (report.records, report.rows, report.rejects, report.refused_whole)
+        columns = ("cases", "records", "rows", "rejects", "files refused whole", "crashes")
+        _say("", columns, [(report.cases, *counts, len(report.crashes))])
+        _say("Why refused", ("code", "times"), [*report.codes.most_common()])
+        for crash in report.crashes[:20]:
+            print(crash)
+    output.status(len(report.crashes), strict=True)
+
+
+@app.command()
+def sheet(
+    sources: Sources = None,
+    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="How many programs.")] = 100,
+    raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Rows for so many raters.")] = 5,
+    seed: Seed = 0,
+    out: Out = None,
+) -> None:
+    """Write a sheet on which people rate how complete programs are (thesis 3.4.1).
+
+    \b
+    Example:
+      python cli.py corpus sheet data_out --programs 100 --out ratings.csv
+    """
+    from hearth.pipelines import ratings
+    from hearth.pipelines.files import write_bytes
+
+    text = ratings.sheet(_drawn(sources, count, seed), raters)
+    if out is None:
+        sys.stdout.write(text)
+    else:
+        write_bytes(out, text.encode())
+        print(f"{out}: ratings are 1, 2 or 3")
+
+
+def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
+    """Some valid programs, the same for the same seed."""
+    from hearth.kb import knowledge
+    from hearth.pipelines import corpus as numbers
+    from hearth.pipelines.build import corpus as embedded
+    from hearth.schemas.program import Program
+    from hearth.schemas.rng import rng
+
+    found = numbers.gather([str(path) for path in sources or embedded()], knowledge.default())
+    chosen = rng(seed, "ratings").sample(found.programs, min(count, len(found.programs)))
+    return [(p.program_id, Program(p.title, found.descriptions.get(p.description_id, ""), p.steps)) for p in chosen]
+
+
+@app.command()
+def completeness(
+    sources: Sources = None,
+    sheets: Annotated[list[Path] | None, typer.Option("--sheet", metavar="FILE", help="Filled in by raters.")] = None,
+    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Estimate for so many.")] = 100,
+    home: Annotated[str, typer.Option("--home", metavar="NAME", help="The home to try them in.")] = "maple",
+    seed: Seed = 0,
+    as_json: output.Json = False,
+) -> None:
+    """Estimate how complete programs are from what repairing has to insert, beside raters and the thesis's 64/28/8%.
+
+    \b
+    Examples:
+      python cli.py corpus completeness data_out --programs 100
+      python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
+    """
+    from hearth.commands.inputs import read_home
+    from hearth.kb import knowledge
+    from hearth.pipelines import ratings
+    from hearth.schemas.failures import Failure
+
+    known = knowledge.default()
+    place = read_home(home, None, None, known)
+    guessed = {name: ratings.estimate(one, place, known, seed) for name, one in _drawn(sources, count, seed)}
+    estimated = {name: found for name, found in guessed.items() if not isinstance(found, Failure)}
+    rated = ratings.medians(ratings.read_sheets(sheets or []))
+    table = [("thesis 3.4.1", 100, *ratings.THESIS.values()), ("estimated", len(estimated), *_shares(estimated))]
+    if rated:
+        table.append(("rated", len(rated), *_shares(rated)))
+    agree = ratings.agreement(estimated, rated) if rated else None
+    if as_json:
+        output.emit({"rows": table, "agreement": agree, "estimates": {k: int(v) for k, v in estimated.items()}})
+        return
+    _say("How complete programs are", ("", "programs", *ratings.SAID.values()), table)
+    if agree is not None:
+        print(f"Estimate and median agree on {agree:.0%} of the programs that both speak of.")
+
+
+def _shares(classes: dict[str, Any]) -> list[float]:
+    from hearth.pipelines import ratings
+
+    return [*ratings.shares(classes.values()).values()]
 
 
 def _say(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:

@@ -128,6 +128,11 @@ def _take(corpus: Corpus, row: dict[str, Any], known: Knowledge) -> None:
             corpus.programs.append(told)
 
 
+def complete(row: dict[str, Any]) -> dict[str, Any]:
+    """A reader's row with every column that `validate` looks at; groundings are left out."""
+    return dict.fromkeys(_COLUMNS) | row | {"groundings": None}
+
+
 _COLUMNS = ("source", "scene", "worker", "platform", "rooms", "props", "conditions", "title", "description")
 
 

@@ -45,10 +45,11 @@ READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]]
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {release.NAME: 4, scenes.NAME: 16}
-"""What a record counts towards filling a partition, where it brings more than words."""
+WEIGHTS = {text.NAME: 1, spoken.NAME: 1, ours.NAME: 1, release.NAME: 64, scenes.NAME: 256}
+"""What a record counts towards filling a partition, by what it brings; others count `_USUAL`."""
 
-_FULL = 128
+_USUAL = 16
+_FULL = 2_048
 
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
@@ -111,7 +112,7 @@ def partitions(job: Job) -> Iterator[Partition]:
             number += 1
             share, weight = [], 0
         share.append(found)
-        weight += WEIGHTS.get(found[1].reader, 1)
+        weight += WEIGHTS.get(found[1].reader, _USUAL)
     if share:
         yield _partition(number, share)
 

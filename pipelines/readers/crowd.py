@@ -177,6 +177,11 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]
     empty = [name for name in ("Answer.title", "Answer.description") if not cells[name].strip()]
     if empty:
         return _empty(item, empty)
+    garbled = _garbled(cells["Answer.description"])
+    if garbled:
+        message = f"text decoded with the wrong encoding: `{garbled}`"
+        told = {"file": item.place, "found": garbled, "suggestion": "download the batch again, as UTF-8"}
+        return Reject.of(Code.NOT_TEXT, message, line=item.line, **told)
     return {
         **_common(item, cells, salt),
         "kind": "description",
@@ -186,6 +191,21 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]
         "description": cells["Answer.description"].strip(),
         "scene": normal_name(cells["Input.scene"]),
     }
+
+
+_GARBLED = re.compile("(?:\u00c3[\u0080-\u00bf\u0152-\u2122]|\u00e2\u20ac[\u0080-\u2122]|\u00c2[\u00a0-\u00bf])[^ ]*")
+
+
+def _garbled(text: str) -> str:
+    """The first word that is UTF-8 read as Windows-1252, or nothing; what says itself back that way is no accident."""
+    match = _GARBLED.search(text)
+    if match is None:
+        return ""
+    try:
+        match[0].encode("cp1252").decode("utf-8")
+    except UnicodeError:
+        return ""
+    return match[0][:40]
 
 
 def _program(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | Reject:
