@@ -59,6 +59,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "query": Entry("query:query", "Ask a published dataset a question in SQL."),
         "verify": Entry("verify:verify", "Check a dataset: hashes, counts, references, every execution run again."),
         "export": Entry("export:export", "Write a dataset in another form: release, words, JSON Lines, code, graphs."),
+        "report": Entry("report:report", "Write a dataset as static HTML that needs no network."),
         "score": Entry("score:app", "Score predicted programs against references."),
         "corpus": Entry("corpus:app", "What people wrote: statistics, synthesis, ratings, faults."),
     },

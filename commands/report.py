@@ -1,0 +1,35 @@
+"""`report`: a dataset as static HTML."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hearth.commands import output
+
+Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new folder, or an earlier report.")]
+
+_OUT = Path("report_out")
+
+
+def report(dataset: Folder, out: Out = _OUT, as_json: output.Json = False) -> None:
+    """Write a dataset as one folder of static HTML: open its index.html, no network or server is needed.
+
+    Where records went, statistics with the queries that make them, homes as floor plans, and every program with its
+    steps, preconditions, repairs, graphs before and after, and pictures.
+
+    \b
+    Example:
+      python cli.py report data_out --out report_out
+    """
+    from hearth.pipelines.dataset import Dataset
+    from hearth.report.write import write_report
+
+    programs = write_report(Dataset.open(dataset), out)
+    if as_json:
+        output.emit({"out": str(out), "programs": programs})
+    else:
+        print(f"{output.counted(programs, 'program')}; open {out / 'index.html'}")

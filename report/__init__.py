@@ -1,0 +1,1 @@
+"""A dataset as a folder of static HTML that needs no network and no server."""

@@ -1,0 +1,161 @@
+"use strict";
+// The page of one program. Everything that came from people is set as text, never as markup.
+HEARTH.draw = (() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  const { element } = HEARTH;
+  const PAUSE = 900;
+  let timer = 0;
+
+  function card(title, ...inside) {
+    const made = element("section", null, "card");
+    made.append(element("h3", title), ...inside);
+    return made;
+  }
+
+  function list(texts) {
+    const made = element("ul");
+    made.append(...texts.map((text) => element("li", text)));
+    return made;
+  }
+
+  function shape(name, told, text) {
+    const made = document.createElementNS(SVG, name);
+    for (const [key, value] of Object.entries(told)) made.setAttribute(key, value);
+    if (text !== undefined) made.textContent = text;
+    return made;
+  }
+
+  function graph(told) {
+    const size = 420;
+    const middle = size / 2;
+    const drawn = shape("svg", { class: "graph", viewBox: `0 0 ${size} ${size}`, role: "img" });
+    const place = new Map(told.nodes.map(([id], number) => {
+      const turn = (2 * Math.PI * number) / told.nodes.length - Math.PI / 2;
+      return [id, [middle + 150 * Math.cos(turn), middle + 150 * Math.sin(turn)]];
+    }));
+    for (const [from, relation, to] of told.edges) {
+      const [x, y] = place.get(from);
+      const [u, v] = place.get(to);
+      drawn.append(shape("line", { x1: x, y1: y, x2: u, y2: v, "stroke-width": relation.startsWith("HOLDS") ? 3 : 1 }));
+      drawn.append(shape("text", { class: "label", x: x + (u - x) * 0.4, y: y + (v - y) * 0.4 }, relation));
+    }
+    for (const [id, name, states] of told.nodes) {
+      const [x, y] = place.get(id);
+      drawn.append(shape("circle", { cx: x, cy: y, r: 6 }));
+      const anchor = x < middle - 20 ? "end" : x > middle + 20 ? "start" : "middle";
+      const dx = x < middle - 20 ? -9 : x > middle + 20 ? 9 : 0;
+      drawn.append(shape("text", { x: x + dx, y: y + (y < middle ? -9 : 15), "text-anchor": anchor }, `${name} (${id})`));
+      if (states.length) {
+        drawn.append(shape("text", { class: "label", x: x + dx, y: y + (y < middle ? -20 : 26), "text-anchor": anchor },
+          states.join(" ")));
+      }
+    }
+    return drawn;
+  }
+
+  function said(failure) {
+    const names = failure.names.length ? ` of ${failure.names.join(", ")}` : "";
+    const found = failure.actual ? `, found ${failure.actual}` : "";
+    return `${failure.code} at step ${failure.tick + 1}: ${failure.action}${names} expects ${failure.expected}${found}`;
+  }
+
+  function dialogue(repairs) {
+    return repairs.flatMap((repair) => {
+      const world = element("p", said(repair.failure), "said world");
+      const handler = element("p", `${repair.handler}: `, "said handler");
+      for (const [name, lines] of [["del", repair.before], ["ins", repair.after]]) {
+        for (const line of lines) {
+          const change = element(name);
+          change.append(element("code", `${name === "del" ? "− " : "+ "}${line}`));
+          handler.append(element("br"), change);
+        }
+      }
+      return [world, handler];
+    });
+  }
+
+  function player(run, steps) {
+    const controls = element("p", null, "controls");
+    const button = element("button", "Play");
+    button.type = "button";
+    button.className = "play";
+    const where = element("span", "", "quiet");
+    const changes = element("div");
+    const picture = element("img", null, "frame");
+    picture.alt = "";
+    picture.hidden = !run.frames.length;
+    let tick = 0;
+    const stop = () => { clearInterval(timer); timer = 0; button.textContent = "Play"; };
+    function draw() {
+      const now = new Set(tick ? run.ticks[tick - 1].steps : []);
+      steps.forEach((line, number) => line.classList.toggle("now", now.has(number)));
+      where.textContent = `after step ${tick} of ${run.ticks.length}`;
+      const told = tick ? run.ticks[tick - 1].changes : [];
+      changes.replaceChildren(told.length ? list(told) : element("p", tick ? "changes nothing" : "the start", "quiet"));
+      const frame = run.frames.filter((each) => each.tick === tick).at(-1);
+      if (frame) picture.src = frame.file.split("/").map(encodeURIComponent).join("/");
+    }
+    function go(to) { tick = Math.max(0, Math.min(run.ticks.length, to)); draw(); }
+    button.onclick = () => {
+      if (timer) { stop(); return; }
+      button.textContent = "Pause";
+      if (tick === run.ticks.length) go(0);
+      timer = setInterval(() => { go(tick + 1); if (tick === run.ticks.length) stop(); }, PAUSE);
+    };
+    const ways = [["‹", -1, "step back"], ["›", 1, "step on"]].map(([text, by, label]) => {
+      const way = element("button", text);
+      way.type = "button";
+      way.ariaLabel = label;
+      way.onclick = () => { stop(); go(tick + by); };
+      return way;
+    });
+    controls.append(button, ...ways, where);
+    draw();
+    return card("Playing", controls, picture, changes);
+  }
+
+  function runCards(run, steps) {
+    const end = run.failure ? element("p", said(run.failure), "bad") : element("p", "runs to its end", "good");
+    const about = card(`In ${run.home}`, end, element("h3", "Preconditions"),
+      run.conditions.length ? list(run.conditions) : element("p", "none", "quiet"));
+    return [about, player(run, steps), card("Before", graph(run.start)), card("After", graph(run.final))];
+  }
+
+  return (page, told, known) => {
+    clearInterval(timer);
+    timer = 0;
+    const head = [element("h2", told.title), element("p", told.description),
+      element("p", `${told.id}; ${told.origin}, ${told.split}, activity ${told.activity}`, "quiet")];
+    if (told.parent && known(told.parent)) {
+      const line = element("p", "made from ");
+      const link = element("a", told.parent);
+      link.href = `#/program/${encodeURIComponent(told.parent)}`;
+      line.append(link);
+      head.push(line);
+    }
+    const steps = told.steps.map((text) => element("li", text));
+    const lines = element("ol", null, "steps");
+    lines.append(...steps);
+    const columns = element("div", null, "columns");
+    const first = [card("Steps", lines)];
+    if (told.repairs.length) first.push(card("Repairs", ...dialogue(told.repairs)));
+    const place = element("div", null, "columns");
+    const choose = element("select");
+    choose.ariaLabel = "home";
+    choose.append(...told.runs.map((run, number) => new Option(run.home, number)));
+    const open = () => {
+      clearInterval(timer);
+      timer = 0;
+      const run = told.runs[Number(choose.value)];
+      place.replaceChildren(...(run ? runCards(run, steps) : [element("p", "It was not run.", "quiet")]));
+    };
+    choose.onchange = open;
+    columns.append(...first);
+    const label = element("p", "Run in ", "controls");
+    label.append(choose);
+    page.replaceChildren(...head, columns, label, place);
+    const filmed = told.runs.findIndex((run) => run.frames.length);
+    if (filmed > 0) choose.value = String(filmed);
+    open();
+  };
+})();

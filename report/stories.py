@@ -1,0 +1,162 @@
+"""A program as its page tells it: steps, preconditions, runs tick by tick, repairs as a dialogue, graphs, frames."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import Any
+
+from hearth.pipelines.dataset import Dataset
+from hearth.pipelines.rows import edges_of, program_of
+from hearth.schemas.graph import Edge
+from hearth.schemas.syntax import print_step
+
+Row = dict[str, Any]
+
+DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})
+"""Relations that are drawn; CLOSE and BETWEEN would hide them."""
+
+_MOST_RELATIONS = 40
+
+
+class Stories:
+    """What the pages of a dataset's programs say. Homes are read once; a run costs what it changes."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self.dataset = dataset
+        self._homes: dict[str, _Home] = {}
+
+    @cached_property
+    def frames(self) -> dict[str, list[Row]]:
+        """Pictures by execution, in the order of ticks."""
+        query = """SELECT execution_id, tick, camera, file FROM frames WHERE modality = 'rgb'
+            ORDER BY execution_id, tick, camera = 'top' DESC, camera"""
+        found: dict[str, list[Row]] = defaultdict(list)
+        for execution_id, tick, camera, file in self.dataset.rows(query)[1]:
+            found[execution_id].append({"tick": tick, "camera": camera, "file": file})
+        return found
+
+    def story(self, program: Row, runs: Iterable[Row], repairs: Iterable[Row]) -> Row:
+        """One program as JSON.
+
+        Args:
+            program: a row of `programs`.
+            runs: its rows of `executions`, each with its `environment`.
+            repairs: its rows of `repairs`, in order.
+        """
+        steps = program_of(program).steps
+        several = any(step.agent for step in steps)
+        return {
+            "id": program["program_id"],
+            "parent": program["parent_id"],
+            "title": program["title"],
+            "description": program["description"],
+            "origin": program["origin"],
+            "activity": program["activity_id"],
+            "split": program["split"],
+            "steps": [print_step(step, several) for step in steps],
+            "runs": [self._run(run) for run in runs],
+            "repairs": [_repair(row) for row in repairs],
+        }
+
+    def _run(self, run: Row) -> Row:
+        home, environment = self._home(run["home"]), run["environment"]
+        names = {**home.names, **{node["id"]: node["class_name"] for node in environment["added_nodes"]}}
+        bound = [binding["node"] for binding in run["bindings"]]
+        start, states = home.around(bound, environment)
+        final, ended = set(start), {node: set(found) for node, found in states.items()}
+        shown = {*bound, *home.characters}
+        for tick in run["ticks"]:
+            _apply(tick, final, ended, shown)
+        failure = run["failure"]
+        return {
+            "id": run["execution_id"],
+            "home": run["home"],
+            "failure": failure and _failure(failure),
+            "conditions": [_condition(row) for row in environment["conditions"]],
+            "ticks": [_tick(tick, names) for tick in run["ticks"]],
+            "start": _graph(start, states, names, shown),
+            "final": _graph(final, ended, names, shown),
+            "frames": self.frames.get(run["execution_id"], []),
+        }
+
+    def _home(self, name: str) -> _Home:
+        if name not in self._homes:
+            self._homes[name] = _Home(self.dataset, name)
+        return self._homes[name]
+
+
+class _Home:
+    def __init__(self, dataset: Dataset, name: str) -> None:
+        graph = dataset.home(name)
+        self.names = {node.id: node.class_name for node in graph.nodes}
+        self.states = {node.id: set(node.states) for node in graph.nodes}
+        self.characters = {node.id for node in graph.nodes if node.class_name == "character"}
+        self.edges: dict[int, set[Edge]] = defaultdict(set)
+        for edge in graph.edges:
+            if edge.relation in DRAWN:
+                self.edges[edge.source].add(edge)
+                self.edges[edge.target].add(edge)
+
+    def around(self, bound: list[int], environment: Row) -> tuple[set[Edge], dict[int, set[str]]]:
+        """Edges at the start that touch what a program names, and these things' states."""
+        shown = {*bound, *self.characters}
+        gone = set(environment["removed_nodes"])
+        found = {edge for node in shown for edge in self.edges.get(node, ()) if not gone & {edge.source, edge.target}}
+        states = {node: set(self.states.get(node, ())) for node in shown}
+        states.update((node["id"], set(node["states"])) for node in environment["added_nodes"] if node["id"] in shown)
+        _apply(environment, found, states, shown)
+        return found, states
+
+
+def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]], shown: set[int]) -> None:
+    edges.difference_update(edges_of(change["removed"]))
+    edges.update(
+        edge for edge in edges_of(change["added"]) if edge.relation in DRAWN and shown & {edge.source, edge.target}
+    )
+    for row in change["cleared_states"]:
+        states.get(row["node"], set()).discard(row["state"])
+    for row in change["set_states"]:
+        if row["node"] in states:
+            states[row["node"]].add(row["state"])
+
+
+def _graph(edges: set[Edge], states: dict[int, set[str]], names: dict[int, str], shown: set[int]) -> Row:
+    # Rooms hold everything: only what a program names is said to be in one.
+    kept = sorted(edge for edge in edges if edge.source in shown)[:_MOST_RELATIONS]
+    nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & states.keys())})
+    return {
+        "nodes": [[node, names.get(node, "?"), sorted(states.get(node, ()))] for node in nodes],
+        "edges": [list(edge) for edge in kept],
+    }
+
+
+def _tick(tick: Row, names: dict[int, str]) -> Row:
+    return {"steps": [each["step"] for each in tick["instructions"]], "changes": list(_changes(tick, names))}
+
+
+def _changes(tick: Row, names: dict[int, str]) -> Iterator[str]:
+    def said(node: int) -> str:
+        return f"{names.get(node, '?')} ({node})"
+
+    yield from (f"{said(row['node'])} is {row['state']}" for row in tick["set_states"])
+    told = [edge for edge in edges_of(tick["added"]) if edge.relation in DRAWN]
+    yield from (f"{said(edge.source)} {edge.relation} {said(edge.target)}" for edge in told[:6])
+    more, fewer = len(tick["added"]) - len(told[:6]), len(tick["removed"])
+    if more or fewer:
+        yield f"{more} more edges, {fewer} fewer"
+
+
+def _condition(row: Row) -> str:
+    objects = ", ".join(f"{each['name']} {each['instance']}" for each in row["objects"])
+    return f"{row['name']}({objects})"
+
+
+def _failure(row: Row) -> Row:
+    return {name: row[name] for name in ("code", "tick", "action", "expected", "actual", "names")}
+
+
+def _repair(row: Row) -> Row:
+    told = {name: row[name] for name in ("attempt", "handler", "before", "after")}
+    return {**told, "step": row["step"], "failure": _failure(row["failure"])}
