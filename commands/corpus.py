@@ -223,6 +223,7 @@ def sheet(
     raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Rows for so many raters.")] = 5,
     seed: Seed = 0,
     out: Out = None,
+    as_json: output.Json = False,
 ) -> None:
     """Write a sheet on which people rate how complete programs are (thesis 3.4.1).
 
@@ -233,12 +234,14 @@ def sheet(
     from hearth.pipelines import ratings
     from hearth.pipelines.files import write_bytes
 
-    text = ratings.sheet(_drawn(sources, count, seed), raters)
-    if out is None:
-        sys.stdout.write(text)
-    else:
+    drawn = _drawn(sources, count, seed)
+    text = ratings.sheet(drawn, raters)
+    if out is not None:
         write_bytes(out, text.encode())
-        print(f"{out}: ratings are 1, 2 or 3")
+    if as_json:
+        output.emit({"programs": [name for name, _ in drawn], "raters": raters, "file": out})
+    else:
+        sys.stdout.write(text if out is None else f"{out}: ratings are 1, 2 or 3\n")
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
