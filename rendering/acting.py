@@ -157,7 +157,7 @@ def _risen(actor: Actor, places: Places, ground: Ground, others: list[Spot]) -> 
 
 def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
     """The character with its hands and eyes where the step has them."""
-    held = {HANDS[e.relation] for e in graph.edges if e.source == actor.node.id and e.relation in HANDS}
+    held = _held(graph, actor.node.id)
     height = actor.body.height
     low = actor.stance.seat + 0.3 if actor.stance.posture == "sitting" else 0.6 * height
     carry = {side: (sign * 0.16, low, 0.34) for side, sign in (("right", 1.0), ("left", -1.0)) if side in held}
@@ -180,6 +180,31 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
     if stance.posture == "standing":
         stance = replace(stance, stride=gesture.stride)
     return replace(actor, stance=stance, body=_dressed(actor.body, graph, actor.node.id))
+
+
+def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
+    """The character as its hand arrives, before anything changes.
+
+    Args:
+        here: where it acts, hands at rest.
+        there: as it will be after the step.
+        places: of the moment before.
+        step: what it does.
+    """
+    if step.action != "Grab" or there.stance.posture == "lying":
+        return there
+    target = _target(step, "object", places, here)
+    if target is None:
+        return there
+    # What is out of reach is approached as far as the body bends.
+    side = _acting_side(step, places.graph, here.node.id, _held(places.graph, here.node.id))
+    at = here.local(target)
+    hands = {"right": here.stance.right, "left": here.stance.left} | {side: at}
+    return replace(there, stance=replace(there.stance, right=hands["right"], left=hands["left"], gaze=at))
+
+
+def _held(graph: EnvironmentGraph, me: int) -> set[str]:
+    return {HANDS[e.relation] for e in graph.edges if e.source == me and e.relation in HANDS}
 
 
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:

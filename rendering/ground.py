@@ -52,12 +52,12 @@ class Ground:
         shape = (int((high[0] - low[0]) / CELL) + 1, int((high[2] - low[2]) / CELL) + 1)
         inside = np.full(shape, -1, np.int64)
         for number, box in known:
-            inside[_cells(box, (low[0], low[2]))] = number
+            inside[cells_of(box, (low[0], low[2]))] = number
         free = inside >= 0
         for node in nodes:
-            if node.box and _in_the_way(node, low[1]):
-                free[_cells(node.box, (low[0], low[2]))] = False
-        free = _eroded(free)
+            if node.box and is_in_the_way(node, low[1]):
+                free[cells_of(node.box, (low[0], low[2]))] = False
+        free = eroded(free)
         i, j = np.nonzero(free)
         centers = np.column_stack((low[0] + (i + 0.5) * CELL, low[2] + (j + 0.5) * CELL))
         return cls((low[0], low[2]), centers, inside[i, j], low[1])
@@ -102,7 +102,8 @@ class Ground:
         return float(x), float(z)
 
 
-def _in_the_way(node: Node, floor: float) -> bool:
+def is_in_the_way(node: Node, floor: float) -> bool:
+    """Whether a thing with a box keeps people from where it stands, on a floor of that height."""
     assert node.box is not None
     low, high = node.box.center[1] - node.box.size[1] / 2 - floor, node.box.center[1] + node.box.size[1] / 2 - floor
     return node.class_name not in IGNORED and low < HEADROOM and high > STEP_OVER and node.category not in (
@@ -110,7 +111,7 @@ def _in_the_way(node: Node, floor: float) -> bool:
     )  # fmt: skip
 
 
-def _cells(box: Box, origin: Spot) -> tuple[slice, slice]:
+def cells_of(box: Box, origin: Spot) -> tuple[slice, slice]:
     """Cells whose middle lies in a box."""
 
     def part(center: float, size: float, start: float) -> slice:
@@ -121,7 +122,7 @@ def _cells(box: Box, origin: Spot) -> tuple[slice, slice]:
     return part(box.center[0], box.size[0], origin[0]), part(box.center[2], box.size[2], origin[1])
 
 
-def _eroded(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def eroded(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Cells with `BODY` free cells on every side."""
     padded = np.pad(free, BODY)
     kept = free.copy()

@@ -32,6 +32,7 @@ class Stance:
         posture: one of `POSTURES`.
         seat: height of what it sits or lies on, metres.
         stride: -1 to 1, how far the right leg is before the left one.
+        swing: -1 to 1, how high the right (below 0: left) foot is while it swings forward; 0 lifts the hind foot.
         right, left: where the hands are to be; None lets the arm hang.
         gaze: what it looks at; None looks ahead.
         asleep: whether the eyes are shut.
@@ -40,6 +41,7 @@ class Stance:
     posture: str = "standing"
     seat: float = 0.0
     stride: float = 0.0
+    swing: float = 0.0
     right: Point | None = None
     left: Point | None = None
     gaze: Point | None = None
@@ -102,7 +104,7 @@ def _legs(stance: Stance, height: float, drop: float) -> Joints:
             foot = np.array((sign * 0.075 * height, ankle, forward))
         else:
             step = sign * stance.stride * 0.16 * height
-            lift = 0.05 * height * max(-sign * stance.stride, 0.0)
+            lift = 0.05 * height * max(sign * stance.swing if stance.swing else -sign * stance.stride, 0.0)
             foot = np.array((sign * HIP_HALF * height * 0.95, ankle + lift, step))
         knee, end = two_bones(hip, foot, thigh, shin, np.array((sign * 0.08, 0.25, 1.0)))
         found |= {f"hip_{side}": hip, f"knee_{side}": knee, f"ankle_{side}": end}

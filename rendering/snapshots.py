@@ -88,15 +88,44 @@ def moments(
     Raises:
         HearthError: the home has no geometry.
     """
+    yield from play(execution, home, seed=seed, hour=hour, knowledge=knowledge).moments
+
+
+@dataclass(frozen=True, eq=False)
+class Play:
+    """An execution, staged.
+
+    Attributes:
+        prepared: the home, for making further scenes of it.
+        moments: at the start and after each tick.
+        still: the things that never change; every moment's scene shares them.
+    """
+
+    prepared: Stage
+    moments: tuple[Moment, ...]
+    still: tuple[Thing, ...]
+
+
+def play(
+    execution: Execution,
+    home: EnvironmentGraph,
+    *,
+    seed: int = 0,
+    hour: float = 10.0,
+    knowledge: Knowledge | None = None,
+) -> Play:
+    """All moments of an execution at once; see `moments`."""
     _check_geometry(home)
-    known = knowledge or default()
-    prepared = stage(home, seed=seed, hour=hour, knowledge=known)
+    prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
     found = list(_played(execution, home, prepared, seed))
     still = _still([moment.scene for moment in found])
     kept = frozenset(still)
-    for moment in found:
-        moving = tuple(thing for thing in moment.scene.things if thing not in kept)
-        yield replace(moment, scene=replace(moment.scene, things=moving, still=still))
+    return Play(prepared, tuple(_parted(moment, still, kept) for moment in found), still)
+
+
+def _parted(moment: Moment, still: tuple[Thing, ...], kept: frozenset[Thing]) -> Moment:
+    moving = tuple(thing for thing in moment.scene.things if thing not in kept)
+    return replace(moment, scene=replace(moment.scene, things=moving, still=still))
 
 
 def _check_geometry(home: EnvironmentGraph) -> None:

@@ -73,6 +73,7 @@ def best_view(
     named: Sequence[int],
     last: Camera | None = None,
     room: Box | None = None,
+    wide: bool = False,
 ) -> Camera:
     """The camera that sees most of the actor and of what the step names.
 
@@ -86,6 +87,7 @@ def best_view(
         named: ids of the step's objects.
         last: the camera of the moment before.
         room: the box of the actor's room, which following cameras must not leave.
+        wide: leave room around the actor, who is going to move, and take no camera that follows it.
     """
     cameras = views.get(actor.room, ())
     size = (cameras[0].width, cameras[0].height) if cameras else (320, 240)
@@ -93,8 +95,8 @@ def best_view(
         follow(f"follow.{side}", actor.position, actor.yaw + turn, *size)
         for side, turn in (("left", 40.0), ("right", -40.0))
     ]
-    candidates = [*cameras, *(_kept_inside(camera, room) for camera in behind)]
-    turned = [aimed(camera, scene, actor, named) for camera in candidates]
+    candidates = [*cameras, *(() if wide and cameras else (kept_inside(camera, room) for camera in behind))]
+    turned = [aimed(camera, scene, actor, named, 1.2 if wide else 0.55) for camera in candidates]
     values = [
         value * (LOYALTY if last and camera.name == last.name else 1.0)
         for camera, value in zip(turned, scores(scene, turned, actor, named), strict=True)
@@ -102,7 +104,7 @@ def best_view(
     return turned[values.index(max(values))]
 
 
-def _kept_inside(camera: Camera, room: Box | None) -> Camera:
+def kept_inside(camera: Camera, room: Box | None) -> Camera:
     """The camera, pulled back into its room."""
     if room is None:
         return camera
@@ -113,7 +115,7 @@ def _kept_inside(camera: Camera, room: Box | None) -> Camera:
     return replace(camera, eye=(eye[0], eye[1], eye[2]))
 
 
-def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int]) -> Camera:
+def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int], around: float = 0.55) -> Camera:
     """The camera turned towards the actor and its object, with a field of view that holds both."""
     points = [actor.world((0.0, 0.9, 0.0)), actor.world((0.0, 0.3, 0.0)), actor.world((0.0, 1.6, 0.0))]
     for node_id in named:
@@ -123,7 +125,7 @@ def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int]) -> C
     cloud = np.array(points)
     middle = (cloud.min(axis=0) + cloud.max(axis=0)) / 2
     distance = float(np.linalg.norm(middle - np.array(camera.eye)))
-    radius = float(np.linalg.norm(cloud - middle, axis=1).max()) + 0.55
+    radius = float(np.linalg.norm(cloud - middle, axis=1).max()) + around
     fov = degrees(2 * np.arctan(radius / max(distance, 0.4)))
     # The middle between what happens and the room's own view keeps the room recognisable.
     fov = float(np.clip(fov * 1.1, 38.0, 75.0))

@@ -1,0 +1,199 @@
+"""Videos of executions: every step in motion, with the times of each step (thesis 2.4.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.acting import Actor
+from hearth.rendering.camera import Camera, follow, look_at, top_view
+from hearth.rendering.motion import Frame, Span, frames, spans
+from hearth.rendering.retake import Take, take
+from hearth.rendering.snapshots import AUTO, TOP, Play
+from hearth.rendering.viewpoints import best_view, home_box, kept_inside, room_views
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import Box, EnvironmentGraph
+from hearth.schemas.vocabulary import ROOM_CATEGORY
+
+Image = NDArray[Any]
+
+FIRST, THIRD = "first", "third"
+VIEWS = (AUTO, TOP, FIRST, THIRD)
+"""Cameras that move or choose; others are named by `viewpoints.room_views`."""
+
+CODECS = {".webm": "VP80", ".mp4": "mp4v"}
+"""What OpenCV writes into each kind of file: browsers play VP80."""
+
+
+class Writer:
+    """A video file that is there under its name only when it is complete."""
+
+    def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
+        import cv2
+
+        codec = CODECS.get(path.suffix)
+        self.path, self.part = path, path.with_name(f".part{path.suffix}")
+        self.file: Any = None
+        if codec:
+            self.file = cv2.VideoWriter(str(self.part), cv2.VideoWriter.fourcc(*codec), fps, (width, height))
+        if self.file is None or not self.file.isOpened():
+            known = ", ".join(f"*{suffix}" for suffix in CODECS)
+            raise HearthError.of(Code.NOT_RENDERED, f"OpenCV can't write {path}", suggestion=f"a file {known}")
+
+    def add(self, picture: Image) -> None:
+        """Add a picture, (H, W, 3) in the order red, green, blue."""
+        self.file.write(np.ascontiguousarray(picture[..., ::-1]))
+
+    def close(self) -> None:
+        """Finish the file.
+
+        Raises:
+            HearthError: nothing was written, as when the disk is full.
+        """
+        self.file.release()
+        if not self.part.exists() or not self.part.stat().st_size:
+            raise HearthError.of(Code.NOT_RENDERED, f"nothing could be written to {self.path}", file=str(self.path))
+        self.part.replace(self.path)
+
+
+class Shown(NamedTuple):
+    """One picture of a film: its moment, the camera that took it and (H, W, 3) colours."""
+
+    frame: Frame
+    camera: Camera
+    rgb: Image
+
+
+def film(
+    staged: Play,
+    home: EnvironmentGraph,
+    view: str = AUTO,
+    *,
+    size: tuple[int, int] = (640, 480),
+    fps: float = 15.0,
+    speed: float = 1.0,
+) -> Iterator[Shown]:
+    """The pictures of a video.
+
+    Args:
+        staged: what `snapshots.play` makes of an execution.
+        home: the home's graph, with boxes.
+        view: one of `VIEWS`, or the name of a room's camera.
+        size: width and height.
+        fps: pictures a second.
+        speed: 2 has everyone move twice as fast.
+
+    Raises:
+        HearthError: there is no such camera.
+    """
+    director = Director(home, view, size, {span.tick: span for span in spans(staged, speed)})
+    last: Take | None = None
+    for frame in frames(staged, fps, speed):
+        camera = director.camera(frame)
+        last = take(frame.scene, camera, last)
+        yield Shown(frame, camera, last.shot.image(last.rgb))
+
+
+class Director:
+    """Chooses the camera of each frame.
+
+    `auto` keeps a camera through a step while the actor stays in its room, and chooses among those of the room, and
+    two over the actor's shoulders, the one that sees best what the step names.
+    """
+
+    def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], known: Mapping[int, Span]) -> None:
+        self.size, self.view, self.spans = size, view, known
+        self.views = room_views(home, *size)
+        self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
+        fixed = {camera.name: camera for cameras in self.views.values() for camera in cameras}
+        fixed[TOP] = top_view(home_box(home), TOP, *size)
+        if view not in VIEWS and view not in fixed:
+            known_names = ", ".join((*VIEWS, *sorted(fixed)[:3], "..."))
+            raise HearthError.of(Code.NOT_RENDERED, f"no camera `{view}`", suggestion=known_names)
+        self.fixed = fixed.get(view)
+        self.chosen: Camera | None = None
+        self.scene = (-1, 0)
+        self.since = 0.0
+        self.room = 0
+
+    def camera(self, frame: Frame) -> Camera:
+        """The camera of a frame."""
+        actor = frame.actors[0]
+        if self.fixed is not None:
+            return self.fixed
+        if self.view == FIRST:
+            return first_person(actor, self.size)
+        room = self._room(actor)
+        if self.view == THIRD:
+            return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(room))
+        now = (frame.tick, room)
+        if self.chosen is not None and self.scene == now:
+            if frame.time - self.since <= PATIENCE or _in_picture(self.chosen, actor):
+                return self.chosen
+        self.chosen = self._best(frame, replace(actor, room=room), self.chosen)
+        self.scene, self.since = now, frame.time
+        return self.chosen
+
+    def _best(self, frame: Frame, actor: Actor, last: Camera | None) -> Camera:
+        named = tuple(
+            ref.node for step in frame.steps for ref in step.objects if ref.node and ref.node not in self.rooms
+        )
+        return best_view(frame.scene, self.views, actor, named, last, self.rooms.get(actor.room), wide=True)
+
+    def _room(self, actor: Actor) -> int:
+        """The room the actor is in now, while it walks to another."""
+        # Between two rooms one is in the door: the camera stays.
+        self.room = next((room for room, box in self.rooms.items() if _holds(box, actor.spot)), self.room or actor.room)
+        return self.room
+
+
+PATIENCE = 0.7
+"""Seconds that a camera is kept at least."""
+
+BORDER = 0.06
+"""Share of the picture at its edges where an actor is taken to be leaving it."""
+
+
+def _in_picture(camera: Camera, actor: Actor) -> bool:
+    """Whether a camera shows the actor's body, not too near its edges."""
+    places, depths = camera.project(np.array([actor.world((0.0, y, 0.0)) for y in (0.5, 1.4)]))
+    share = places / (camera.width, camera.height)
+    return bool((depths > 0.5).all() and (share > BORDER).all() and (share < 1 - BORDER).all())
+
+
+def _holds(box: Box, spot: tuple[float, float]) -> bool:
+    return all(abs(spot[k] - box.center[2 * k]) <= box.size[2 * k] / 2 for k in (0, 1))
+
+
+def first_person(actor: Actor, size: tuple[int, int]) -> Camera:
+    """What someone sees: from between the eyes, along the gaze, so that it looks down at what the hands do."""
+    found = actor.figure().joints()
+    head, face = found["head"], found["face"]
+    way = (face - head) / np.linalg.norm(face - head)
+    eye = head + way * 0.13
+    target = eye + way
+    near, far = (actor.world((float(p[0]), float(p[1]), float(p[2]))) for p in (eye, target))
+    if abs(far[0] - near[0]) + abs(far[2] - near[2]) < 1e-3:
+        far = (far[0] + 0.01, far[1], far[2])
+    return look_at(FIRST, near, far, *size, fov=75.0)
+
+
+def times(found: Sequence[Span]) -> list[dict[str, Any]]:
+    """Spans as plain values: tick, step texts, start and end in seconds."""
+    from hearth.schemas.syntax import print_step
+
+    return [
+        {
+            "tick": span.tick,
+            "steps": [print_step(step) for step in span.steps],
+            "start": round(span.start, 4),
+            "end": round(span.end, 4),
+        }
+        for span in found
+    ]
