@@ -233,6 +233,43 @@ def edit(
         print(f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}")
 
 
+@app.command()
+def stats(
+    generated: Annotated[int, typer.Option("--generated", metavar="N", min=0, help="Draw up so many homes too.")] = 28,
+    seed: Annotated[int, typer.Option("--seed", help="Of the first one drawn up; the rest follow.")] = 0,
+    homes: Homes = None,
+    as_json: output.Json = False,
+) -> None:
+    """Room sizes, things, degrees and relations of our homes, of generated ones, and of those in a folder.
+
+    The homes drawn up have 3 to 9 rooms in turn; each is checked as `home lint` does.
+
+    \b
+    Examples:
+      python cli.py home stats --homes release_homes
+      python cli.py home stats --generated 1000
+    """
+    from hearth.simulation.homes import catalog
+    from hearth.simulation.homes.generate import generate as draw_up
+    from hearth.simulation.homes.scene import scene
+    from hearth.simulation.homes.statistics import of_homes
+
+    ours = catalog.names()
+    theirs = [name for name in catalog.names(homes) if name not in ours] if homes else []
+    groups = {
+        "ours": of_homes(catalog.load_graph(name) for name in ours),
+        "generated": of_homes(scene(draw_up(3 + k % 7, k)) for k in range(seed, seed + generated)),
+        "theirs": of_homes(catalog.load_graph(name, homes) for name in theirs),
+    }
+    found = {name: figures for name, figures in groups.items() if figures}
+    if as_json:
+        output.emit(found)
+        return
+    output.table(("on average", *found), [
+        (figure, *("" if figures[figure] is None else figures[figure] for figures in found.values()))
+        for figure in found["ours"]])  # fmt: skip
+
+
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
     from hearth.simulation.homes import catalog
 

@@ -13,7 +13,8 @@ from hearth.simulation.homes import checks, shell
 from hearth.simulation.homes.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_plan
 from hearth.simulation.homes.furnishing import UnfurnishableError, furnish_by_lot
 from hearth.simulation.homes.layout import Layout, arrange
-from hearth.simulation.homes.plan import Faults, Piece, Plan
+from hearth.simulation.homes.plan import Faults, Piece, Plan, Room
+from hearth.simulation.homes.shell import Thing
 
 TRIES = 60
 """Floor plans drawn before giving up; one in two or three is furnished."""
@@ -61,9 +62,10 @@ def _attempt(name: str, rooms: int, knowledge: Knowledge, rng: Random) -> Layout
 
 def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
     """The plan with everything in its place; small things that find none are left out, other faults end it."""
+    known: dict[int, tuple[Room, tuple[Thing, ...]]] = {}
     for _ in range(3):
         faults = Faults(plan.name)
-        layout = arrange(plan, knowledge, faults)
+        layout = arrange(plan, knowledge, faults, known)
         crowded = {fault.line for fault in faults}
         if crowded:
             plan = _without(plan, crowded)
@@ -90,6 +92,8 @@ def _numbered(plan: Plan) -> Plan:
 
 
 def _without(plan: Plan, lines: set[int]) -> Plan:
+    """The plan without some entries; rooms that lose none stay the same objects."""
+
     def kept(pieces: tuple[Piece, ...]) -> tuple[Piece, ...]:
         return tuple(
             replace(piece, on=kept(piece.on), inside=kept(piece.inside), lay=kept(piece.lay))
@@ -97,4 +101,13 @@ def _without(plan: Plan, lines: set[int]) -> Plan:
             if piece.line not in lines
         )
 
-    return replace(plan, rooms=tuple(replace(room, furniture=kept(room.furniture)) for room in plan.rooms))
+    rooms = (replace(room, furniture=kept(room.furniture)) if _any(room.furniture, lines) else room
+             for room in plan.rooms)  # fmt: skip
+    return replace(plan, rooms=tuple(rooms))
+
+
+def _any(pieces: tuple[Piece, ...], lines: set[int]) -> bool:
+    return any(
+        piece.line in lines or _any(piece.on, lines) or _any(piece.inside, lines) or _any(piece.lay, lines)
+        for piece in pieces
+    )

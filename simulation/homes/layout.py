@@ -93,19 +93,40 @@ def walkable(layout: Layout) -> Floor:
     return layout.floor
 
 
-def arrange(plan: Plan, knowledge: Knowledge, faults: Faults) -> Layout:
-    """Everything of a plan in its place; what has none is noted and left out."""
+def arrange(
+    plan: Plan, knowledge: Knowledge, faults: Faults, known: dict[int, tuple[Room, tuple[Thing, ...]]] | None = None
+) -> Layout:
+    """Everything of a plan in its place; what has none is noted and left out.
+
+    Args:
+        plan: to arrange.
+        knowledge: for sizes.
+        faults: what is wrong is added to it.
+        known: rooms arranged before by their `id`, with their things, which are taken as they are; rooms without
+            faults are added.
+    """
     built = shell.build(plan, faults)
     things = list(built.things)
     for room in plan.rooms:
-        furnished = furnish(room, plan.height, knowledge, faults)
-        things.extend(_implied(plan, room, built, furnished, knowledge))
-        seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
-        for placed in furnished.placed:
-            thing = _standing(placed.thing, built, furnished)
-            things.append(thing)
-            things.extend(contents(thing, placed.piece, knowledge, faults, seats))
+        before = len(faults)
+        same, found = (known or {}).get(id(room), (None, ()))
+        if same is not room:
+            found = tuple(_furnished(plan, room, built, knowledge, faults))
+            if known is not None and len(faults) == before:
+                known[id(room)] = room, found
+        things.extend(found)
     return Layout(plan, built, tuple(things))
+
+
+def _furnished(plan: Plan, room: Room, built: Shell, knowledge: Knowledge, faults: Faults) -> Iterator[Thing]:
+    """A room's furniture with what is on and in it, and what every room has."""
+    furnished = furnish(room, plan.height, knowledge, faults)
+    yield from _implied(plan, room, built, furnished, knowledge)
+    seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
+    for placed in furnished.placed:
+        thing = _standing(placed.thing, built, furnished)
+        yield thing
+        yield from contents(thing, placed.piece, knowledge, faults, seats)
 
 
 def _standing(thing: Thing, built: Shell, room: Furnishing) -> Thing:

@@ -82,7 +82,7 @@ def test_a_generated_plan_is_a_home_like_others(tmp_path):
 
 
 def test_each_help_has_an_example():
-    for command in ("list", "show", "lint", "convert", "edit", "generate"):
+    for command in ("list", "show", "lint", "convert", "edit", "generate", "stats"):
         assert f"python cli.py home {command}" in run(command, "--help").stdout
 
 
@@ -140,3 +140,15 @@ def test_a_graph_is_laid_out(tmp_path):
     laid = json.loads((tmp_path / "laid.json").read_text())
     assert sum("bounding_box" in node for node in laid["nodes"]) > 250
     assert run("show", bare, "--out", tmp_path / "bare.svg").exit_code == 0
+
+
+def test_statistics_stand_beside_each_other(tmp_path):
+    _copied(tmp_path)
+    told = json.loads(run("stats", "--generated", 2, "--homes", tmp_path, "--json").stdout)
+    assert list(told) == ["ours", "generated", "theirs"]
+    assert told["ours"]["homes"] == 7 and told["ours"]["pass lint"] == 7 and told["ours"]["nodes"] >= 350
+    assert told["generated"]["homes"] == told["generated"]["pass lint"] == 2 and told["generated"]["rooms"] == 3.5
+    assert told["theirs"]["homes"] == 1 and told["theirs"]["edges a node"] > 10
+    assert told["theirs"]["smallest room, m2"] < told["theirs"]["room area, m2"] < told["theirs"]["largest room, m2"]
+    degrees = sum(told["theirs"][f"{name} a node"] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"))
+    assert degrees == pytest.approx(told["theirs"]["edges a node"], abs=0.05)
