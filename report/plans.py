@@ -42,7 +42,7 @@ def draw(nodes: tuple[Node, ...]) -> str:
     left, top = min(x for x, _, _, _ in corners), min(y for _, y, _, _ in corners)
     right, bottom = max(x + w for x, _, w, _ in corners), max(y + h for _, y, _, h in corners)
     view = f"{left - 0.2:.2f} {top - 0.2:.2f} {right - left + 0.4:.2f} {bottom - top + 0.4:.2f}"
-    shapes = "".join((*_rooms(rooms), *_things(nodes)))
+    shapes = "".join((*_rooms(rooms), *_things(nodes), *_names(rooms)))
     return f'<svg class="plan" viewBox="{view}" role="img">{shapes}</svg>'
 
 
@@ -52,9 +52,14 @@ def _rectangle(box: Box) -> tuple[float, float, float, float]:
 
 
 def _rooms(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
-    for node, box in rooms:
+    for _, box in rooms:
         x, y, width, height = _rectangle(box)
         yield f'<rect class="room" x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"/>'
+
+
+def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
+    for node, box in rooms:
+        x, y, _, _ = _rectangle(box)
         name = escape(node.class_name.replace("_", " "))
         yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="0.35">{name}</text>'
 

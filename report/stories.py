@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
 from functools import cached_property
 from typing import Any
 
@@ -123,8 +124,11 @@ def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]], shown: se
 
 
 def _graph(edges: set[Edge], states: dict[int, set[str]], names: dict[int, str], shown: set[int]) -> Row:
-    # Rooms hold everything: only what a program names is said to be in one.
-    kept = sorted(edge for edge in edges if edge.source in shown)[:_MOST_RELATIONS]
+    # Rooms hold everything, and pictures face everything: said is where things are that a program names, and what
+    # people face.
+    people = {node for node, name in names.items() if name == "character"}
+    kept = sorted(e for e in edges if e.source in shown and (e.relation != "FACING" or e.source in people))
+    kept = kept[:_MOST_RELATIONS]
     nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & states.keys())})
     return {
         "nodes": [[node, names.get(node, "?"), sorted(states.get(node, ()))] for node in nodes],
@@ -158,5 +162,16 @@ def _failure(row: Row) -> Row:
 
 
 def _repair(row: Row) -> Row:
-    told = {name: row[name] for name in ("attempt", "handler", "before", "after")}
-    return {**told, "step": row["step"], "failure": _failure(row["failure"])}
+    removed, added = _differing(row["before"], row["after"])
+    told = {"handler": row["handler"], "removed": removed, "added": added}
+    return {**told, "attempt": row["attempt"], "step": row["step"], "failure": _failure(row["failure"])}
+
+
+def _differing(before: list[str], after: list[str]) -> tuple[list[str], list[str]]:
+    """The lines that a repair takes away and adds."""
+    pairs = [
+        (before[i:j], after[k:n])
+        for tag, i, j, k, n in SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
+        if tag != "equal"
+    ]
+    return [line for lines, _ in pairs for line in lines], [line for _, lines in pairs for line in lines]

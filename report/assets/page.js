@@ -28,7 +28,7 @@ HEARTH.draw = (() => {
   function graph(told) {
     const size = 420;
     const middle = size / 2;
-    const drawn = shape("svg", { class: "graph", viewBox: `0 0 ${size} ${size}`, role: "img" });
+    const drawn = shape("svg", { class: "graph", viewBox: `-90 10 ${size + 180} ${size - 20}`, role: "img" });
     const place = new Map(told.nodes.map(([id], number) => {
       const turn = (2 * Math.PI * number) / told.nodes.length - Math.PI / 2;
       return [id, [middle + 150 * Math.cos(turn), middle + 150 * Math.sin(turn)]];
@@ -63,7 +63,7 @@ HEARTH.draw = (() => {
     return repairs.flatMap((repair) => {
       const world = element("p", said(repair.failure), "said world");
       const handler = element("p", `${repair.handler}: `, "said handler");
-      for (const [name, lines] of [["del", repair.before], ["ins", repair.after]]) {
+      for (const [name, lines] of [["del", repair.removed], ["ins", repair.added]]) {
         for (const line of lines) {
           const change = element(name);
           change.append(element("code", `${name === "del" ? "− " : "+ "}${line}`));
