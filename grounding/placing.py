@@ -105,7 +105,7 @@ def _chosen(draft: Draft, wishes: Wishes, key: Key) -> int:
         draft.put(node_id, _LINKS[placing.name], draft.binding[_leader(placing)])
     elif node_id in draft.new:
         put_back = any(action == "PutObjBack" for action, _ in wishes.uses[key])
-        _put_where_it_belongs(draft, key[0], node_id, room, must=put_back)
+        put_where_it_belongs(draft, key[0], node_id, room, must=put_back)
     return node_id
 
 
@@ -165,7 +165,7 @@ def _any_room(draft: Draft, key: Key) -> int:
     return home.ids[draft.rng.choice(usual or list(indices(home.rooms)))]
 
 
-def _put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int, must: bool) -> None:
+def put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int, must: bool) -> None:
     """On or in something open, in the room if one is wanted. Where nothing suits it stays in its room, or, if it must
     stand somewhere, on any piece of furniture there.
     """

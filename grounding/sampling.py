@@ -124,7 +124,7 @@ def draw(
     draft = Draft(base, generator)
     bind(draft, Wishes(program, conditions, base.knowledge))
     fulfil(draft, conditions)
-    _place_character(draft, program, conditions)
+    settle_character(draft, program, conditions)
     fill(draft, size.least, size.most, size.some)
     return Environment(
         base.home,
@@ -139,7 +139,7 @@ def draw(
     )
 
 
-def _place_character(draft: Draft, program: Program, conditions: Preconditions) -> None:
+def settle_character(draft: Draft, program: Program, conditions: Preconditions) -> None:
     """Where its conditions want the character, else in another room than the program starts in."""
     base = draft.base
     home = base.home

@@ -1,0 +1,140 @@
+"""Sampling environments for goals: what they name is there, as often as they count it, and not yet as they want it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from hearth.grounding.base import Base, prepared
+from hearth.grounding.conditions import Preconditions
+from hearth.grounding.draft import Draft
+from hearth.grounding.filling import fill
+from hearth.grounding.placing import put_where_it_belongs
+from hearth.grounding.sampling import TRIES, USUAL, Environment, Size, settle_character
+from hearth.grounding.soundness import unsound
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.program import Program
+from hearth.schemas.rng import rng
+from hearth.schemas.vocabulary import OPPOSITE
+from hearth.simulation.bits import indices
+from hearth.simulation.goals import Progress
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
+
+MOST = 9
+"""Of one class a goal may count up to so many (thesis table C.2)."""
+
+_NO_PROGRAM = Program("", "", ())
+_NOTHING = Preconditions()
+
+
+def sample_for_goal(
+    goal: Goal, home: Home, seed: int, record_id: str = "", size: Size = USUAL
+) -> tuple[Environment, Progress] | Failure:
+    """Draw an environment in which a goal can be reached and is not reached yet; an empty goal asks for nothing.
+
+    Args:
+        goal: counted predicates over classes, nodes of the home or agents.
+        home: any home; it is brought to its default state first.
+        seed, record_id: all the randomness there is.
+        size: nodes wanted.
+
+    Returns:
+        The environment with the goal's progress at its start, or why none was found: NO_PLACE where more than `MOST`
+        are asked for or too few things of a class belong anywhere in the home; CONDITION_UNMET where the goal holds
+        whatever is done.
+
+    Raises:
+        HearthError: UNKNOWN_OBJECT or SYNTAX: a predicate names nothing that there is.
+    """
+    base = prepared(home)
+    for predicate, wanted in goal:
+        if wanted > MOST:
+            return _failure(Code.NO_PLACE, predicate, f"at most {MOST}", str(wanted))
+    failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "none was drawn")
+    for attempt in range(TRIES):
+        environment = _drawn(goal, base, seed, record_id, attempt, size)
+        if isinstance(environment, Failure):
+            return environment
+        progress = Progress.start(goal, environment.world)
+        missing = next((p for p, wanted in goal if _candidates(p, environment.world) < wanted), None)
+        if missing is not None:
+            failure = _failure(Code.NO_PLACE, missing, "enough of them", "fewer than the goal counts")
+        elif any(True for _ in goal) and progress.satisfied:
+            failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "it is met already")
+        elif (fault := unsound(environment.world)) is not None:
+            failure = fault
+        else:
+            return environment, progress
+    return failure
+
+
+def _failure(code: Code, predicate: Predicate | None, expected: str, actual: str) -> Failure:
+    return Failure(code, names=(str(predicate),) if predicate else (), expected=expected, actual=actual)
+
+
+def _class(predicate: Predicate) -> str:
+    """The class of things that a predicate counts, or "" where it names nodes or agents alone."""
+    counted = predicate.target if str(predicate.subject).startswith("agent") else predicate.subject
+    return counted if isinstance(counted, str) and not counted.startswith("agent") else ""
+
+
+def _candidates(predicate: Predicate, world: World) -> int:
+    name = _class(predicate)
+    if not name:
+        return MOST + 1
+    masks = (world.home.by_class.get(other, 0) for other in world.home.knowledge.same_class(name))
+    return next((mask for mask in masks if mask), 0).bit_count()
+
+
+def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size: Size) -> Environment | Failure:
+    draft = Draft(base, rng(seed, "goal", base.home.name, record_id, attempt))
+    wanted: Counter[str] = Counter()
+    for predicate, number in goal:
+        if name := _class(predicate):
+            wanted[name] = max(wanted[name], number)
+        holder = predicate.target
+        if isinstance(holder, str) and holder != name and not holder.startswith("agent"):
+            wanted[holder] = max(wanted[holder], 1)
+    for name, number in sorted(wanted.items()):
+        if not base.knowledge.is_room(name):
+            _provide(draft, name, number)
+    for predicate, number in goal:
+        _undo(draft, predicate, number)
+    settle_character(draft, _NO_PROGRAM, _NOTHING)
+    fill(draft, size.least, size.most, size.some)
+    return Environment(
+        base.home, seed, World.start(draft.home()), _NO_PROGRAM, _NOTHING, tuple(draft.nodes), tuple(draft.added),
+        tuple(draft.removed), tuple(sorted(draft.states.items())),
+    )  # fmt: skip
+
+
+def _provide(draft: Draft, name: str, number: int) -> None:
+    """As many of a class as are wanted, the missing ones where they belong."""
+    base = draft.base
+    here = len(base.instances(name))
+    # A home that calls them by another of their names gets more of those.
+    called = base.home.classes[base.instances(name)[0]] if here else name
+    usual = base.knowledge.object_class(called)
+    rooms = [base.home.ids[i] for room in (usual.rooms if usual else ()) for i in base.rooms(room)]
+    every = [base.home.ids[i] for i in indices(base.home.rooms)]
+    for _ in range(number - here):
+        node_id = draft.add(called, draft.rng.choice(rooms or every))
+        put_where_it_belongs(draft, called, node_id, -1, must=False)
+
+
+def _undo(draft: Draft, predicate: Predicate, number: int) -> None:
+    """Where the home meets a predicate already, spoil it: states turned over, things laid on the floor."""
+    home = draft.base.home
+    try:
+        watch = Progress.start(Goal(((predicate, number),)), World.start(home)).watches[0]
+    except IndexError:
+        return
+    for i in list(indices(watch.met))[: max(0, watch.count - number + 1)]:
+        node_id = home.ids[i]
+        if predicate.target is None:
+            draft.set_state(node_id, OPPOSITE[predicate.name])
+        elif predicate.name in ("ON", "INSIDE", "CLOSE") and home.properties["GRABBABLE"] >> i & 1:
+            room = draft.room_of(node_id)
+            draft.lift(node_id)
+            draft.settle(node_id, room)

@@ -1,0 +1,188 @@
+"""The release's own rules for preconditions, to be compared with what a program really needs.
+
+They read the program once, in order, and look at names only (facts worked out from the release; thesis 5.5.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
+from hearth.grounding.sketch_home import sketch
+from hearth.grounding.things import has
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.program import Program
+from hearth.simulation.engine import run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import World
+
+SEATS = frozenset({"couch", "bed", "chair", "loveseat", "sofa", "toilet", "pianobench", "bench"})
+_GOING = frozenset({"Walk", "Run"})
+_FIRST = {
+    "PlugIn": "unplugged", "SwitchOn": "is_off", "SwitchOff": "is_on", "Open": "closed", "Close": "open",
+}  # fmt: skip
+
+
+class Compared(NamedTuple):
+    """A condition that the release's rules name, and what becomes of it here.
+
+    Attributes:
+        condition: as the rules have it.
+        ours: whether it is among ours.
+        why: why not: what it would stop, or that nothing needs it.
+    """
+
+    condition: Condition
+    ours: bool
+    why: str = ""
+
+
+def by_rules(program: Program, knowledge: Knowledge) -> Preconditions:
+    """The conditions that the release's rules name, each once, in step order; contradictions are left standing."""
+    found = sorted(_by_rules(program, knowledge), key=lambda condition: condition.step)
+    return Preconditions().plus(*found)
+
+
+def compare(
+    program: Program, ours: Preconditions, knowledge: Knowledge, rules: Rules = DEFAULT
+) -> tuple[Compared, ...]:
+    """Each of the release's conditions beside ours: the same, or why it is not among them."""
+    facts = {condition.fact for condition in ours}
+    return tuple(
+        Compared(condition, True) if condition.fact in facts else _tried(condition, program, ours, knowledge, rules)
+        for condition in by_rules(program, knowledge)
+    )
+
+
+def _tried(condition: Condition, program: Program, ours: Preconditions, knowledge: Knowledge, rules: Rules) -> Compared:
+    """Try the program with the condition as well: it then runs all the same, or it is told where it stops."""
+    place = sketch(program, ours.plus(condition), knowledge)
+    execution = run(World.start(place.home), place.program, rules)
+    if execution.failure is None:
+        return Compared(condition, False, "not needed: every step runs without it")
+    step = execution.failure.tick
+    action = program.steps[step].action
+    return Compared(condition, False, f"refused: with it step {step + 1}, [{action}], fails: {execution.failure.code}")
+
+
+def _by_rules(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    yield from _states(program, knowledge)
+    yield from _places(program, knowledge)
+    yield from _seats(program)
+    yield from _rooms(program, knowledge)
+    yield from _opened(program)
+    yield from _tables(program, knowledge)
+
+
+def _soft(name: str, step: int, *objects: Key) -> Condition:
+    return Condition(name, objects, step, hard=False)
+
+
+def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 1: what is first switched, plugged, opened or closed was the other way before."""
+    seen: set[tuple[str, Key]] = set()
+    for number, step in enumerate(program.steps):
+        kind = {"SwitchOn": "switch", "SwitchOff": "switch", "Open": "open", "Close": "open", "PlugIn": "plug"}.get(
+            step.action, ""
+        )
+        if not kind or not step.objects or (kind, step.objects[0].key) in seen:
+            continue
+        key = step.objects[0].key
+        seen.add((kind, key))
+        if key[0] != "eyes":
+            yield _soft(_FIRST[step.action], number, key)
+        if kind == "switch" and has(knowledge, key[0], "HAS_PLUG") and ("plug", key) not in seen:
+            yield _soft("plugged", number, key)
+
+
+def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rules 2 to 6: what is used is at reach of the seat, near from the start, at reach of what was walked to, or worn."""
+    sought: set[Key] = set()
+    held: set[Key] = set()
+    worn: set[Key] = set()
+    at: Key | None = None
+    seat: Key | None = None
+    for number, step in enumerate(program.steps):
+        keys = [ref.key for ref in step.objects]
+        if step.action in ("StandUp", "WakeUp") and seat is None:
+            yield _soft("sitting", number, CHARACTER)
+        if step.action == "PutOff" and keys[0] not in worn:
+            yield _soft("in", number, keys[0], CHARACTER)
+        for key in keys:
+            used = step.action not in (*_GOING, "Find", "PutOff") and key not in held
+            if not used or knowledge.is_room(key[0]) or has(knowledge, key[0], "BODY_PART"):
+                continue
+            if seat is not None and key != seat:
+                yield _soft("atreach", number, seat, key)
+            elif key not in sought and at is None:
+                yield _soft("nearby", number, key, CHARACTER)
+            elif key not in sought and at is not None and not knowledge.is_room(at[0]) and key != at:
+                yield _soft("atreach", number, key, at)
+        if step.action in (*_GOING, "Find") and keys:
+            sought.add(keys[0])
+            at = keys[0] if step.action in _GOING else at
+        elif step.action == "Grab":
+            held.add(keys[0])
+        elif step.action in ("Sit", "Lie"):
+            seat = keys[0]
+        elif step.action in ("StandUp", "WakeUp"):
+            seat = None
+        elif step.action == "PutOn":
+            worn.add(keys[0])
+
+
+def _seats(program: Program) -> Iterator[Condition]:
+    """Rules 10 and 11: what is watched from a seat is faced by it; every seat that is named is free."""
+    seat: Key | None = None
+    for number, step in enumerate(program.steps):
+        for ref in step.objects:
+            if ref.name in SEATS:
+                yield _soft("free", number, ref.key)
+        if step.action in ("Sit", "Lie"):
+            seat = step.objects[0].key
+        elif step.action in ("StandUp", "WakeUp"):
+            seat = None
+        elif step.action == "Watch" and seat is not None:
+            yield _soft("facing", number, seat, step.objects[0].key)
+
+
+def _rooms(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 7: after a room was named, what is used is in it, until another is."""
+    room: Key | None = None
+    for number, step in enumerate(program.steps):
+        for ref in step.objects:
+            if knowledge.is_room(ref.name):
+                room = ref.key
+            elif room is not None:
+                yield _soft("location", number, ref.key, room)
+
+
+def _opened(program: Program) -> Iterator[Condition]:
+    """Rule 8: what is grabbed while something is open comes from inside what was opened last."""
+    opened: list[Key] = []
+    for number, step in enumerate(program.steps):
+        if step.action == "Open":
+            opened.append(step.objects[0].key)
+        elif step.action == "Close" and step.objects[0].key in opened:
+            opened.remove(step.objects[0].key)
+        elif step.action == "Grab" and opened and opened[-1] != step.objects[0].key:
+            yield _soft("inside", number, step.objects[0].key, opened[-1])
+
+
+def _tables(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 9: what is used after something table-like was gone to is on it; after a chair, near it."""
+    last: Key | None = None
+    for number, step in enumerate(program.steps):
+        for ref in step.objects:
+            if last is None or ref.key == last or knowledge.is_room(ref.name):
+                continue
+            if last[0] == "chair":
+                yield _soft("atreach", number, ref.key, last)
+            else:
+                yield _soft("in", number, ref.key, last)
+        if step.action in (*_GOING, "Find", "LookAt") and step.objects:
+            key = step.objects[0].key
+            last = key if key[0] in knowledge.table_like or key[0] == "chair" else None
+        else:
+            last = None
