@@ -58,6 +58,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Use a dataset": {
         "query": Entry("query:query", "Ask a published dataset a question in SQL."),
         "verify": Entry("verify:verify", "Check a dataset: hashes, counts, references, every execution run again."),
+        "diff": Entry("diff:diff", "Say what changed between two datasets, by table and by row."),
         "export": Entry("export:export", "Write a dataset in another form: release, words, JSON Lines, code, graphs."),
         "report": Entry("report:report", "Write a dataset as static HTML that needs no network."),
         "score": Entry("score:app", "Score predicted programs against references."),

@@ -1,0 +1,64 @@
+"""`diff`: what changed between two datasets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.pipelines.compare import TableDifference
+
+First = Annotated[Path, typer.Argument(metavar="A", help="A dataset, or a build's folder.")]
+Second = Annotated[Path, typer.Argument(metavar="B", help="Another.")]
+Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Tell at most N rows a table and kind; 0: all.")]
+
+
+def diff(
+    first: First, second: Second, rows: Rows = 5, strict: output.Strict = False, as_json: output.Json = False
+) -> None:
+    """Say what changed between two datasets, by table and by row.
+
+    \b
+    Example:
+      python cli.py diff data_out yesterday/data_out --rows 20
+    """
+    from hearth.pipelines.compare import compare
+
+    found = compare(first, second, rows or None)
+    if as_json:
+        output.emit([_json(each) for each in found])
+    elif not found:
+        print("the same rows in every table")
+    else:
+        columns = ["table", f"only in {first}", f"only in {second}", "changed"]
+        output.table(columns, [[each.table, *each.counts] for each in found])
+        print()
+        for each in found:
+            print("\n".join(_lines(each)))
+    output.status(len(found), strict=strict)
+
+
+def _lines(found: TableDifference) -> Iterator[str]:
+    yield from (f"- {found.table} {_key(key)}" for key in found.only_first)
+    yield from (f"+ {found.table} {_key(key)}" for key in found.only_second)
+    yield from (f"~ {found.table} {_key(each.key)}: {', '.join(each.columns)}" for each in found.changed)
+
+
+def _key(key: tuple[Any, ...]) -> str:
+    return " ".join(map(str, key))
+
+
+def _json(found: TableDifference) -> dict[str, Any]:
+    first, second, changed = found.counts
+    return {
+        "table": found.table,
+        "counts": {"only_first": first, "only_second": second, "changed": changed},
+        "only_first": [list(key) for key in found.only_first],
+        "only_second": [list(key) for key in found.only_second],
+        "changed": [{"key": list(each.key), "columns": list(each.columns)} for each in found.changed],
+    }
