@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
+
+import orjson
 
 from hearth.pipelines.duplicates import Copies, pasted
 from hearth.pipelines.files import value_digest
@@ -45,11 +48,11 @@ READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]]
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {text.NAME: 1, spoken.NAME: 1, ours.NAME: 1, release.NAME: 64, scenes.NAME: 256}
+WEIGHTS = {text.NAME: 1, spoken.NAME: 4, ours.NAME: 4, release.NAME: 256, scenes.NAME: 1024}
 """What a record counts towards filling a partition, by what it brings; others count `_USUAL`."""
 
-_USUAL = 16
-_FULL = 2_048
+_USUAL = 64
+_FULL = 8_192
 
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
@@ -98,7 +101,7 @@ def _answer(item: Item) -> Any:
 
 
 def _short(value: Any) -> bytes:
-    return bytes.fromhex(value_digest(value)[:24])
+    return hashlib.blake2b(orjson.dumps(value, option=orjson.OPT_SORT_KEYS), digest_size=12).digest()
 
 
 def partitions(job: Job) -> Iterator[Partition]:

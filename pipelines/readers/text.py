@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +14,9 @@ from hearth.schemas.failures import Code
 from hearth.schemas.syntax import MAX_LINE
 
 NAME = "text"
+
+
+_FIRST_STEP = re.compile(rf"^(?:{STEP.pattern})", re.MULTILINE)
 
 
 @dataclass(slots=True)
@@ -79,12 +83,8 @@ def _blocks(path: Place) -> Iterator[_Block]:
 
 def header(text: str) -> tuple[str, str]:
     """Title and description of a program's text: the lines before its first step."""
-    found: list[str] = []
-    for line in text.split("\n"):
-        if STEP.match(line):
-            break
-        if line.strip():
-            found.append(line.strip())
+    first = _FIRST_STEP.search(text)
+    found = [line for raw in text[: first.start() if first else len(text)].split("\n") if (line := raw.strip())]
     return (found[0] if found else "", "\n".join(found[1:]))
 
 
