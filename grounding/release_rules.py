@@ -12,7 +12,7 @@ from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
 from hearth.grounding.sketch_home import sketch
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.program import Program
+from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
@@ -68,6 +68,7 @@ def _tried(condition: Condition, program: Program, ours: Preconditions, knowledg
 
 def _by_rules(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     yield from _states(program, knowledge)
+    yield from _rest(program)
     yield from _places(program, knowledge)
     yield from _seats(program)
     yield from _rooms(program, knowledge)
@@ -96,40 +97,49 @@ def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             yield _soft("plugged", number, key)
 
 
+def _rest(program: Program) -> Iterator[Condition]:
+    """Rules 3 and 6: who first gets up was sitting; what is taken off, and was not put on, is worn."""
+    seated = False
+    worn: set[Key] = set()
+    for number, step in enumerate(program.steps):
+        if step.action in ("StandUp", "WakeUp") and not seated:
+            yield _soft("sitting", number, CHARACTER)
+        elif step.action == "PutOff" and step.objects[0].key not in worn:
+            yield _soft("in", number, step.objects[0].key, CHARACTER)
+        elif step.action == "PutOn":
+            worn.add(step.objects[0].key)
+        seated = seated or step.action in ("Sit", "Lie")
+
+
 def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rules 2 to 6: what is used is at reach of the seat, near from the start, at reach of what was walked to, or worn."""
+    """Rules 2, 4 and 5: what is used is at reach of the seat, near at the start, or at reach of what was gone to."""
     sought: set[Key] = set()
     held: set[Key] = set()
-    worn: set[Key] = set()
     at: Key | None = None
     seat: Key | None = None
     for number, step in enumerate(program.steps):
         keys = [ref.key for ref in step.objects]
-        if step.action in ("StandUp", "WakeUp") and seat is None:
-            yield _soft("sitting", number, CHARACTER)
-        if step.action == "PutOff" and keys[0] not in worn:
-            yield _soft("in", number, keys[0], CHARACTER)
         for key in keys:
             used = step.action not in (*_GOING, "Find", "PutOff") and key not in held
             if not used or knowledge.is_room(key[0]) or has(knowledge, key[0], "BODY_PART"):
                 continue
             if seat is not None and key != seat:
                 yield _soft("atreach", number, seat, key)
-            elif key not in sought and at is None:
-                yield _soft("nearby", number, key, CHARACTER)
-            elif key not in sought and at is not None and not knowledge.is_room(at[0]) and key != at:
-                yield _soft("atreach", number, key, at)
+            elif key not in sought and (at is None or (not knowledge.is_room(at[0]) and key != at)):
+                yield _soft("nearby", number, key, CHARACTER) if at is None else _soft("atreach", number, key, at)
         if step.action in (*_GOING, "Find") and keys:
             sought.add(keys[0])
             at = keys[0] if step.action in _GOING else at
         elif step.action == "Grab":
             held.add(keys[0])
-        elif step.action in ("Sit", "Lie"):
-            seat = keys[0]
-        elif step.action in ("StandUp", "WakeUp"):
-            seat = None
-        elif step.action == "PutOn":
-            worn.add(keys[0])
+        seat = _seat(seat, step)
+
+
+def _seat(seat: Key | None, step: Step) -> Key | None:
+    """What the character sits or lies on after a step."""
+    if step.action in ("Sit", "Lie"):
+        return step.objects[0].key
+    return None if step.action in ("StandUp", "WakeUp") else seat
 
 
 def _seats(program: Program) -> Iterator[Condition]:
@@ -139,12 +149,9 @@ def _seats(program: Program) -> Iterator[Condition]:
         for ref in step.objects:
             if ref.name in SEATS:
                 yield _soft("free", number, ref.key)
-        if step.action in ("Sit", "Lie"):
-            seat = step.objects[0].key
-        elif step.action in ("StandUp", "WakeUp"):
-            seat = None
-        elif step.action == "Watch" and seat is not None:
+        if step.action == "Watch" and seat is not None:
             yield _soft("facing", number, seat, step.objects[0].key)
+        seat = _seat(seat, step)
 
 
 def _rooms(program: Program, knowledge: Knowledge) -> Iterator[Condition]:

@@ -31,7 +31,7 @@ def read(knowledge):
         (("[StandUp]",), ("sitting", (CHARACTER,))),
         (("[Grab] <cup> (1)",), ("nearby", (("cup", 1), CHARACTER))),
         (("[Walk] <table> (1)", "[Grab] <cup> (1)"), ("atreach", (("cup", 1), ("table", 1)))),
-        (("[PutOff] <hat> (1)",), ("in", (("hat", 1), CHARACTER))),
+        (("[PutOff] <hat> (1)",), ("in", (("clothes_hat", 1), CHARACTER))),
         (("[Walk] <kitchen> (1)", "[Walk] <cup> (1)"), ("location", (("cup", 1), ("kitchen", 1)))),
         (("[Open] <fridge> (1)", "[Grab] <milk> (1)"), ("inside", (("milk", 1), ("fridge", 1)))),
         (("[Walk] <desk> (1)", "[Grab] <pen> (1)"), ("in", (("pen", 1), ("desk", 1)))),
