@@ -110,7 +110,7 @@ def main() -> None:
     fine = films[: max(4, asked.frames // 6)]
     measured("640x480 fine, whole, all", "3", fine, lambda s: render(s, corner, every, quality="fine"))
     measured("640x480 draft, camera stays, rgb", "60", films, Stayed(corner, ("rgb",)))
-    #measured("640x480 draft, camera stays, VP80 written", "30", films, video(films, corner))
+    measured("640x480 draft, camera stays, VP80 written", "30", films, video(films, corner))
     measured("320x240 bird's eye, rgb and instance ids", "100", films, Stayed(above, ("rgb", "instance_ids")))
 
 

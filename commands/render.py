@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
@@ -11,6 +11,7 @@ from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.rendering.snapshots import Snapshot
+    from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
 
 app = typer.Typer(no_args_is_help=True, help="Pictures of a program, and of every model.")
@@ -26,46 +27,116 @@ Fine = Annotated[bool, typer.Option("--fine", help="Smooth edges and soft shadow
 Width = Annotated[int, typer.Option("--width", metavar="PX", min=32, max=1920, help="Of one picture; 4 to 3.")]
 
 
+Mode = Annotated[Literal["snapshots", "video"], typer.Option("--mode", help="One moment a step, or all in motion.")]
+Cameras = Annotated[
+    str, typer.Option("--cameras", metavar="NAMES", help="Of the video: auto, top, first, third, kitchen.54.1, ...")
+]
+Fps = Annotated[float, typer.Option("--fps", metavar="N", min=5, max=30, help="Pictures a second of the video.")]
+
+
 @app.command()
 def program(
     file: File,
     out: Out,
     home: HomeName = "maple",
     homes: Homes = None,
+    mode: Mode = "snapshots",
+    cameras: Cameras = "auto",
     seed: Seed = 0,
     hour: Hour = 10.0,
     width: Width = 320,
+    fps: Fps = 15.0,
     fine: Fine = False,
+    as_json: output.Json = False,
 ) -> None:
-    """Picture a program step by step: PNG files, and a contact sheet `sheet.png` with the steps as captions.
+    """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
     \b
     Example:
       python cli.py render-program watch_tv.txt --home maple --out pictures
+      python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
     """
-    from hearth.rendering.contact import caption, contact_sheet
-    from hearth.rendering.png import encode
-    from hearth.rendering.snapshots import TOP, snapshots
     from hearth.simulation.homes import catalog
 
     execution = _execution(file, home, homes, seed)
-    out.mkdir(parents=True, exist_ok=True)
-    quality = "fine" if fine else "draft"
-    frames = []
     graph = catalog.load_graph(home, homes)
-    for shot in snapshots(execution, graph, size=(width, width * 3 // 4), quality=quality, seed=seed, hour=hour):
-        _write(out, shot)
-        if shot.camera.name != TOP:
-            frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
-    (out / "sheet.png").write_bytes(encode(contact_sheet(frames, f"{execution.program.title}, in {home}")))
-    print(f"{len(frames)} moments of {file.name} in {out}; all together: {out / 'sheet.png'}")
-    if execution.failure is not None:
-        print(f"It stopped there: {execution.failure.message()}")
+    out.mkdir(parents=True, exist_ok=True)
+    size = (width, width * 3 // 4)
+    title = f"{execution.program.title}, in {home}"
+    if mode == "video":
+        names = [name.strip() for name in cameras.split(",") if name.strip()]
+        told = _videos(execution, graph, out, names, Taken(size, seed, hour, title), fps)
+    else:
+        told = _snapshots(execution, graph, out, "fine" if fine else "draft", Taken(size, seed, hour, title))
+    failure = execution.failure.message() if execution.failure else None
+    if as_json:
+        output.emit({"program": execution.program.title, "home": home, "failure": failure, **told})
+    else:
+        print(f"{told['pictures']} pictures of {file.name} in {out}; all together: {told['sheet']}")
+        for page in told.get("pages", ()):
+            print(f"Open {page} in a browser.")
+        if failure:
+            print(f"It stopped there: {failure}")
+    if failure:
         raise typer.Exit(output.BAD_INPUT)
 
 
+class Taken(NamedTuple):
+    """How pictures are taken: width and height, seed, hour of the day, title of the contact sheet."""
+
+    size: tuple[int, int]
+    seed: int
+    hour: float
+    title: str
+
+
+def _snapshots(execution: Execution, graph: EnvironmentGraph, out: Path, quality: str, taken: Taken) -> dict[str, Any]:
+    from hearth.rendering.contact import caption
+    from hearth.rendering.snapshots import TOP, snapshots
+
+    frames, files = [], []
+    for shot in snapshots(execution, graph, size=taken.size, quality=quality, seed=taken.seed, hour=taken.hour):
+        files += _write(out, shot)
+        if shot.camera.name != TOP:
+            frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
+    return {"pictures": len(files), "files": files, "sheet": _sheet(out, frames, taken.title)}
+
+
+def _videos(
+    execution: Execution, graph: EnvironmentGraph, out: Path, names: list[str], taken: Taken, fps: float
+) -> dict[str, Any]:
+    import orjson
+
+    from hearth.rendering.contact import caption
+    from hearth.rendering.player import page
+    from hearth.rendering.snapshots import play
+    from hearth.rendering.video import record
+
+    staged = play(execution, graph, seed=taken.seed, hour=taken.hour)
+    videos, frames, pages = [], [], []
+    for name in names:
+        done = record(staged, graph, out, name, size=taken.size, fps=fps)
+        files = [path.name for path in done.files]
+        (out / f"{name}.html").write_text(page(taken.title, files, done.steps), encoding="utf-8")
+        pages.append(str(out / f"{name}.html"))
+        videos.append({"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps})
+        frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.moments]
+    (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
+    return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(out, frames, taken.title)}
+
+
+def _sheet(out: Path, frames: list[Any], title: str) -> str:
+    from hearth.rendering.contact import contact_sheet
+    from hearth.rendering.png import encode
+
+    path = out / "sheet.png"
+    path.write_bytes(encode(contact_sheet(frames, title)))
+    return str(path)
+
+
 @app.command()
-def sheet(out: OutFile, fine: Fine = False) -> None:
+def sheet(out: OutFile, fine: Fine = False, as_json: output.Json = False) -> None:
     """Draw every model, variant and state at 128 pixels.
 
     \b
@@ -73,11 +144,16 @@ def sheet(out: OutFile, fine: Fine = False) -> None:
       python cli.py render-sheet --out models.png
     """
     from hearth.rendering.png import encode
+    from hearth.rendering.sheet import entries
     from hearth.rendering.sheet import sheet as draw
 
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
-    print(f"Every model is in {out}.")
+    labels = [label for label, _ in entries()]
+    if as_json:
+        output.emit({"file": out, "models": labels})
+    else:
+        print(f"Every model ({len(labels)}) is in {out}.")
 
 
 def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Execution:
@@ -93,10 +169,13 @@ def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Executio
     return trial.execution
 
 
-def _write(out: Path, shot: Snapshot) -> None:
+def _write(out: Path, shot: Snapshot) -> list[str]:
     from hearth.rendering.png import encode
     from hearth.rendering.snapshots import TOP
 
     view = TOP if shot.camera.name == TOP else "auto"
+    names = []
     for modality, picture in shot.pictures.items():
-        (out / f"{shot.tick:03d}.{view}.{modality}.png").write_bytes(encode(picture))
+        names.append(f"{shot.tick:03d}.{view}.{modality}.png")
+        (out / names[-1]).write_bytes(encode(picture))
+    return names

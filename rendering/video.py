@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -31,6 +33,19 @@ CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 """What OpenCV writes into each kind of file: browsers play VP80."""
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the writer from telling, for each webm, that such files have no tags."""
+    kept = os.dup(2)
+    with Path(os.devnull).open("w") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
 class Writer:
     """A video file that is there under its name only when it is complete."""
 
@@ -41,7 +56,8 @@ class Writer:
         self.path, self.part = path, path.with_name(f".part{path.suffix}")
         self.file: Any = None
         if codec:
-            self.file = cv2.VideoWriter(str(self.part), cv2.VideoWriter.fourcc(*codec), fps, (width, height))
+            with _quiet():
+                self.file = cv2.VideoWriter(str(self.part), cv2.VideoWriter.fourcc(*codec), fps, (width, height))
         if self.file is None or not self.file.isOpened():
             known = ", ".join(f"*{suffix}" for suffix in CODECS)
             raise HearthError.of(Code.NOT_RENDERED, f"OpenCV can't write {path}", suggestion=f"a file {known}")
@@ -133,9 +149,9 @@ class Director:
         if self.view == THIRD:
             return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(room))
         now = (frame.tick, room)
-        if self.chosen is not None and self.scene == now:
-            if frame.time - self.since <= PATIENCE or _in_picture(self.chosen, actor):
-                return self.chosen
+        waits = self.scene == now and frame.time - self.since <= PATIENCE
+        if self.chosen is not None and self.scene == now and (waits or _in_picture(self.chosen, actor)):
+            return self.chosen
         self.chosen = self._best(frame, replace(actor, room=room), self.chosen)
         self.scene, self.since = now, frame.time
         return self.chosen
@@ -197,3 +213,61 @@ def times(found: Sequence[Span]) -> list[dict[str, Any]]:
         }
         for span in found
     ]
+
+
+class Recorded(NamedTuple):
+    """What `record` wrote.
+
+    Attributes:
+        files: the videos.
+        frames: how many pictures each has.
+        steps: as `times` gives them, each with the cameras that show it.
+        moments: the last picture of each tick, for a contact sheet.
+    """
+
+    files: tuple[Path, ...]
+    frames: int
+    steps: list[dict[str, Any]]
+    moments: list[tuple[Image, Span]]
+
+
+def record(
+    staged: Play,
+    home: EnvironmentGraph,
+    out: Path,
+    view: str = AUTO,
+    *,
+    size: tuple[int, int] = (640, 480),
+    fps: float = 15.0,
+    speed: float = 1.0,
+    suffixes: Sequence[str] = (".webm", ".mp4"),
+) -> Recorded:
+    """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4`.
+
+    Args:
+        staged, home, view, size, fps, speed: as of `film`.
+        out: a folder that is there.
+        suffixes: of `CODECS`.
+
+    Raises:
+        HearthError: no such camera, or a file can't be written; what was complete stays.
+    """
+    known = {span.tick: span for span in spans(staged, speed)}
+    steps = times(list(known.values()))
+    for step in steps:
+        step["cameras"] = []
+    writers = [Writer(out / f"{view}{suffix}", *size, fps) for suffix in suffixes]
+    last: dict[int, Image] = {}
+    count = 0
+    for shown in film(staged, home, view, size=size, fps=fps, speed=speed):
+        for writer in writers:
+            writer.add(shown.rgb)
+        last[shown.frame.tick] = shown.rgb
+        cameras = steps[shown.frame.tick]["cameras"]
+        if shown.camera.name not in cameras:
+            cameras.append(shown.camera.name)
+        count += 1
+    for writer in writers:
+        writer.close()
+    moments = [(picture, known[tick]) for tick, picture in last.items()]
+    return Recorded(tuple(writer.path for writer in writers), count, steps, moments)

@@ -1,0 +1,170 @@
+"""Films: people walk on the floor and not on furniture, feet stay put, things change when hands arrive, time adds up."""
+
+import re
+from itertools import pairwise
+from math import hypot
+
+import numpy as np
+import pytest
+
+pytest.importorskip("open3d")
+
+from hearth.rendering.motion import frames, spans
+from hearth.rendering.player import page
+from hearth.rendering.routes import path, ways_of
+from hearth.rendering.snapshots import play
+from hearth.rendering.video import Writer, film, record, times
+from hearth.schemas.errors import HearthError
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.engine import run
+from hearth.simulation.home import Home
+from hearth.simulation.world import World
+
+PROGRAM = "Put it away\nOn the table\n\n\n[Walk] <cup> (1)\n[Grab] <cup> (1)\n[Walk] <table> (1)\n" \
+    "[PutBack] <cup> (1) <table> (1)\n[Sit] <chair> (1)\n[StandUp]\n"  # fmt: skip
+ROOM, ME, TABLE, CHAIR, SHELF, CUP = range(1, 7)
+FPS = 12.0
+
+
+def node(number, name, category, center, size, properties=(), yaw=0.0):
+    return Node(number, name, category, properties, (), None, Box(center, size), yaw)
+
+
+HOME = EnvironmentGraph(
+    (
+        node(ROOM, "kitchen", "Rooms", (0, 1.3, 0), (5, 2.6, 4), yaw=None),
+        node(ME, "character", "Characters", (1.6, 0.85, 1.4), (0.4, 1.7, 0.4)),
+        node(TABLE, "table", "Furniture", (0.0, 0.37, 0.0), (1.2, 0.74, 0.8), ("SURFACES",)),
+        node(CHAIR, "chair", "Furniture", (1.2, 0.45, -0.4), (0.45, 0.9, 0.48), ("SITTABLE", "SURFACES"), 90.0),
+        node(SHELF, "kitchen_counter", "Furniture", (-1.8, 0.44, -1.6), (1.2, 0.88, 0.6), ("SURFACES",)),
+        node(CUP, "cup", "Props", (-1.8, 0.93, -1.6), (0.1, 0.1, 0.08), ("GRABBABLE", "RECIPIENT")),
+    ),
+    (*(Edge(number, "INSIDE", ROOM) for number in range(2, 7)), Edge(CUP, "ON", SHELF)),
+)
+
+
+@pytest.fixture(scope="module")
+def staged():
+    program, faults = parse_program(PROGRAM.replace("[Sit]", "[Walk] <chair> (1)\n[Sit]"))
+    assert not faults
+    bound = program.bound({("cup", 1): CUP, ("table", 1): TABLE, ("chair", 1): CHAIR})
+    done = run(World.start(Home.from_graph(HOME)), bound)
+    assert done.executable, done.failure
+    return play(done, HOME)
+
+
+@pytest.fixture(scope="module")
+def shown(staged):
+    return list(frames(staged, FPS))
+
+
+def test_steps_follow_each_other_and_frames_fill_them(staged, shown):
+    found = spans(staged)
+    assert [span.tick for span in found] == list(range(8))
+    assert all(one.end == two.start for one, two in pairwise(found))
+    assert all(span.end > span.start for span in found)
+    assert len(shown) == np.ceil(found[-1].end * FPS)
+    assert all(found[frame.tick].start <= frame.time < found[frame.tick].end for frame in shown)
+
+
+def test_a_film_ends_each_step_where_the_snapshot_is(staged, shown):
+    for tick in range(1, 8):
+        last = [frame for frame in shown if frame.tick == tick][-1]
+        assert last.actors == staged.moments[tick].actors
+
+
+def test_people_walk_at_a_walking_pace_around_furniture(shown):
+    for one, two in pairwise(shown):
+        (x0, z0), (x1, z1) = one.actors[0].spot, two.actors[0].spot
+        assert hypot(x1 - x0, z1 - z0) < 1.5 / FPS
+    walking = [frame for frame in shown if frame.actors[0].stance.swing]
+    assert len(walking) > 10
+    for frame in walking:
+        x, z = frame.actors[0].spot
+        assert abs(x) > 0.6 or abs(z) > 0.4, (frame.time, x, z)
+
+
+def test_feet_on_the_floor_stay_where_they_are(staged):
+    planted = 0
+    for one, two in pairwise(frames(staged, 30.0)):
+        a, b = one.actors[0], two.actors[0]
+        if not (a.stance.swing and b.stance.swing) or a.yaw != b.yaw or a.stance.swing * b.stance.swing < 0:
+            continue
+        foot = "ankle_l" if a.stance.swing > 0 else "ankle_r"
+        (x0, _, z0), (x1, _, z1) = (actor.world(tuple(actor.figure().joints()[foot])) for actor in (a, b))
+        assert hypot(x1 - x0, z1 - z0) < 0.015
+        planted += 1
+    assert planted > 20
+
+
+def test_the_cup_changes_hands_when_the_hand_is_there(shown):
+    grabbing = [frame for frame in shown if frame.tick == 2]
+    on_shelf = [frame for frame in grabbing if frame.scene.find(CUP).position[0] == pytest.approx(-1.8)]
+    assert 0 < len(on_shelf) < len(grabbing)
+    hand = on_shelf[-1].actors[0].hand("right")
+    assert hypot(hand[0] + 1.8, hand[1] - 0.93, ) < 0.2  # fmt: skip
+    held = grabbing[-1]
+    assert (
+        sum((a - b) ** 2 for a, b in zip(held.scene.find(CUP).position, held.actors[0].hand("right"), strict=True))
+        < 0.05
+    )
+
+
+def test_the_way_leads_around_and_through_doors():
+    rooms = [
+        node(1, "kitchen", "Rooms", (0, 1.3, 0), (4, 2.6, 4)),
+        node(2, "bedroom", "Rooms", (4.1, 1.3, 0), (4, 2.6, 4)),
+    ]
+    jamb = node(3, "doorjamb", "Doors", (2.05, 1, 1.2), (0.1, 2, 0.9))
+    ways = ways_of(rooms, [*rooms, jamb])
+    way = path(ways, (0.0, -1.5), (4.0, -1.5))
+    assert way[0] == (0.0, -1.5)
+    assert way[-1] == (4.0, -1.5)
+    crossing = next(
+        a[1] + (b[1] - a[1]) * (2.05 - a[0]) / (b[0] - a[0]) for a, b in pairwise(way) if a[0] < 2.05 <= b[0]
+    )
+    assert 0.75 < crossing < 1.65
+    assert path(None, (0, 0), (1, 1)) == ((0, 0), (1, 1))
+
+
+def test_films_are_written_with_the_times_of_their_steps(staged, tmp_path):
+    done = record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=5.0)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["auto.mp4", "auto.webm"]
+    assert done.steps[2]["steps"] == ["[Grab] <cup> (1)"] or "Grab" in done.steps[2]["steps"][0]
+    assert all(step["cameras"] for step in done.steps)
+    assert len(done.moments) == 8
+    import cv2
+
+    for file in done.files:
+        video = cv2.VideoCapture(str(file))
+        count = 0
+        while video.read()[0]:
+            count += 1
+        assert count == done.frames
+    first = (tmp_path / "auto.mp4").read_bytes()
+    record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=5.0, suffixes=(".mp4",))
+    assert (tmp_path / "auto.mp4").read_bytes() == first
+
+
+def test_every_kind_of_camera_sees_something(staged):
+    for view in ("top", "first", "third", "kitchen.1.2"):
+        shot = next(film(staged, HOME, view, size=(32, 24), fps=5.0))
+        assert shot.rgb.shape == (24, 32, 3)
+        assert shot.rgb.std() > 5, view
+
+
+def test_unknown_cameras_and_formats_are_told(staged, tmp_path):
+    with pytest.raises(HearthError, match="no camera `attic`"):
+        next(film(staged, HOME, "attic"))
+    with pytest.raises(HearthError, match="can't write"):
+        Writer(tmp_path / "film.avi", 32, 24, 5.0)
+
+
+def test_the_page_has_a_row_for_each_step(staged):
+    steps = times(spans(staged))
+    text = page("Tea <for> two", ["auto.webm"], steps)
+    assert "Tea &lt;for&gt; two" in text
+    assert len(re.findall("<li ", text)) == len(steps)
+    assert f'data-start="{steps[3]["start"]}"' in text
+    assert "http" not in text
