@@ -35,9 +35,16 @@ SHARED   := version.py $(call tree,schemas) \
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
 
-.PHONY: all setup test test-all lint bench lock wheel clean distclean help $(STAGES)
+.PHONY: all full setup test test-all lint bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
+
+# Each program in two homes drawn for it, so that all seven are used and each program comes in several.
+full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,000 augmented, in data_out/full
+	@mkdir -p $(OUT)/full
+	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
+	@$(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
+	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --homes-each 2 --per-program 6 --target 30000 --pictures 0
 
 setup: $(READY)  ## make .venv with the locked versions (uv if there is one, else pip)
 
@@ -95,7 +102,7 @@ wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
 clean:  ## remove what was built; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/full $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## remove .venv, too

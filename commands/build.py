@@ -39,7 +39,17 @@ Salt = Annotated[
     str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
 ]
 Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Film so many programs.")]
-Variants = Annotated[int, typer.Option("--variants", metavar="N", min=0, help="Perturbed environments a program.")]
+Variants = Annotated[
+    int,
+    typer.Option("--per-program", "--variants", metavar="N", min=0, help="Perturbed environments for each execution."),
+]
+Target = Annotated[
+    int, typer.Option("--target", metavar="N", min=0, help="Augmented programs wanted; 0 for all --per-program gives.")
+]
+HomesEach = Annotated[
+    int,
+    typer.Option("--homes-each", metavar="N", min=0, help="Sample each program in N homes drawn for it; 0 for all."),
+]
 
 _OUT = Path("data_out")
 _CODES = 4
@@ -57,7 +67,9 @@ def build(
     homes: HomesFolder = None,
     kb: Kb = None,
     salt: Salt = None,
+    homes_each: HomesEach = 0,
     variants: Variants = 3,
+    target: Target = 0,
     pictures: Pictures = 3,
     strict: output.Strict = False,
     as_json: output.Json = False,
@@ -73,7 +85,8 @@ def build(
       python cli.py build --out data_out
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
     """
-    options = _options(seed, limit, home, homes, kb, salt, variants=variants, pictures=pictures)
+    more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures}
+    options = _options(seed, limit, home, homes, kb, salt, **more)
     _run(sources, out, workers, only, options, strict, as_json)
 
 
@@ -144,21 +157,42 @@ def sample(
 def augment(
     out: Out = _OUT,
     seed: Seed = 0,
-    homes: HomesFolder = None,
+    home: InHomes = None,
+    homes: SomeHomes = None,
     kb: Kb = None,
     variants: Variants = 3,
+    target: Target = 0,
     workers: Jobs = 0,
     strict: output.Strict = False,
     as_json: output.Json = False,
 ) -> None:
     """Perturb what programs rely on, run them, and repair what breaks.
 
+    With --target, pairs are spread evenly over all executions, at most --per-program each. `--homes` takes a folder of
+    homes, or names of ours, separated by commas, to augment in; `all` by default.
+
     \b
-    Example:
-      python cli.py augment --out data_out --variants 5
+    Examples:
+      python cli.py augment --out data_out --per-program 5
+      python cli.py augment --out data_out --target 30000 --homes maple,birch --json
     """
-    options = _options(seed, None, None, homes, kb, None, variants=variants)
-    _run(None, out, workers, "augment", options, strict, as_json)
+    folder, names = _homes_or_names(homes)
+    options = _options(seed, None, [*(home or ()), *names], folder, kb, None, variants=variants, target=target)
+    if not as_json:
+        _run(None, out, workers, "augment", options, strict, as_json)
+        return
+    from hearth.pipelines.augment_figures import outcome
+
+    found = _built(None, out, workers, "augment", options)
+    output.emit(outcome(out / "augment"))
+    output.status(found.stages["augment"].rejected, strict=strict)
+
+
+def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
+    """What stands after --homes: the folder, and names where it is none."""
+    texts = [text for text in given or () if text != _ALL]
+    folder = next((Path(text) for text in texts if Path(text).is_dir()), None)
+    return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
 
 
 def render(
@@ -224,19 +258,22 @@ def _run(
     strict: bool,
     as_json: bool,
 ) -> None:
-    import os
-
-    from hearth.pipelines.build import build as run
-    from hearth.pipelines.progress import for_terminal
-
-    count = workers or os.cpu_count() or 1
-    paths = [str(path) for path in sources or ()]
-    found = run(paths, str(out), workers=count, only=only, progress=for_terminal(), **options)
+    found = _built(sources, out, workers, only, options)
     if as_json:
         output.emit(found.to_json())
     else:
         _print(found, out, whole=only is None)
     output.status(found.rejected, strict=strict)
+
+
+def _built(sources: list[Path] | None, out: Path, workers: int, only: str | None, options: dict[str, Any]) -> Funnel:
+    import os
+
+    from hearth.pipelines.build import build as run
+    from hearth.pipelines.progress import for_terminal
+
+    paths = [str(path) for path in sources or ()]
+    return run(paths, str(out), workers=workers or os.cpu_count() or 1, only=only, progress=for_terminal(), **options)
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from difflib import ndiff
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -67,7 +67,7 @@ def repair(
 _HARMLESS = ("UNPERTURBED", "DUPLICATE")
 
 
-def _refuse(failure: Any, home: str, as_json: bool) -> None:
+def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
     if as_json:
         output.emit({"home": home, "failure": asdict(failure)})
     else:

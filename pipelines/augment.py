@@ -12,9 +12,10 @@ from hearth.grounding.perturbing import Chances, Perturbation
 from hearth.grounding.sampling import Environment
 from hearth.pipelines.augmenting import Augmented, Options, Pair, augment, default_chances
 from hearth.pipelines.cases import environment_of, rerun, run_row
+from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Row
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.repairing import Attempt
+from hearth.pipelines.repairing import Attempt, successes
 from hearth.pipelines.rows import (
     change_row,
     condition_rows,
@@ -25,17 +26,26 @@ from hearth.pipelines.rows import (
     step_rows,
 )
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
+from hearth.pipelines.stage import Job, Output, Plan, Record, Stage
 from hearth.pipelines.surroundings import USES, Homes, overlays
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rng import rng
 from hearth.schemas.syntax import print_step
-from hearth.schemas.tables import CASE
+from hearth.schemas.tables import CASE, SKETCHED, TRIED
 from hearth.simulation.change import Change
+from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
 THESIS = 0.7
 """The probability of perturbing a precondition (thesis 5.5.4), to which augment.yaml's are relative."""
+
+ALLOWANCE = 1.3
+"""Pairs made for one program that is wanted: some turn out duplicates, some rely on too little to be perturbed."""
+
+_DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
+"""Why a program that runs and does its work is refused all the same."""
 
 _KEPT = ("source", "place", "description_id", "title", "description", "scene", "worker", "platform", "rooms", "props")
 
@@ -43,11 +53,19 @@ _KEPT = ("source", "place", "description_id", "title", "description", "scene", "
 class Context:
     """What a record is processed with."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, plan: Plan) -> None:
         self.homes = Homes(settings)
         self.seed = settings.seed
         chances = scaled(default_chances(), settings.probability / THESIS)
         self.options = Options(settings.variants, settings.tries, chances)
+        self.each = float(plan.get("each", settings.variants))
+        self.sketched = ""
+        self.keep: Keep = ()
+
+    @cached_property
+    def places(self) -> list[Home]:
+        """The homes in which sketches have to be enough."""
+        return [self.homes.home(name) for name in self.homes.names()[:ENVIRONMENTS]]
 
     @cached_property
     def at_rest(self) -> dict[str, bool]:
@@ -60,35 +78,69 @@ class Context:
             self.at_rest[name] = self.homes.in_catalog(name)
         return self.at_rest[name]
 
+    def options_for(self, record_id: str) -> Options:
+        """How an execution is augmented: where a share of a pair falls to each, some get one more than others."""
+        whole = int(self.each)
+        more = rng(self.seed, "augment", record_id).random() < self.each - whole
+        return replace(self.options, count=whole + more)
+
 
 def scaled(chances: Chances, factor: float) -> Chances:
     """Every probability multiplied, none above 1."""
     return replace(chances, kinds={kind: min(1.0, chance * factor) for kind, chance in chances.kinds.items()})
 
 
-def process(record: Record, context: Context) -> Iterator[Row | Reject] | Reject:
-    """A row for every repaired program; a reject for every environment that gave none."""
+def process(record: Record, context: Context) -> Iterator[Output]:
+    """A row for every repaired program, what was tried in vain and a reject for every environment that gave none.
+
+    With them goes the sketch of the program, once however many homes it is in, and what its children inherit of it.
+    """
+    options = context.options_for(record["execution_id"])
     program = program_of(record)
     home = context.homes.home(record["home"])
     original = (_conditions(record), rerun(record, context.homes))
-    found = augment(program, home, context.seed, record["environment_id"], context.options, original)
+    found = augment(program, home, context.seed, record["environment_id"], options, original)
     assert isinstance(found, Augmented), "the original is at hand"
-    return _outputs(record, found, context) if found.pairs else _nothing_to_perturb(record)
+    return _outputs(record, program, found, context, wanted=options.count > 0)
 
 
-def _outputs(record: Record, found: Augmented, context: Context) -> Iterator[Row | Reject]:
+def _outputs(record: Record, program: Program, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
+    if record["program_id"] != context.sketched:
+        context.sketched = record["program_id"]
+        context.keep = sketch(program, context.places, context.homes.knowledge, context.seed, record["program_id"])
+        yield "sketches", _sketch(record["program_id"], "inferred", program, context.keep)
     for pair in found.pairs:
-        yield _row(record, pair, context) if pair.failure is None else _reject(record, pair, pair.failure)
+        if pair.failure is not None:
+            yield _reject(record, pair, pair.failure)
+            yield from (("attempts", row) for row in _in_vain(record, pair, pair.failure))
+            continue
+        row = _row(record, pair, context)
+        yield row
+        yield "sketches", _sketch(row["program_id"], "inherited", pair.program, inherited(context.keep, pair.sources))
+    if not found.pairs and wanted:
+        yield _nothing_to_perturb(record)
+
+
+def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> Row:
+    steps = [_text(step) for step, kept in zip(program.steps, keep, strict=True) if kept]
+    return {"program_id": program_id, "origin": origin, "keep": list(keep), "steps": steps}
 
 
 def _nothing_to_perturb(record: Record) -> Reject:
     failure = Failure(Code.UNPERTURBED, expected="something the program relies on", actual="nothing")
-    return Reject.failed(failure, f"{record['place']} in {record['home']}")
+    return Reject.failed(failure, record["place"], where=f"in {record['home']}")
 
 
 def _reject(record: Record, pair: Pair, failure: Failure) -> Reject:
     told = "; ".join(map(str, pair.perturbations))
-    return Reject.failed(failure, f"{record['place']} in {record['home']}, where {told}")
+    return Reject.failed(failure, record["place"], where=f"in {record['home']}, where {told}")
+
+
+def _in_vain(record: Record, pair: Pair, failure: Failure) -> Iterator[Row]:
+    told = {"parent_id": record["program_id"], "home": record["home"], "outcome": str(failure.code)}
+    perturbations = [_perturbation(one) for one in pair.perturbations]
+    for repair in _repairs(pair):
+        yield {**told, "perturbations": perturbations, **repair}
 
 
 def _conditions(record: Record) -> Preconditions:
@@ -117,7 +169,7 @@ def _row(record: Record, pair: Pair, context: Context) -> Row:
         "conditions": condition_rows(pair.environment.conditions),
         **run_row(pair.execution, "default"),
         "perturbations": [_perturbation(one) for one in pair.perturbations],
-        "repairs": [_repair(attempt) for attempt in pair.attempts],
+        "repairs": _repairs(pair),
     }
 
 
@@ -141,7 +193,13 @@ def _perturbation(perturbation: Perturbation) -> Row:
     return {"kind": perturbation.kind, "condition": condition_rows([perturbation.about])[0]}
 
 
-def _repair(attempt: Attempt) -> Row:
+def _repairs(pair: Pair) -> list[Row]:
+    given_up = pair.failure if pair.failure is not None and pair.failure.code not in _DONE else None
+    helped = successes(pair.attempts, given_up)
+    return [_repair(attempt, success) for attempt, success in zip(pair.attempts, helped, strict=True)]
+
+
+def _repair(attempt: Attempt, successful: bool) -> Row:
     return {
         "attempt": attempt.number,
         "step": attempt.step,
@@ -149,6 +207,7 @@ def _repair(attempt: Attempt) -> Row:
         "handler": attempt.handler,
         "before": _texts(attempt.before),
         "after": _texts(attempt.after),
+        "successful": successful,
     }
 
 
@@ -165,17 +224,25 @@ def _text(step: Step) -> str:
 
 def open_context(job: Job) -> Context:
     """Homes, built when first asked for, and how to augment."""
-    return Context(job.settings)
+    return Context(job.settings, job.plan)
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """What the user laid over our knowledge and homes."""
-    return overlays(settings)
+    """What the user laid over our knowledge and homes, which homes are left out, and how many pairs fall to each."""
+    plan = overlays(settings)
+    if settings.homes:
+        homes = Homes(settings)
+        plan["left_out"] = sorted(set(homes.catalog()) - set(homes.names()))
+    manifest = read_manifest(settings.folder("sample"))
+    if settings.target and manifest is not None:
+        each = settings.target * ALLOWANCE / max(1, manifest.counts.tally["executable"])
+        plan["each"] = round(min(each, settings.variants), 4)
+    return plan
 
 
 STAGE = Stage(
     name="augment",
-    tables={"": CASE},
+    tables={"": CASE, "attempts": TRIED, "sketches": SKETCHED},
     process=process,
     reads=("sample",),
     uses=(
@@ -188,11 +255,12 @@ STAGE = Stage(
         "pipelines/cases.py",
         "pipelines/handlers",
         "pipelines/repairing.py",
+        "pipelines/sketching.py",
     ),
-    settings=("seed", "probability", "variants", "tries"),
+    settings=("seed", "probability", "variants", "target", "tries"),
     open=open_context,
     prepare=prepare,
-    select=lambda record, plan: bool(record["executable"]),
+    select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
-    tally=lambda row: f"{len(row['repairs'])} repairs",
+    tally=lambda row: f"{len(row['repairs'])} repairs" if "repairs" in row else None,
 )

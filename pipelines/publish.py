@@ -53,7 +53,10 @@ def _rows(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
     yield "environments", {**_shared("environments", case), **differs}
     yield "executions", _shared("executions", case)
     for repair in case["repairs"]:
-        yield "repairs", {**_shared("repairs", case), **{field.name: repair[field.name] for field in REPAIR}}
+        yield (
+            "repairs",
+            {**_shared("repairs", case), "outcome": "REPAIRED", **{field.name: repair[field.name] for field in REPAIR}},
+        )
 
 
 def _shared(table: str, case: Record) -> Row:

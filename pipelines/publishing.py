@@ -60,6 +60,9 @@ def finish(job: Job, counts: Counts) -> None:
     }
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
+    in_vain = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
+    write_rows(in_vain, TABLES["repairs"], _in_vain(job))
+    counts.rows["repairs"] += pq.read_metadata(in_vain).num_rows
     _copy_pictures(job)
     write_card(job.folder)
     write_croissant(job.folder)
@@ -172,12 +175,20 @@ def _activities(job: Job) -> _Told:
 
 
 def _sketches(job: Job) -> Iterator[Row]:
-    """What was ingested as sketches: the program each is of goes by the id of its description column."""
+    """What was inferred or inherited; what people drew, of which the program goes by the id of its description."""
+    for path in _parts(job, "augment", "sketches"):
+        yield from read_rows(path)
     for path in _parts(job, "ingest"):
         for row in read_rows(path, ["kind", "description_id", "keep", "text"]):
             if row["kind"] == "sketch":
                 steps = row["text"].splitlines()
-                yield {"program_id": row["description_id"], "keep": row["keep"], "steps": steps}
+                yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
+
+
+def _in_vain(job: Job) -> Iterator[Row]:
+    """Repairs that gave no program."""
+    for path in _parts(job, "augment", "attempts"):
+        yield from read_rows(path)
 
 
 def _manifest(job: Job, stage: str) -> Manifest:
@@ -186,9 +197,11 @@ def _manifest(job: Job, stage: str) -> Manifest:
     return manifest
 
 
-def _parts(job: Job, stage: str) -> Iterator[Path]:
+def _parts(job: Job, stage: str, table: str = "") -> Iterator[Path]:
+    """The parts of one of a stage's tables."""
+    folder = job.settings.folder(stage)
     for part in _manifest(job, stage).parts:
-        yield from (job.settings.folder(stage) / file for file in part["files"])
+        yield from (folder / file for file in part["files"] if (folder / file).parent == folder / table)
 
 
 def _used_homes(job: Job) -> list[str]:

@@ -62,6 +62,29 @@ class Repaired:
     failure: Failure | None = None
 
 
+def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:
+    """Which of one program's attempts helped: something was changed, and what it was for did not come back at once.
+
+    Args:
+        attempts: in order.
+        failure: why the program was given up after the last of them; None if it was not.
+    """
+    later = [_trouble_of(attempt.failure) for attempt in attempts[1:]]
+    last = (None if failure is None else _trouble_of(attempts[-1].failure)) if attempts else None
+    return (
+        tuple(
+            bool(attempt.after) and _trouble_of(attempt.failure) != following
+            for attempt, following in zip(attempts, (*later, last), strict=True)
+        )
+        if attempts
+        else ()
+    )
+
+
+def _trouble_of(failure: Failure) -> tuple[object, ...]:
+    return (failure.code, failure.action, failure.objects, failure.expected)
+
+
 class _Task(NamedTuple):
     """What a program is repaired for: its goal, said of these nodes."""
 
@@ -88,6 +111,7 @@ def repair(
     rules: Rules = DEFAULT,
     handlers: Mapping[Code, Handler] = HANDLERS,
     tries: int = TRIES,
+    canonical_only: bool = True,
 ) -> Repaired:
     """Repair a program until it runs and reaches its goal.
 
@@ -98,9 +122,10 @@ def repair(
         knowledge, rules: what the world goes by.
         handlers: what to do about each failure.
         tries: repairs at most.
+        canonical_only: take out of the repaired program what it does not need; costs more than the repairs.
 
     Returns:
-        The repaired program, canonical. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
+        The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
         repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
     """
     draft = _Draft(program, tuple(range(len(program.steps))), run(world, program, rules))
@@ -123,8 +148,8 @@ def repair(
         if draft.program.steps in seen:
             return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
         seen.add(draft.program.steps)
-    if not attempts:
-        return Repaired(program, draft.execution, (), draft.sources)
+    if not attempts or not canonical_only:
+        return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources)
     trimmed, sources = canonical.trim(program, draft.execution, draft.sources, goal, rules)
     return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
 

@@ -121,14 +121,14 @@ def _clear(folder: Path) -> None:
 
 
 def input_partitions(job: Job) -> Iterator[Partition]:
-    """The parts of the stages that a stage reads, one partition each."""
+    """The parts of the stages that a stage reads, one partition each; of several tables, those of the first."""
     number = 0
     for name in job.stage.reads:
         folder = job.settings.folder(name)
         manifest = read_manifest(folder)
         assert manifest is not None
         for part in manifest.parts:
-            (file,) = part["files"]
+            file = part["files"][0]
             yield Partition(number, manifest.content["files"][file]["sha256"], str(folder / file), part["rows"])
             number += 1
 

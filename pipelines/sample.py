@@ -24,6 +24,7 @@ from hearth.pipelines.stage import Job, Record, Stage
 from hearth.pipelines.surroundings import DERIVED, RULES, USES, Homes, overlays
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
+from hearth.schemas.rng import rng
 from hearth.schemas.tables import CASE, VALIDATED
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
@@ -42,6 +43,7 @@ class Context(NamedTuple):
     homes: Homes
     names: tuple[str, ...]
     seed: int
+    each: int = 0
 
 
 def process(record: Record, context: Context) -> Iterator[Row | Reject]:
@@ -53,7 +55,16 @@ def process(record: Record, context: Context) -> Iterator[Row | Reject]:
     conditions = infer(program, context.homes.knowledge)
     if isinstance(conditions, Failure):
         return iter([failed(conditions, program, record["place"], f"in {name}") for name in context.names[:1]])
-    return _once([_sampled(record, program, conditions, name=name, context=context) for name in context.names])
+    names = _chosen(record["program_id"], context)
+    return _once([_sampled(record, program, conditions, name=name, context=context) for name in names])
+
+
+def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
+    """All homes, or so many of them drawn for each program, in the homes' order."""
+    if not 0 < context.each < len(context.names):
+        return context.names
+    drawn = rng(context.seed, "homes", program_id).sample(context.names, context.each)
+    return tuple(name for name in context.names if name in drawn)
 
 
 def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
@@ -178,7 +189,7 @@ def _starts(name: str, parts: Iterable[Path]) -> Iterator[Row]:
 
 def open_homes(job: Job) -> Context:
     """Homes, built when first asked for."""
-    return Context(Homes(job.settings), tuple(job.plan["homes"]), job.settings.seed)
+    return Context(Homes(job.settings), tuple(job.plan["homes"]), job.settings.seed, job.settings.homes_each)
 
 
 STAGE = Stage(
@@ -187,7 +198,7 @@ STAGE = Stage(
     process=process,
     reads=("validate",),
     uses=(*USES, "grounding", "pipelines/sample.py", "pipelines/cases.py", "pipelines/derived.py"),
-    settings=("seed",),
+    settings=("seed", "homes_each"),
     open=open_homes,
     prepare=prepare,
     begin=derive_homes,

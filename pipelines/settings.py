@@ -22,6 +22,8 @@ class Settings:
         salt: hashed with worker ids; by default derived from the sources, so that it is never published.
         probability: of perturbing each precondition (thesis 5.5.4).
         variants: perturbed environments to make for each execution, at most.
+        target: augmented programs wanted in all; 0 for as many as `variants` gives.
+        homes_each: homes to sample each program in, drawn from `homes`; 0 for all of them.
         tries: repairs of one program, at most.
         pictures: how many executions to film.
     """
@@ -36,6 +38,8 @@ class Settings:
     salt: str | None = None
     probability: float = 0.7
     variants: int = 3
+    target: int = 0
+    homes_each: int = 0
     tries: int = 20
     pictures: int = 3
 

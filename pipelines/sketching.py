@@ -70,11 +70,16 @@ def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
 def _smallest(
     program: Program, environments: Sequence[Environment], goal: Postconditions, passed: Postconditions
 ) -> Keep:
+    """Tried in the first environment alone; in all of them if what that gives is not enough in the others."""
     keep = [True] * len(program.steps)
-    for number, step in enumerate(program.steps):
-        if step.action in REPLACEABLE:
-            keep[number] = False
-            keep[number] = not _suffices(keep, environments, goal, passed)
+    for tried in (environments[:1], environments):
+        keep = [True] * len(program.steps)
+        for number, step in enumerate(program.steps):
+            if step.action in REPLACEABLE:
+                keep[number] = False
+                keep[number] = not _suffices(keep, tried, goal, passed)
+        if _suffices(keep, environments[len(tried) :], goal, passed):
+            break
     return tuple(keep)
 
 
@@ -84,7 +89,9 @@ def _suffices(
     for environment in environments:
         steps = [step for step, kept in zip(environment.program.steps, keep, strict=True) if kept]
         rest = environment.program.with_steps(steps)
-        done = repair(rest, environment.world, goal, environment.base.knowledge, handlers=_EXPANDING)
+        done = repair(
+            rest, environment.world, goal, environment.base.knowledge, handlers=_EXPANDING, canonical_only=False
+        )
         if done.failure is not None or not _passes(environment, done.execution, passed):
             return False
     return True

@@ -65,6 +65,12 @@ class Homes:
             catalog.load_graph(name, self._settings.homes_folder)
         return self._settings.homes or catalog.names(self._settings.homes_folder)
 
+    def catalog(self) -> tuple[str, ...]:
+        """All homes that come with us, or are laid over ours."""
+        from hearth.simulation.homes import catalog
+
+        return catalog.names(self._settings.homes_folder)
+
     def in_catalog(self, name: str) -> bool:
         """Whether a home is one of the catalog's."""
         from hearth.simulation.homes import catalog

@@ -90,7 +90,9 @@ REPAIR: Final = _struct(
     handler=TEXT,
     before=TEXTS,
     after=TEXTS,
+    successful=pa.bool_(),
 )
+"""One repair; successful when the failure it is for did not come back at once."""
 
 # What the stages pass on
 
@@ -162,6 +164,25 @@ CASE: Final = pa.schema(
     ]
 )
 """A program in an environment, run: what sample and augment write, and render and publish read."""
+
+_TRIED = [
+    *[CASE.field(name) for name in ("parent_id", "home", "perturbations")],
+    _column("outcome", TEXT, "REPAIRED, or why no program came of repairing: DUPLICATE, NO_HANDLER, LOOP, ..."),
+    *[_column(field.name, field.type, f"repair: {field.name}") for field in REPAIR],
+]
+
+TRIED: Final = pa.schema(_TRIED)
+"""Repairs that gave no program of their own: what augment writes besides."""
+
+SKETCHED: Final = pa.schema(
+    [
+        _column("program_id", TEXT, "the program"),
+        _column("origin", TEXT, "people, inferred, or inherited from the program's parent"),
+        _column("keep", pa.list_(pa.bool_()), "for each step, whether the sketch keeps it"),
+        _column("steps", TEXTS, "the kept steps, as text"),
+    ]
+)
+"""Sketches (thesis 5.5.1)."""
 
 RENDERED: Final = pa.schema(
     [
@@ -264,9 +285,9 @@ TABLES: Final[dict[str, pa.Schema]] = {
         *_of(CASE, "executable", "failure", "reproduces"),
     ),
     "repairs": _published(
-        _column("program_id", TEXT, "the repaired program"),
-        *_of(CASE, "parent_id", "execution_id", "environment_id", "home", "perturbations"),
-        *[_column(field.name, field.type, f"repair: {field.name}") for field in REPAIR],
+        _column("program_id", TEXT, "the repaired program; null where no program came of it"),
+        *_of(CASE, "execution_id", "environment_id"),
+        *_TRIED,
     ),
     "splits": _published(
         _column("split", TEXT, "activities, homes_1_4 or homes_1_5; splits.json says what they mean"),
@@ -274,11 +295,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
         _column("program_id", TEXT, "its program"),
         _column("part", TEXT, "train, validation, test...; none where the split has no place for it"),
     ),
-    "sketches": _published(
-        _column("program_id", TEXT, "the program"),
-        _column("keep", pa.list_(pa.bool_()), "for each step, whether the sketch keeps it"),
-        _column("steps", TEXTS, "the kept steps, as text"),
-    ),
+    "sketches": _published(*SKETCHED),
     "frames": _published(*RENDERED, _column("home", TEXT, "where it was filmed")),
     "vocabulary": _published(
         _column("kind", TEXT, "action, class, state, property, relation or failure"),

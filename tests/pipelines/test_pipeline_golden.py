@@ -119,4 +119,18 @@ def test_the_ledger_adds_up_from_stage_to_stage(out):
     assert told["validate"]["records_in"] == told["ingest"]["tally"]["program"]
     assert told["sample"]["records_in"] == told["validate"]["through"]
     assert told["augment"]["records_in"] == told["sample"]["tally"]["executable"]
-    assert told["publish"]["records_in"] == sum(told["sample"]["rows"].values()) + sum(told["augment"]["rows"].values())
+    assert told["publish"]["records_in"] == sum(told["sample"]["rows"].values()) + told["augment"]["rows"][""]
+
+
+def test_augment_keeps_sketches_and_what_was_tried_in_vain(out):
+    programs = {row["program_id"]: row for row in [*read(out / "sample"), *read(out / "augment")]}
+    sketches = {row["program_id"]: row for row in read(out / "publish" / "sketches")}
+    assert set(sketches) >= {row["program_id"] for row in read(out / "augment")}
+    for row in sketches.values():
+        assert len(row["keep"]) == len(programs[row["program_id"]]["steps"]) and sum(row["keep"]) == len(row["steps"])
+        parent = programs[row["program_id"]]["parent_id"]
+        assert row["origin"] == ("inherited" if parent else "inferred")
+        assert not parent or set(row["steps"]) <= set(sketches[parent]["steps"])
+    repairs = read(out / "publish" / "repairs")
+    assert len([row for row in repairs if row["outcome"] != "REPAIRED"]) == len(read(out / "augment" / "attempts"))
+    assert all(row["parent_id"] in programs for row in repairs)
