@@ -1,5 +1,7 @@
 """`render-program` and `render-sheet`, through typer's runner."""
 
+import json
+
 import pytest
 
 pytest.importorskip("open3d")
@@ -21,3 +23,21 @@ def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
     assert "002.auto.instance_ids.png" in names
     assert png.decode((tmp_path / "out/001.top.rgb.png").read_bytes()).shape == (48, 64, 3)
     assert png.decode((tmp_path / "out/sheet.png").read_bytes()).shape[1] > 3 * 64
+
+
+@pytest.mark.slow
+def test_a_program_becomes_a_video_that_a_page_plays(tmp_path):
+    file = tmp_path / "sit.txt"
+    file.write_text("Sit\nRest\n\n\n[Walk] <couch> (1)\n[Sit] <couch> (1)\n")
+    command = ["program", str(file), "--out", str(tmp_path / "out"), "--width", "48", "--mode", "video", "--fps", "5"]
+    result = CliRunner().invoke(app, [*command, "--cameras", "top", "--json"])
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    (video,) = told["videos"]
+    assert told["pictures"] == video["frames"]
+    assert [step["tick"] for step in video["steps"]] == [0, 1, 2]
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"top.webm", "top.mp4", "top.html", "steps.json", "sheet.png"}
+    assert "top.webm" in (tmp_path / "out/top.html").read_text()
+    refused = CliRunner().invoke(app, [*command, "--cameras", "attic"])
+    assert refused.exit_code != 0

@@ -1,4 +1,4 @@
-"""Films: people walk on the floor and not on furniture, feet stay put, things change when hands arrive, time adds up."""
+"""Films: people walk around furniture, feet stay put, things change when hands arrive, time adds up."""
 
 import re
 from itertools import pairwise
@@ -103,12 +103,9 @@ def test_the_cup_changes_hands_when_the_hand_is_there(shown):
     on_shelf = [frame for frame in grabbing if frame.scene.find(CUP).position[0] == pytest.approx(-1.8)]
     assert 0 < len(on_shelf) < len(grabbing)
     hand = on_shelf[-1].actors[0].hand("right")
-    assert hypot(hand[0] + 1.8, hand[1] - 0.93, ) < 0.2  # fmt: skip
+    assert hypot(hand[0] + 1.8, hand[1] - 0.93) < 0.2
     held = grabbing[-1]
-    assert (
-        sum((a - b) ** 2 for a, b in zip(held.scene.find(CUP).position, held.actors[0].hand("right"), strict=True))
-        < 0.05
-    )
+    assert np.linalg.norm(np.subtract(held.scene.find(CUP).position, held.actors[0].hand("right"))) < 0.22
 
 
 def test_the_way_leads_around_and_through_doors():
@@ -131,7 +128,7 @@ def test_the_way_leads_around_and_through_doors():
 def test_films_are_written_with_the_times_of_their_steps(staged, tmp_path):
     done = record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=5.0)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["auto.mp4", "auto.webm"]
-    assert done.steps[2]["steps"] == ["[Grab] <cup> (1)"] or "Grab" in done.steps[2]["steps"][0]
+    assert "[Grab] <cup>" in done.steps[2]["steps"][0]
     assert all(step["cameras"] for step in done.steps)
     assert len(done.moments) == 8
     import cv2
