@@ -78,6 +78,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Look around": {
         "kb": Entry("kb:app", "What is known of actions and objects."),
         "home": Entry("home:app", "The homes: list, show and check them."),
+        "environment": Entry("environment:app", "What programs need, and how realistic what is sampled is."),
         "doctor": Entry("doctor:doctor", "Say what is there, what is missing and what it costs."),
     },
 }

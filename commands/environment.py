@@ -1,0 +1,179 @@
+"""`environment`: what programs need, and how realistic and varied what is sampled for them is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hearth.commands import inputs, output
+
+if TYPE_CHECKING:
+    from hearth.pipelines.surroundings import Homes as AllHomes
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    help="What programs need of a home, and how realistic and varied sampled environments are.",
+)
+
+Source = Annotated[Path, typer.Argument(metavar="SOURCE", help="Programs: a release, a folder or a file.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
+Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
+Names = Annotated[list[str] | None, typer.Option("--home", metavar="NAME", help="In this home; all of them if none.")]
+
+
+@app.command()
+def conditions(file: inputs.File, kb: inputs.Kb = None, as_json: output.Json = False) -> None:
+    """What a program needs at its start, step by step, beside what the release's own rules would name.
+
+    \b
+    Example:
+      python cli.py environment conditions watch_tv.txt
+    """
+    from hearth.grounding.preconditions import at_odds, infer
+    from hearth.grounding.release_rules import compare
+    from hearth.schemas.failures import Failure
+    from hearth.schemas.syntax import print_step
+
+    known = inputs.read_knowledge(kb)
+    program = inputs.read_program(file, known)
+    found = infer(program, known)
+    if isinstance(found, Failure):
+        steps = [
+            {"step": n + 1, "line": program.line(n), "text": print_step(program.steps[n])}
+            for n in at_odds(program, known)
+        ]
+        if as_json:
+            output.emit({"impossible": found.message(), "steps": steps})
+        else:
+            print(found.message())
+            for step in steps:
+                print(f"  step {step['step']}, line {step['line']}: {step['text']}")
+        output.status(1, strict=True)
+        return
+    ours = [{"step": c.step + 1, "condition": str(c), "needed": c.hard} for c in found]
+    theirs = [{"condition": str(c.condition), "ours": c.ours, "why": c.why} for c in compare(program, found, known)]
+    if as_json:
+        output.emit({"conditions": ours, "release_rules": theirs})
+        return
+    output.table(("step", "condition", "because"), [
+        (o["step"], o["condition"], "the step needs it" if o["needed"] else "its author takes it for granted")
+        for o in ours])  # fmt: skip
+    print()
+    output.table(("by the release's rules", "among ours"), [(t["condition"], t["why"] or "yes") for t in theirs])
+
+
+@app.command()
+def realism(
+    source: Source,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Gets two heat maps, as SVG.")] = None,
+    home: Names = None,
+    homes: inputs.Homes = None,
+    seed: Seed = 0,
+    limit: Limit = None,
+    as_json: output.Json = False,
+) -> None:
+    """Where sampled objects are, beside where a release's stored start graphs have them (figure B-4), and their states.
+
+    The distance of two distributions is 0 when they are alike and 1 when they have nothing in common.
+
+    \b
+    Example:
+      python cli.py environment realism release.zip --out realism
+    """
+    from hearth.pipelines import realism as report
+
+    found = _homes(home, homes)
+    theirs, their_states = report.observed(source, found.knowledge, limit)
+    ours, our_states = report.sampled(source, found, found.names(), seed, limit)
+    places, states = report.distances(theirs, ours), report.distances(their_states, our_states)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "release.svg").write_text(report.heat_map(theirs, "Start graphs of the release"), encoding="utf-8")
+        (out / "sampled.svg").write_text(report.heat_map(ours, "Sampled environments"), encoding="utf-8")
+    told = {"places": report.overall(places), "states": report.overall(states)}
+    if as_json:
+        output.emit({**told, "places_by_class": places, "states_by_class": states, "files": out})
+        return
+    for what, by_class in (("places", places), ("states", states)):
+        output.table((what, "distance", "in the release", "sampled"), [(k, *row) for k, row in by_class.items()])
+        print(f"{what}: {told[what]} on average\n")
+
+
+@app.command()
+def diversity(
+    file: inputs.File,
+    home: inputs.HomeName = "maple",
+    homes: inputs.Homes = None,
+    samples: Annotated[int, typer.Option("--samples", metavar="N", min=1, help="Environments drawn.")] = 1000,
+    seed: Seed = 0,
+    as_json: output.Json = False,
+) -> None:
+    """How many different environments there are among so many samples of one program.
+
+    \b
+    Example:
+      python cli.py environment diversity watch_tv.txt --home maple --samples 1000
+    """
+    from hearth.pipelines import realism as report
+
+    found = _homes([home], homes)
+    found.names()
+    told = report.diversity(inputs.read_program(file, found.knowledge), found, home, samples, seed)
+    if as_json:
+        output.emit({"home": home, **told})
+    else:
+        output.table(("figure", "value"), [(name.replace("_", " "), str(value)) for name, value in told.items()])
+
+
+@app.command()
+def preconditions(
+    source: Source,
+    classes: Annotated[
+        list[str] | None, typer.Option("--class", metavar="NAME", help="cup and sauce_pan if none.")
+    ] = None,
+    dataset: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Stages' folder: counts augmented programs' too.")
+    ] = None,
+    limit: Limit = None,
+    as_json: output.Json = False,
+) -> None:
+    """How the preconditions about some classes are distributed, before and after augmenting (figure 5-4).
+
+    \b
+    Example:
+      python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
+    """
+    from hearth.kb.knowledge import default
+    from hearth.pipelines import realism as report
+
+    names = classes or ["cup", "sauce_pan"]
+    groups = {"programs": report.of_programs(source, default(), names, limit)}
+    for stage in ("sample", "augment"):
+        if dataset is not None and (dataset / stage).is_dir():
+            groups[stage] = report.of_cases(dataset / stage, names)
+    if as_json:
+        output.emit(
+            {group: {name: dict(sorted(c.items())) for name, c in found.items()} for group, found in groups.items()}
+        )
+        return
+    for name in names:
+        print(name)
+        for group, found in groups.items():
+            _bars(group, found[name])
+
+
+def _bars(group: str, counts: Any) -> None:
+    """One bar a condition, as long as its share."""
+    total = counts.total()
+    for condition, count in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
+        print(f"  {group:10} {condition:12} {'#' * round(40 * count / total):40} {count:,}")
+
+
+def _homes(names: list[str] | None, folder: Path | None) -> AllHomes:
+    from hearth.pipelines.settings import Settings
+    from hearth.pipelines.surroundings import Homes
+
+    return Homes(Settings(homes=tuple(names or ()), homes_folder=str(folder) if folder else None))
