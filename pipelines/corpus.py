@@ -7,7 +7,6 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
@@ -92,7 +91,7 @@ def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
         HearthError: a source is missing or of no known form.
     """
     corpus = Corpus()
-    for _, item in items(labelled(map(_dataset, paths))):
+    for _, item in items(labelled(paths)):
         read = READERS[item.reader](item, "")
         for row in [read] if isinstance(read, dict | Reject) else read:
             if isinstance(row, Reject):
@@ -102,12 +101,6 @@ def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
             elif row["kind"] == "description":
                 corpus.descriptions[row["description_id"]] = row["description"]
     return corpus
-
-
-def _dataset(path: str) -> str:
-    """The dataset of a build's folder, where it is one."""
-    inside = Path(path) / "publish"
-    return str(inside) if (inside / "manifest.json").exists() else path
 
 
 def _take(corpus: Corpus, row: dict[str, Any], known: Knowledge) -> None:

@@ -68,8 +68,9 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
     if path.is_file():
         yield from _named_file(path, label)
         return
-    if published.names_it(path):
-        yield Recognised(path, label, published.NAME)
+    dataset = next((folder for folder in (path, path / "publish") if published.names_it(folder)), None)
+    if dataset:
+        yield Recognised(dataset, label, published.NAME)
         return
     files = [file.relative_to(path).as_posix() for file in walk(path)]
     if any(map(release.names_it, files)):

@@ -79,7 +79,7 @@ def test_a_record_of_the_wrong_shape_is_a_reject(write, value):
 
 
 def test_a_published_dataset_is_read_back(made, build_folder, tmp_path):
-    again = build_folder(tmp_path / "again", [made.out / "publish"])
+    again = build_folder(tmp_path / "again", [made.out])
     again.run("ingest", "validate")
     programs = {row["program_id"]: row for row in made.rows("validate")}
     published = {
