@@ -115,7 +115,7 @@ def play(
     knowledge: Knowledge | None = None,
 ) -> Play:
     """All moments of an execution at once; see `moments`."""
-    _check_geometry(home)
+    check_geometry(home)
     prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
     found = list(_played(execution, home, prepared, seed))
     still = _still([moment.scene for moment in found])
@@ -128,7 +128,12 @@ def _parted(moment: Moment, still: tuple[Thing, ...], kept: frozenset[Thing]) ->
     return replace(moment, scene=replace(moment.scene, things=moving, still=still))
 
 
-def _check_geometry(home: EnvironmentGraph) -> None:
+def check_geometry(home: EnvironmentGraph) -> None:
+    """Refuse a home that can't be pictured.
+
+    Raises:
+        HearthError: no room has a box.
+    """
     if not any(node.box and node.category == ROOM_CATEGORY for node in home.nodes):
         raise HearthError.of(
             Code.NOT_RENDERED, "the home has no geometry: no room has a box", suggestion="a designed home"
@@ -155,11 +160,11 @@ def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed:
             actors = cast(graph, ground, places, seed)
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
         else:
-            actors, places = _advanced(actors, places, graph, ground, steps)
-        yield Moment(tick, steps, _scene(prepared, places, actors), actors, places)
+            actors, places = advanced(actors, places, graph, ground, steps)
+        yield Moment(tick, steps, scene_at(prepared, places, actors), actors, places)
 
 
-def _advanced(
+def advanced(
     actors: tuple[Actor, ...], places: Places, graph: EnvironmentGraph, ground: Ground, steps: tuple[Step, ...]
 ) -> tuple[tuple[Actor, ...], Places]:
     """Everyone and everything after a tick."""
@@ -175,7 +180,8 @@ def _advanced(
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
 
 
-def _scene(prepared: Stage, places: Places, actors: tuple[Actor, ...]) -> Scene:
+def scene_at(prepared: Stage, places: Places, actors: tuple[Actor, ...]) -> Scene:
+    """The scene of a moment, with what hands hold in the hands."""
     held = carried(actors, places)
     nodes = [replace(n, box=held[n.id].box, yaw=held[n.id].yaw) if n.id in held else n for n in places.nodes()]
     figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
@@ -206,7 +212,7 @@ def snapshots(
     Raises:
         HearthError: the home has no geometry, open3d is missing, or a modality is unknown.
     """
-    _check_geometry(home)
+    check_geometry(home)
     wanted = tuple(modalities)
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}

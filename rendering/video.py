@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from math import cos, radians, sin
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -187,17 +188,22 @@ def _holds(box: Box, spot: tuple[float, float]) -> bool:
     return all(abs(spot[k] - box.center[2 * k]) <= box.size[2 * k] / 2 for k in (0, 1))
 
 
-def first_person(actor: Actor, size: tuple[int, int]) -> Camera:
-    """What someone sees: from between the eyes, along the gaze, so that it looks down at what the hands do."""
+def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
+    """What someone sees: from between the eyes, along the gaze; `pitch` degrees down where there is nothing to look at.
+
+    Looking down a little, one sees one's hands and what they hold.
+    """
     found = actor.figure().joints()
     head, face = found["head"], found["face"]
     way = (face - head) / np.linalg.norm(face - head)
+    if actor.stance.gaze is None and actor.stance.posture != "lying":
+        way = np.array((0.0, -sin(radians(pitch)), cos(radians(pitch))))
     eye = head + way * 0.13
     target = eye + way
     near, far = (actor.world((float(p[0]), float(p[1]), float(p[2]))) for p in (eye, target))
     if abs(far[0] - near[0]) + abs(far[2] - near[2]) < 1e-3:
         far = (far[0] + 0.01, far[1], far[2])
-    return look_at(FIRST, near, far, *size, fov=75.0)
+    return look_at(FIRST, near, far, *size, fov=82.0)
 
 
 def times(found: Sequence[Span]) -> list[dict[str, Any]]:

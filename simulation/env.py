@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, overload
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -47,9 +48,11 @@ class Env:
         partial: whether agents see only what is around them.
         world: as it is now.
         ticks: what happened since `reset`.
+        eyes: what takes pictures for `observe` (`hearth.rendering.eyes.Eyes`); none at first.
     """
 
     world: World
+    eyes: Callable[[Env, int, tuple[str, ...]], Mapping[str, Any]] | None = None
 
     def __init__(self, rules: Rules = DEFAULT, partial: bool = True) -> None:
         self.rules = rules
@@ -89,13 +92,23 @@ class Env:
         self.ticks.append(tick)
         return tick
 
-    def observe(self, agent: int = 0) -> View:
-        """What an agent sees now.
+    @overload
+    def observe(self, agent: int = 0) -> View: ...
+    @overload
+    def observe(self, agent: int, modality: str, /, *more: str) -> Mapping[str, Any]: ...
+
+    def observe(self, agent: int = 0, *modalities: str) -> View | Mapping[str, Any]:
+        """What an agent sees now: facts, or, where modalities are named (`rgb`, `depth`, ...), pictures by modality.
 
         Raises:
-            HearthError: UNKNOWN_AGENT.
+            HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and the environment has no eyes.
         """
         self._check(agent)
+        if modalities:
+            if self.eyes is None:
+                remedy = "env.eyes = hearth.rendering.eyes.Eyes(home)"
+                raise HearthError.of(Code.NOT_RENDERED, "the environment has no eyes", suggestion=remedy)
+            return self.eyes(self, agent, modalities)
         return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))
 
     def legal(self, agent: int = 0, *, only_visible: bool | None = None, only_reachable: bool = False) -> Legal:
