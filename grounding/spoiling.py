@@ -71,10 +71,10 @@ def full_hands(draft: Draft, condition: Condition) -> None:
     """The character's hands hold things of no concern to the program."""
     me = draft.base.character
     taken = {edge.relation for edge in draft.added if edge.source == me}
-    names = [name for name, _, _ in draft.base.fillers.choices]
+    fillers = draft.base.fillers.choices
     for hand in ("HOLDS_RH", "HOLDS_LH"):
-        if hand not in taken and names:
-            node_id = draft.add(draft.rng.choice(names), -1)
+        if hand not in taken and fillers:
+            node_id = draft.add(draft.rng.choice(fillers)[0], -1)
             draft.added.append(Edge(me, hand, node_id))
             draft.close(me, node_id)
 

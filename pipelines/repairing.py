@@ -145,9 +145,10 @@ def repair(
             return _given_up(draft, attempts, trouble, Code.HANDLER_ERROR if refusal else code, refusal)
         draft = _edited(draft, edit, rules)
         attempts.append(_attempt(attempts, trouble, edit.name, draft.program.steps))
-        if draft.program.steps in seen:
-            return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
+        tried = len(seen)
         seen.add(draft.program.steps)
+        if len(seen) == tried:
+            return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
     if not attempts or not canonical_only:
         return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources)
     trimmed, sources = canonical.trim(program, draft.execution, draft.sources, goal, rules)

@@ -1,0 +1,89 @@
+"""How many programs a second are perturbed, placed, run and repaired on one core, and how many can be repaired.
+
+    python benchmarks/augment_speed.py [SOURCE...] [--programs N] [--pairs N]
+
+Processor time; homes, knowledge and reading are not counted, sampling the original's own environment is. The embedded
+corpus, and the release's sample where there is one (HEARTH_REAL_DATA, else ../shared/real).
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import os
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from time import process_time
+
+from hearth.grounding.base import prepared
+from hearth.kb.knowledge import default
+from hearth.pipelines.augment_figures import GIVEN_UP
+from hearth.pipelines.augmenting import Options, augment
+from hearth.pipelines.build import corpus
+from hearth.pipelines.rehearsal import Script, scripts
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.failures import Code, Failure
+from hearth.simulation.home import Home
+from hearth.simulation.homes import catalog
+
+ROOT = Path(__file__).resolve().parents[1]
+REAL = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real")) / "activityprograms-sample.zip"
+GOAL = 400
+"""Programs a second on one core."""
+
+
+def measure(programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> tuple[Counter[str], float]:
+    """What became of all pairs, by code (`""` for a new program), and the seconds it took."""
+    outcomes: Counter[str] = Counter()
+    options = Options(pairs)
+    began = process_time()
+    for number, script in enumerate(programs):
+        found = augment(script.program, homes[number % len(homes)], 0, script.program_id, options)
+        if isinstance(found, Failure):
+            outcomes[f"not sampled: {found.code}"] += 1
+            continue
+        outcomes.update("" if pair.failure is None else str(pair.failure.code) for pair in found.pairs)
+    return outcomes, process_time() - began
+
+
+def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> None:
+    """Measure and print."""
+    measure(programs[:20], homes, pairs)
+    gc.collect()
+    gc.freeze()
+    outcomes, seconds = measure(programs, homes, pairs)
+    sampled = Counter({code: count for code, count in outcomes.items() if not code.startswith("not sampled")})
+    repaired = sampled[""] + sampled[str(Code.DUPLICATE)]
+    needed = repaired + sum(sampled[str(code)] for code in GIVEN_UP)
+    told = ", ".join(f"{code} {count}" for code, count in outcomes.most_common() if code)
+    print(f"{name}: {len(programs)} programs, {sampled.total()} pairs in {seconds:.2f} s of processor")
+    print(f"  {sampled.total() / seconds:.0f} pairs a second, {sampled[''] / seconds:.0f} new programs (goal {GOAL})")
+    print(
+        f"  repaired {repaired} of {needed}: {repaired / max(1, needed):.2%}; new programs {sampled['']}; {told or '-'}"
+    )
+
+
+def main() -> None:
+    """Read the sources and report on each."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sources", nargs="*", type=Path)
+    parser.add_argument("--programs", type=int, default=300)
+    parser.add_argument("--pairs", type=int, default=5)
+    asked = parser.parse_args()
+    known = default()
+    homes = [Home.from_graph(catalog.load_graph(name), name, known) for name in catalog.names()]
+    for home in homes:
+        prepared(home)
+    given = {str(path): [str(path)] for path in asked.sources}
+    for name, sources in (given or {"corpus": list(corpus()), "release sample": [str(REAL)]}).items():
+        if not all(Path(source).exists() for source in sources):
+            print(f"{name}: skipped, there is no {sources[0]}")
+            continue
+        found = [one for one in scripts(sources, known) if not isinstance(one, Reject)]
+        step = max(1, len(found) // asked.programs)
+        report(name, found[::step][: asked.programs], homes, asked.pairs)
+
+
+if __name__ == "__main__":
+    main()
