@@ -243,6 +243,72 @@ def _said(summary: Summary) -> str:
     return text
 
 
+@app.command("dataset")
+def dataset(
+    folder: Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")],
+    file: File,
+    *,
+    split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
+    part: Annotated[str, typer.Option("--part", metavar="NAME", help="Of the split; `test` takes all tests.")] = "test",
+    match: Match = MatchName.BEST,
+    scope: Scope = ScopeName.EITHER,
+    instances: Instances = False,
+    seed: Seed = 0,
+    by: By = None,
+    as_json: output.Json = False,
+) -> None:
+    """Every score against a dataset: its programs are the references, its environments where programs run.
+
+    Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}; steps may be in words. Executions without a row are
+    missing predictions and score 0.
+
+    \b
+    Example:
+      python cli.py score dataset data_out mine.jsonl --split activities --by activity
+    """
+    from hearth.pipelines.dataset import Dataset
+    from hearth.pipelines.judging import judge
+    from hearth.scoring.evaluate import Options
+
+    options = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
+    scored = judge(Dataset.open(folder), file, split, part if split else "", options)
+    if as_json:
+        output.emit(_program_json(scored, options, by))
+    else:
+        _print_program(scored, options, by)
+
+
+@app.command("baselines")
+def baselines(
+    folder: Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")],
+    *,
+    split: Annotated[str, typer.Option("--split", metavar="NAME", help="Which split to learn from and test on.")] = (
+        "activities"
+    ),
+    seed: Seed = 0,
+    as_json: output.Json = False,
+) -> None:
+    """LCS of simple baselines on a dataset's split, beside the thesis's tables 4.4 and 4.5.
+
+    \b
+    Example:
+      python cli.py score baselines data_out
+    """
+    from hearth.pipelines.baselines import THESIS
+    from hearth.pipelines.baselines import baselines as run
+    from hearth.pipelines.dataset import Dataset
+
+    found = run(Dataset.open(folder), split, seed)
+    if as_json:
+        names = ("baseline", "action", "object", "step", "mean")
+        thesis = [dict(zip(names, row, strict=True)) for row in THESIS]
+        output.emit({"split": split, "here": [row._asdict() for row in found], "thesis": thesis})
+        return
+    output.table(["baseline", "action", "object", "step", "mean"], [*found, *THESIS])
+    if not found:
+        print("\nthe split has no original programs to learn from or to test on")
+
+
 @app.command("graphs")
 def graphs(
     predicted: Annotated[Path, typer.Argument(metavar="PREDICTED", help="The final graph after the prediction.")],

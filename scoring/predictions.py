@@ -113,13 +113,14 @@ def _program(row: Row, column: str, path: Path, reader: Reader, faults: list[Dia
 def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) -> Iterator[Diagnostic]:
     from difflib import get_close_matches
 
-    for row in rows:
-        if row.id not in known:
-            near = get_close_matches(row.id, known, n=1)
-            suggestion = f"did you mean `{near[0]}`?" if near else "ids are those of the references"
-            yield Diagnostic(
-                Code.UNKNOWN_ID, f"no reference has the id `{row.id}`", str(path), row.line, suggestion=suggestion
-            )
+    unknown = [row for row in rows if row.id not in known]
+    for number, row in enumerate(unknown):
+        # Looking for near ones takes long among many ids; what is not shown needs none.
+        near = get_close_matches(row.id, known, n=1) if number < SHOWN else []
+        suggestion = f"did you mean `{near[0]}`?" if near else "ids are those of the references"
+        yield Diagnostic(
+            Code.UNKNOWN_ID, f"no reference has the id `{row.id}`", str(path), row.line, suggestion=suggestion
+        )
 
 
 def _shortened(faults: Sequence[Diagnostic]) -> Iterator[Diagnostic]:

@@ -1,0 +1,107 @@
+"""Predictions scored against a dataset, and the baselines to beat."""
+
+from __future__ import annotations
+
+import json
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import hearth
+from hearth.exports.words import sentences
+from hearth.kb import knowledge as kb
+from hearth.pipelines.baselines import BASELINES, Example, baselines, nearest_description, random_sampling
+from hearth.pipelines.judging import chosen, judge, read_line
+from hearth.schemas.errors import HearthError
+from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.syntax import print_lines
+from hearth.scoring.evaluate import summarise
+from hearth.scoring.parse import parsability
+
+
+@pytest.fixture(scope="module")
+def ds(made):
+    return hearth.load(made.out)
+
+
+def programs(ds):
+    rows = ds.rows("SELECT execution_id, program_id FROM executions WHERE executable ORDER BY 1")[1]
+    return {execution_id: ds[program_id].program for execution_id, program_id in rows}
+
+
+def written(path, rows):
+    path.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return path
+
+
+def test_the_dataset_s_own_programs_are_perfect(ds, tmp_path):
+    rows = [{"id": name, "predicted": list(print_lines(program))} for name, program in programs(ds).items()]
+    found = summarise(judge(ds, written(tmp_path / "mine.jsonl", rows)))
+    assert (found.count, found.missing, found.incomparable) == (len(rows), 0, 0)
+    assert {name: value.mean for name, value in found.means.items()} == dict.fromkeys(found.means, 1.0)
+
+
+def test_steps_in_words_and_parquet(ds, tmp_path):
+    ids, lines = [], []
+    for name, program in programs(ds).items():
+        ids.append(name)
+        lines.append("\n".join(f"{n}. {text}" for n, text in enumerate(sentences(program, kb.default()), 1)))
+    pq.write_table(pa.table({"id": ids, "predicted": lines}), tmp_path / "mine.parquet")
+    found = summarise(judge(ds, tmp_path / "mine.parquet"))
+    assert found.means["lcs_step"].mean == 1.0
+    assert found.means["parsable"].mean == 1.0
+
+
+def test_missing_predictions_count_as_zero(ds, tmp_path):
+    name, program = next(iter(programs(ds).items()))
+    rows = [{"id": name, "predicted": list(print_lines(program))}]
+    found = summarise(judge(ds, written(tmp_path / "one.jsonl", rows)))
+    assert found.missing == found.count - 1 > 0
+    assert found.means["lcs_step"].mean == pytest.approx(1 / found.count)
+    assert found.means["executable"].mean == pytest.approx(1 / found.count)
+
+
+def test_only_a_part_of_a_split(ds, tmp_path):
+    rows = [{"id": name, "predicted": []} for name in programs(ds)]
+    file = written(tmp_path / "mine.jsonl", rows)
+    ids = [each.pair.id for each in judge(ds, file, "activities", "train")]
+    query = "SELECT execution_id FROM splits WHERE split = 'activities' AND part = 'train' ORDER BY 1"
+    assert ids == [name for (name,) in ds.rows(query)[1] if name in programs(ds)]
+    assert ids == chosen(ds, "activities", "train")
+    with pytest.raises(HearthError, match="no executions in part `x`"):
+        judge(ds, file, "activities", "x")
+
+
+def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
+    with pytest.raises(HearthError, match="no reference has the id `nobody`") as caught:
+        judge(ds, written(tmp_path / "mine.jsonl", [{"id": "nobody", "predicted": []}]))
+    assert (str(caught.value.diagnostics[0].code), caught.value.diagnostics[0].line) == ("UNKNOWN_ID", 1)
+
+
+def test_lines_as_programs_and_as_sentences():
+    step = (Step("PutIn", (ObjectRef("milk"), ObjectRef("fridge"))),)
+    assert read_line("[PutIn] <milk> (1) <fridge> (1)") == step
+    for said in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
+        assert read_line(said) == step, said
+
+
+def test_every_baseline_gives_a_program_a_test():
+    train = [Example(f"t{n}", text, (Step("Walk", (ObjectRef(text.split()[1]),)),)) for n, text in enumerate(
+        ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
+    test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
+    for make in BASELINES.values():
+        assert len(make(train, test, 0)) == 2
+        assert make(train, test, 0) == make(train, test, 0)
+    assert [steps[0].objects[0].name for steps in nearest_description(train, test, 0)] == ["book", "bed"]
+    sampled = random_sampling(train, test, 0)
+    assert all(parsability(steps, kb.default()).parsable for steps in sampled)
+    assert random_sampling(train, test, 1) != sampled
+
+
+def test_baselines_of_a_dataset(ds):
+    found = baselines(ds)
+    if found:
+        assert [each.baseline for each in found] == list(BASELINES)
+        assert all(0 <= value <= 1 for each in found for value in each[1:])
+    assert baselines(ds, "nothing") == []
