@@ -10,8 +10,10 @@ from hearth.pipelines.readers.document import document
 from hearth.pipelines.readers.item import Item, Place, refused, suffixless
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import graph_row
-from hearth.schemas.errors import HearthError
+from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
+from hearth.schemas.vocabulary import OPPOSITE
 
 NAME = "scenes"
 
@@ -32,6 +34,9 @@ def read(item: Item) -> dict[str, Any] | Reject:
         graph = graph_row(from_release(item.value, item.place))
     except HearthError as error:
         return Reject.because(error.diagnostics, item.place)
+    faults = tuple(_state_faults(graph["nodes"], item.place))
+    if faults:
+        return Reject(faults)
     name = suffixless(PurePath(item.place).name)
     return {
         "kind": "scene",
@@ -44,3 +49,16 @@ def read(item: Item) -> dict[str, Any] | Reject:
         "groundings": [{"home": name, "text": "", "start": graph, "final": None}],
         "line": 0,
     }
+
+
+def _state_faults(nodes: list[dict[str, Any]], place: str) -> Iterator[Diagnostic]:
+    """Nodes that have a state twice, or two that exclude each other."""
+    for node in nodes:
+        states = node["states"]
+        twice = sorted({state for state in states if states.count(state) > 1})
+        both = sorted(state for state in set(states) if OPPOSITE.get(state) in states)
+        for found, message in ((twice, "the same state twice"), (both, "states that exclude each other")):
+            if found:
+                said = ", ".join(found)
+                told = f"node {node['id']} ({node['class_name']}) has {message}: {said}"
+                yield Diagnostic(Code.BAD_GRAPH, told, place, found=said, suggestion="keep one")

@@ -120,6 +120,17 @@ def test_a_scene_graph_alone(write):
     assert codes(read(write("bad.json", json.dumps({"nodes": [{"id": "x"}], "edges": []})))) == ["BAD_GRAPH"]
 
 
+@pytest.mark.parametrize(
+    ("states", "count"), [(["ON", "OFF"], 1), (["ON", "ON"], 1), (["ON", "ON", "OFF"], 2), (["ON", "CLEAN"], 0)]
+)
+def test_duplicate_and_contradictory_states(write, states, count):
+    node = {"id": 7, "class_name": "lamp", "category": "Lamps", "properties": [], "states": states}
+    (found,) = read(write("hut.json", json.dumps({"nodes": [node], "edges": []})))
+    faults = found.diagnostics if isinstance(found, Reject) else ()
+    assert len(faults) == count
+    assert all(fault.code == "BAD_GRAPH" and "node 7 (lamp)" in fault.message for fault in faults)
+
+
 # Packed
 
 
