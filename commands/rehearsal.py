@@ -45,9 +45,11 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
 
 def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
     from hearth.grounding.preconditions import at_odds
+    from hearth.pipelines.rehearsal import ANY_HOME
 
-    for script, failure in found.impossible:
-        yield _told(script, "any home", failure, at_odds(script.program, homes.knowledge))
+    for script, where, failure in found.impossible:
+        steps = at_odds(script.program, homes.knowledge) if where == ANY_HOME else (failure.tick,)
+        yield _told(script, where, failure, steps)
 
 
 def _failures(found: Rehearsal) -> Iterator[dict[str, Any]]:

@@ -54,17 +54,24 @@ class Base:
         self._spots: dict[str, Spots] = {}
         self._kinds: dict[str, Kind] = {}
         self._named: dict[str, tuple[int, ...]] = {}
+        self._serving: dict[str, tuple[int, ...]] = {}
 
     def rooms(self, name: str) -> tuple[int, ...]:
-        """Indices of the rooms that serve as the named one: of that class, or of its nearest stand-in."""
-        seen: set[str] = set()
-        while name and name not in seen:
-            seen.add(name)
-            found = self.home.by_class.get(name, 0) & self.home.rooms
-            if found:
-                return tuple(indices(found))
-            name = self.knowledge.room_standins.get(name, "")
-        return tuple(indices(self.home.rooms))
+        """Indices of the rooms that serve as the named one; of all rooms where none does."""
+        return self.serving(name) or tuple(indices(self.home.rooms))
+
+    def serving(self, name: str) -> tuple[int, ...]:
+        """Indices of the rooms of that class, or of its nearest stand-in; none where the home has neither."""
+        known = self._serving.get(name)
+        if known is None:
+            seen: set[str] = set()
+            room, found = name, 0
+            while room and room not in seen and not found:
+                seen.add(room)
+                found = self.home.by_class.get(room, 0) & self.home.rooms
+                room = self.knowledge.room_standins.get(room, "")
+            known = self._serving[name] = tuple(indices(found))
+        return known
 
     def instances(self, name: str) -> tuple[int, ...]:
         """Indices of what a program may mean by a class name: of the first of its names that the home knows."""

@@ -24,6 +24,9 @@ from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
 
+WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
+"""Categories of what is wherever it is."""
+
 TRIES = 12
 """Environments drawn for one program before it is given up."""
 
@@ -92,7 +95,9 @@ def sample(
     found = infer(program, base.knowledge, rules) if conditions is None else conditions
     if isinstance(found, Failure):
         return found
-    failure: Failure | None = None
+    failure = unplaceable(program, base)
+    if failure is not None:
+        return failure
     for attempt in range(TRIES):
         environment = draw(program, base, found, seed, record_id, attempt, size)
         execution = run(environment.world, environment.program, rules)
@@ -105,6 +110,35 @@ def sample(
             found = _with_demand(found, environment, execution, base)
     assert failure is not None
     return failure
+
+
+def unplaceable(program: Program, base: Base) -> Failure | None:
+    """Why a home can't hold what a program names, whatever is sampled: it lacks a room, or nobody knows where a thing
+    belongs.
+    """
+    for tick, steps in enumerate(program.ticks()):
+        for step in steps:
+            for ref in step.objects:
+                found = _homeless(ref.name, base)
+                if found is not None:
+                    code, expected, actual = found
+                    return Failure(code, tick, step.agent, step.action, (), (ref.name,), expected, actual)
+    return None
+
+
+def _homeless(name: str, base: Base) -> tuple[Code, str, str] | None:
+    knowledge, home = base.knowledge, base.home
+    if knowledge.is_room(name):
+        if base.serving(name):
+            return None
+        rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
+        return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
+    known = knowledge.object_class(name)
+    if known is None or known.category in WITHOUT_PLACE or known.rooms or base.instances(name):
+        return None
+    if knowledge.placements(name):
+        return None
+    return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
 
 def _nodes(program: Program) -> dict[Key, int]:

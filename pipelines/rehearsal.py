@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from hearth.grounding.base import prepared
 from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import USUAL, Environment, Size, sample
+from hearth.grounding.sampling import USUAL, Environment, Size, sample, unplaceable
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import ingest, validate
 from hearth.pipelines.cases import environment_of
@@ -27,6 +27,9 @@ from hearth.pipelines.surroundings import Homes
 from hearth.pipelines.workers import Workers
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
+
+ANY_HOME = "any home"
+"""Where a program is impossible that contradicts itself."""
 
 
 class Script(NamedTuple):
@@ -45,7 +48,7 @@ class Rehearsal:
         homes: names.
         programs: how many were read, and `rejected` how many could not be.
         ran: pairs of a program and a home for which an environment was sampled, checked, and run to the program's end.
-        impossible: programs that no environment of any home lets run, each with why.
+        impossible: programs that no environment of `ANY_HOME`, or of the home named, lets run, each with why.
         failed: pairs that ought to run and did not, each with why.
         seconds: (wall, processor) spent sampling and checking, inference included; reading and building homes is not.
         nodes: of the environments.
@@ -56,7 +59,7 @@ class Rehearsal:
     programs: int = 0
     rejected: int = 0
     ran: int = 0
-    impossible: list[tuple[Script, Failure]] = field(default_factory=list)
+    impossible: list[tuple[Script, str, Failure]] = field(default_factory=list)
     failed: list[tuple[Script, str, Failure]] = field(default_factory=list)
     seconds: tuple[float, float] = (0.0, 0.0)
     nodes: list[int] = field(default_factory=list)
@@ -67,17 +70,21 @@ class Rehearsal:
         """Programs times homes."""
         return self.programs * len(self.homes)
 
+    def _homes_of(self, where: str) -> int:
+        return len(self.homes) if where == ANY_HOME else 1
+
     def summary(self) -> dict[str, Any]:
         """The figures, for printing."""
         codes = Counter(str(failure.code) for _, _, failure in self.failed)
-        codes.update({str(failure.code): len(self.homes) for _, failure in self.impossible})
+        for _, where, failure in self.impossible:
+            codes[str(failure.code)] += self._homes_of(where)
         return {
             "programs": self.programs,
             "unreadable": self.rejected,
             "homes": list(self.homes),
             "pairs": self.pairs,
             "ran": self.ran,
-            "proven_impossible": len(self.impossible) * len(self.homes),
+            "proven_impossible": sum(self._homes_of(where) for _, where, _ in self.impossible),
             "failed": len(self.failed),
             "failures_by_code": dict(sorted(codes.items())),
             "seconds": round(self.seconds[0], 3),
@@ -152,12 +159,13 @@ def _in_every_home(
     wall, processor = perf_counter(), process_time()
     conditions = infer(script.program, homes.knowledge)
     if isinstance(conditions, Failure):
-        found.impossible.append((script, conditions))
+        found.impossible.append((script, ANY_HOME, conditions))
     else:
         for name in found.homes:
             drawn = sample(script.program, homes.home(name), seed, script.program_id, conditions, size)
             if isinstance(drawn, Failure):
-                found.failed.append((script, name, drawn))
+                proven = unplaceable(script.program, prepared(homes.home(name))) is not None
+                (found.impossible if proven else found.failed).append((script, name, drawn))
             else:
                 environments.append((name, drawn[0]))
     found.seconds = (found.seconds[0] + perf_counter() - wall, found.seconds[1] + process_time() - processor)

@@ -35,8 +35,8 @@ def homes():
 def test_every_pair_ran_or_is_proven_impossible(folder, homes):
     found = rehearse(scripts([str(folder)], homes.knowledge), homes, homes.names())
     assert (found.programs, found.rejected, found.pairs, found.ran) == (2, 1, 4, 2)
-    ((script, failure),) = found.impossible
-    assert failure.code is Code.CONTRADICTION and script.place.endswith("late.txt")
+    ((script, where, failure),) = found.impossible
+    assert failure.code is Code.CONTRADICTION and where == "any home" and script.place.endswith("late.txt")
     assert found.failed == []
     summary = found.summary()
     assert summary["pairs"] == summary["ran"] + summary["proven_impossible"] + summary["failed"]
@@ -63,3 +63,16 @@ def test_the_releases_graphs_are_not_read(real_data, homes):
     found = scripts([str(real_data / "activityprograms-sample.zip")], homes.knowledge)
     program = next(found).program
     assert program.steps and not any(ref.node for ref in program.objects())
+
+
+def test_what_a_home_cannot_hold_is_proven_for_that_home_alone(tmp_path):
+    (tmp_path / "homes").mkdir()
+    nodes = [(1, "bedroom", "Rooms"), (2, "character", "Characters"), (3, "bed", "Furniture")]
+    edges = [{"from_id": i, "relation_type": "INSIDE", "to_id": 1} for i in (2, 3)]
+    graph = {"nodes": [{"id": i, "class_name": n, "category": c} for i, n, c in nodes], "edges": edges}
+    (tmp_path / "homes" / "cell.json").write_bytes(orjson.dumps(graph))
+    (tmp_path / "bath.txt").write_text("Bath\nIn it.\n\n\n[Walk] <bathroom> (1)\n")
+    homes = Homes(Settings(homes=("maple", "cell"), homes_folder=str(tmp_path / "homes")))
+    found = rehearse(scripts([str(tmp_path / "bath.txt")], homes.knowledge), homes, homes.names())
+    assert [(where, failure.code) for _, where, failure in found.impossible] == [("cell", Code.NO_ROOM)]
+    assert (found.ran, found.summary()["proven_impossible"]) == (1, 1)

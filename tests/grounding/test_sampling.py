@@ -11,12 +11,14 @@ from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.soundness import unsound
 from hearth.kb import grammar
+from hearth.kb.knowledge import load
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge
+from hearth.schemas.graph import Edge, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.edit import extended
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
+from hearth.simulation.homes import catalog
 from hearth.simulation.homes.lint import lint
 from hearth.simulation.world import World
 
@@ -162,3 +164,26 @@ def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, co
     fault = unsound(World.start(changed))
     assert (fault and fault.code) == code
     assert bool(lint(World.start(changed).graph())) == (code is not None)
+
+
+def test_a_room_that_the_home_lacks_is_named(knowledge):
+    nodes = [Node(1, "bedroom", "Rooms"), Node(2, "kitchen", "Rooms"), Node(3, "character", "Characters")]
+    flat = Home(nodes, [Edge(3, "INSIDE", 1)], "flat", knowledge)
+    bath = read("Bath\nIn it.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bathroom> (1)\n", knowledge)
+    failure = sample(bath, flat, 0)
+    assert (failure.code, failure.tick, failure.names) == (Code.NO_ROOM, 1, ("bathroom",))
+    assert "bathroom" in failure.expected and failure.actual == "flat has bedroom, kitchen"
+    standing_in = read("Study\nThere.\n\n\n[Walk] <dining_room> (1)\n", knowledge)
+    assert not isinstance(sample(standing_in, flat, 0), Failure)
+
+
+def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):
+    (tmp_path / "objects_things.csv").write_text(
+        "id,name,category,hypernym,properties,states,rooms,size,gloss,same_as,source\n"
+        "9900,zither,Props,instrument,GRABBABLE,,,0.6 0.1 0.3,strings on a box,,ours\n"
+    )
+    known = load(overlay=tmp_path)
+    home = Home.from_graph(catalog.load_graph("maple"), "maple", known)
+    failure = sample(read("Zither\nFind it.\n\n\n[Walk] <zither> (1)\n", known), home, 0)
+    assert (failure.code, failure.names) == (Code.NO_PLACE, ("zither",))
+    assert "placements.csv" in failure.expected
