@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -83,8 +83,8 @@ def _again(scene: Scene, geometry: Geometry, last: Take) -> Take:
     past = last.shot
     old, new = past.geometry.moving, geometry.moving
     kept = set(old.things) & set(new.things)
-    gone = Crowd.of(tuple(thing for thing in old.things if thing not in kept))
-    came = Crowd.of(tuple(thing for thing in new.things if thing not in kept))
+    gone = _crowd(tuple(thing for thing in old.things if thing not in kept))
+    came = _crowd(tuple(thing for thing in new.things if thing not in kept))
     hits = _renumbered(past.hits, old, new, past.geometry.first)
     seen = _seen_anew(past, hits, came)
     shot = replace(past, scene=scene, geometry=geometry, hits=_recast(geometry, past.rays, hits, seen))
@@ -155,6 +155,12 @@ class Crowd:
             np.array(middles, np.float32).reshape(-1, 4),
             np.array(corners, np.float64).reshape(-1, 8, 3),
         )
+
+
+@lru_cache(maxsize=8)
+def _crowd(things: tuple[Thing, ...]) -> Crowd:
+    """What came in one picture is mostly what goes in the next."""
+    return Crowd.of(things)
 
 
 _EIGHT = [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
