@@ -375,3 +375,11 @@ def test_an_attempt_tells_failure_step_and_both_programs(repaired):
     assert len(attempt.after) == 3
     start = result.execution.worlds[0]
     assert run(start, result.program.with_steps(attempt.before)).failure == attempt.failure
+
+
+def test_a_container_that_is_not_close_is_walked_to_and_opened_in_one_repair(repaired):
+    world = ROOMS + "20 fridge CLOSED inside 1\n21 milk inside 20 close 22\n22 table inside 1"
+    result, steps, handlers = repaired(world, "[Walk] <table> (1.22)\n[Grab] <milk> (1.21)")
+    assert result.failure is None
+    assert steps[1:] == ["[Walk] <fridge> (1.20)", "[Open] <fridge> (1.20)", "[Grab] <milk> (1.21)"]
+    assert handlers == ["inside_closed"]
