@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ from hearth.schemas.program import Program
 if TYPE_CHECKING:
     import networkx
 
+    from hearth.pipelines.tensors import Tensors
     from hearth.simulation.home import Home
 
 Row = dict[str, Any]
@@ -130,7 +131,8 @@ class Dataset:
         wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
         runs = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
-        return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs))
+        sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
+        return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
 
     def home(self, name: str) -> EnvironmentGraph:
         """The graph of a home, from which environments differ.
@@ -149,6 +151,17 @@ class Dataset:
     @cached_property
     def _built(self) -> dict[str, _Home]:
         return {}
+
+    def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
+        """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks; see `tensors`.
+
+        Raises:
+            KeyError: there is no program of that id.
+        """
+        from hearth.pipelines.tensors import to_tensors
+
+        entries = [self[program_id] for program_id in program_ids]
+        return to_tensors(self, [(entry.program, run) for entry in entries for run in entry.runs], tick)
 
     def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Row]:
         if not ids:
@@ -171,11 +184,13 @@ class Entry:
         row: as in the table `programs`.
         runs: its executions.
         repairs: how it was made from its parent, in order; empty for originals.
+        sketches: which of its steps people kept as its gist.
     """
 
     row: Row
     runs: tuple[Run, ...]
     repairs: tuple[Row, ...]
+    sketches: tuple[Row, ...] = ()
 
     @property
     def program(self) -> Program:

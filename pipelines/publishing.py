@@ -24,6 +24,7 @@ from hearth.pipelines.parts import Counts, Row, part_path, read_rows, write_tabl
 from hearth.pipelines.rows import node_row
 from hearth.pipelines.stage import Job
 from hearth.pipelines.surroundings import Homes
+from hearth.pipelines.tensors import EDGE_TYPES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
@@ -295,7 +296,8 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[Row]:
         yield {"kind": "action", "id": action.id, "name": action.name, **told}
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
         yield {"kind": "class", "id": thing.id, "name": thing.name}
-    fixed = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "failure": tuple(map(str, Code))}
+    graphs = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
+    fixed = {**graphs, "failure": tuple(map(str, Code))}
     for kind, names in fixed.items():
         yield from ({"kind": kind, "id": number, "name": name} for number, name in enumerate(names))
 

@@ -298,7 +298,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
     "sketches": _published(*SKETCHED),
     "frames": _published(*RENDERED, _column("home", TEXT, "where it was filmed")),
     "vocabulary": _published(
-        _column("kind", TEXT, "action, class, state, property, relation or failure"),
+        _column("kind", TEXT, "action, class, state, property, relation, edge_type or failure"),
         _column("id", COUNT, "stable number within its kind"),
         _column("name", TEXT, "canonical name"),
         _column("arity", COUNT, "number of objects; actions only"),
