@@ -14,10 +14,12 @@ from hearth.simulation.homes.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_pl
 from hearth.simulation.homes.furnishing import UnfurnishableError, furnish_by_lot
 from hearth.simulation.homes.layout import Layout, arrange
 from hearth.simulation.homes.plan import Faults, Piece, Plan, Room
-from hearth.simulation.homes.shell import Thing
+from hearth.simulation.homes.shell import Shell, Thing
 
 TRIES = 60
-"""Floor plans drawn before giving up; one in two or three is furnished."""
+"""Floor plans drawn before giving up; six in seven are furnished."""
+ROOM_TRIES = 4
+"""Times a room is furnished before its floor plan is given up."""
 
 
 def generate(rooms: int, seed: int, knowledge: Knowledge | None = None) -> Layout:
@@ -51,13 +53,23 @@ def _attempt(name: str, rooms: int, knowledge: Knowledge, rng: Random) -> Layout
     built = shell.build(plan, faults)
     if faults:
         return None
-    try:
-        furnished = tuple(
-            replace(room, furniture=furnish_by_lot(room, plan.height, built, knowledge, rng)) for room in plan.rooms
-        )
-    except UnfurnishableError:
-        return None
-    return _settled(_numbered(replace(plan, rooms=furnished)), knowledge)
+    furnished = []
+    for room in plan.rooms:
+        furniture = _furniture(room, plan, built, knowledge, rng)
+        if furniture is None:
+            return None
+        furnished.append(replace(room, furniture=furniture))
+    return _settled(_numbered(replace(plan, rooms=tuple(furnished))), knowledge)
+
+
+def _furniture(room: Room, plan: Plan, built: Shell, knowledge: Knowledge, rng: Random) -> tuple[Piece, ...] | None:
+    """A room's furniture: what it needs may find its place at a second try, and a new floor plan costs more."""
+    for _ in range(ROOM_TRIES):
+        try:
+            return furnish_by_lot(room, plan.height, built, knowledge, rng)
+        except UnfurnishableError:
+            continue
+    return None
 
 
 def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:

@@ -37,13 +37,16 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
         ids: node ids by the things' names.
         lookable: classes that one can look at: what things are FACING.
     """
-    own = [ids[thing.name] for thing in things]
-    found = [(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]
-    for relation, pairs in (("CLOSE", close(things)), ("FACING", facing(things, lookable))):
-        number = RELATION_ID[relation]
-        found.extend((own[i], number, own[j]) for i, j in pairs)
-    found.sort()
-    return tuple(Edge(source, RELATIONS[number], target) for source, number, target in found)
+    import numpy as np
+
+    own = np.array([ids[thing.name] for thing in things], np.int64)
+    tables = [np.array([(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]).reshape(-1, 3)]
+    for relation, pairs in (("CLOSE", _close_pairs(things)), ("FACING", np.array([*facing(things, lookable)], int))):
+        i, j = pairs.reshape(-1, 2).T
+        tables.append(np.column_stack((own[i], np.full(len(i), RELATION_ID[relation]), own[j])))
+    table = np.concatenate(tables).astype(np.int64)
+    sources, numbers, targets = table[np.lexsort((table[:, 2], table[:, 1], table[:, 0]))].T.tolist()
+    return tuple(map(Edge, sources, map(RELATIONS.__getitem__, numbers), targets))
 
 
 def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
@@ -68,22 +71,25 @@ def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
     Walls part things of different rooms; doors and their jambs are near things of both. A container's sides part
     nothing: as in the release, what is in a dresser is near what stands beside it.
     """
+    yield from map(tuple, _close_pairs(things).tolist())
+
+
+def _close_pairs(things: Sequence[Thing]) -> np.ndarray:
+    """The same as an int array of shape (pairs, 2)."""
     import numpy as np
 
-    doors: set[tuple[int, int]] = set()
+    found = [np.zeros((0, 2), np.int64)]
+    doorway = np.array([bool(thing.between) for thing in things])
     for members in _rooms(things).values():
         centers, halves = _arrays([things[i] for i in members])
         gaps = np.abs(centers[:, None] - centers[None]) - (halves[:, None] + halves[None])
         near = (np.maximum(gaps, 0.0) ** 2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
         np.fill_diagonal(near, False)
-        for row, column in zip(*(axis.tolist() for axis in np.nonzero(near)), strict=True):
-            pair = members[row], members[column]
-            if things[pair[0]].between and things[pair[1]].between:
-                # A door and its jamb meet in both rooms.
-                if pair in doors:
-                    continue
-                doors.add(pair)
-            yield pair
+        found.append(np.array(members)[np.argwhere(near)])
+    pairs = np.concatenate(found)
+    # A door and its jamb meet in both rooms.
+    both = doorway[pairs].all(axis=1)
+    return np.concatenate((pairs[~both], np.unique(pairs[both], axis=0)))
 
 
 def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
