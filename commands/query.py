@@ -18,9 +18,9 @@ def query(dataset: Folder, sql: Sql, rows: Rows = 100, as_json: output.Json = Fa
     """Ask a published dataset a question in SQL.
 
     Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,
-    repairs, splits, sketches, frames, vocabulary, rejects, ledger. Macros: program_text(program_id), graph_nodes(execution_id,
-    tick), graph_edges(execution_id, tick), final_state(execution_id). View start_relations: edges per relation that all
-    executions start with. The dataset can only be read.
+    repairs, splits, sketches, frames, vocabulary, rejects, ledger. Macros: program_text(program_id),
+    graph_nodes(execution_id, tick), graph_edges(execution_id, tick), final_state(execution_id). View start_relations:
+    edges per relation that all executions start with. The dataset can only be read.
 
     \b
     Examples:

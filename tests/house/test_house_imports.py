@@ -11,8 +11,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = {
-    "schemas": 0, "kb": 1, "simulation": 2, "grounding": 3, "rendering": 4, "scoring": 4, "pipelines": 5, "exports": 6, "report": 6,
-    "commands": 7,
+    "schemas": 0, "kb": 1, "simulation": 2, "grounding": 3, "rendering": 4, "scoring": 4, "pipelines": 5,
+    "exports": 6, "report": 6, "commands": 7,
 }  # fmt: skip
 """Packages by layer: each may import those below it and itself."""
 
