@@ -77,8 +77,9 @@ def build(
     """Run the stages one after another and publish a dataset.
 
     What a source is, is told by its content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, program
-    text, steps in words, JSON Lines, sketches, scene graphs, a dataset; packed or not. What did not change since the last build is not done again, and a build that was stopped goes on
-    where it was. Ends with what became of every record.
+    text, steps in words, JSON Lines, sketches, scene graphs, a dataset; packed or not. What did not change since the
+    last build is not done again, and a build that was stopped goes on where it was. Ends with what became of every
+    record.
 
     \b
     Examples:
