@@ -76,10 +76,10 @@ $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py 
 	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) 2>/dev/null
 
 test: $(READY)  ## the tests, without the slow ones
-	@$(PY) -m pytest -q -n $(JOBS) --dist loadgroup -m "not slow"
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow"
 
 test-all: $(READY)  ## all tests
-	@$(PY) -m pytest -q -n $(JOBS) --dist loadgroup
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
 
 lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff check .

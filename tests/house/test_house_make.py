@@ -14,8 +14,6 @@ FOLDERS = ("schemas", "kb", "simulation", "grounding", "rendering", "pipelines",
 FILES = ("Makefile", "setup.sh", "requirements.lock", "pyproject.toml", "version.py", "cli.py")
 NAMES = list(STAGES)
 
-pytestmark = pytest.mark.xdist_group("make")
-
 PYTHON = """#!/bin/bash
 # Stands in for .venv/bin/python: notes each command and, for a stage, writes its manifest.
 echo "$@" >> calls

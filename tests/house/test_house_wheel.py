@@ -14,8 +14,6 @@ PACKAGES = ("schemas", "kb", "simulation", "grounding", "rendering", "scoring", 
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out")
 ENDINGS = {".py", ".yaml", ".csv", ".sql"}
 
-pytestmark = pytest.mark.xdist_group("wheel")
-
 
 def run(*command, cwd):
     done = subprocess.run([*map(str, command)], cwd=cwd, capture_output=True, text=True, check=False, timeout=300)

@@ -18,15 +18,12 @@ INPUT = GOLDEN / "input"
 GOLDEN_SOURCES = (INPUT / "crowd", INPUT / "programs/evening.txt", INPUT / "release")
 
 
-SHARED = ("made", "published", "filmed")
-"""Fixtures that take seconds: their tests run in one process, one after another."""
-
-
-def pytest_collection_modifyitems(items):
-    for item in items:
-        for name in SHARED:
-            if name in item.fixturenames:
-                item.add_marker(pytest.mark.xdist_group(name))
+@pytest.fixture(scope="session", autouse=True)
+def hurried():
+    """Nothing waits for the disk: no test here pulls the plug, and those that kill start processes of their own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("os.fsync", lambda descriptor: None)
+        yield
 
 
 class Built:
