@@ -123,7 +123,10 @@ def test_a_door_too_many_is_given_up():
     assert isinstance(rects[0], Rect)
 
 
-@pytest.mark.parametrize("number", range(1, 8))
+QUICK = (1, 4)
+
+
+@pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(1, 8)])
 def test_the_releases_homes_can_be_walked_in(real_data, number):
     found = catalog.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json")
     assert min(reached(found.layout)) > 50

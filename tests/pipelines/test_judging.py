@@ -63,11 +63,11 @@ def test_missing_predictions_count_as_zero(ds, tmp_path):
 
 
 def test_only_a_part_of_a_split(ds, tmp_path):
-    rows = [{"id": name, "predicted": []} for name in programs(ds)]
-    file = written(tmp_path / "mine.jsonl", rows)
+    known = programs(ds).keys()
+    file = written(tmp_path / "mine.jsonl", [{"id": name, "predicted": []} for name in known])
     ids = [each.pair.id for each in judge(ds, file, "activities", "train")]
     query = "SELECT execution_id FROM splits WHERE split = 'activities' AND part = 'train' ORDER BY 1"
-    assert ids == [name for (name,) in ds.rows(query)[1] if name in programs(ds)]
+    assert ids == [name for (name,) in ds.rows(query)[1] if name in known]
     assert ids == chosen(ds, "activities", "train")
     with pytest.raises(HearthError, match="no executions in part `x`"):
         judge(ds, file, "activities", "x")
