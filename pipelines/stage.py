@@ -6,10 +6,8 @@ owns the rest. Every record read ends in rows or in rejects, and an exception co
 
 from __future__ import annotations
 
-import gc
 import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -143,22 +141,6 @@ class Job:
 
 def run_partition(job: Job, partition: Partition, seen: Callable[[int, int], None]) -> Counts:
     """Process one partition and write it. `seen(records, rejects)` is told of progress."""
-    with _settled_memory():
-        return _run_partition(job, partition, seen)
-
-
-@contextmanager
-def _settled_memory() -> Iterator[None]:
-    """Homes, knowledge and modules stay: the collector need not look at them for every few rows (a quarter of time)."""
-    gc.collect()
-    gc.freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
-
-
-def _run_partition(job: Job, partition: Partition, seen: Callable[[int, int], None]) -> Counts:
     stage = job.stage
     writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
     try:
