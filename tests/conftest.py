@@ -12,7 +12,7 @@ from hearth.kb.knowledge import default
 from hearth.simulation.home import Home
 from hearth.simulation.homes import catalog
 
-settings.register_profile("hearth", derandomize=True, deadline=None)
+settings.register_profile("hearth", derandomize=True, deadline=None, max_examples=50)
 settings.load_profile("hearth")
 
 ROOT = Path(__file__).resolve().parents[1]

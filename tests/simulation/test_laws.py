@@ -15,7 +15,7 @@ from hearth.simulation.rules import DEFAULT
 from hearth.simulation.snapshot import export, restore
 from hearth.simulation.world import World
 
-law = settings(derandomize=True, deadline=None, max_examples=150)
+law = settings(derandomize=True, deadline=None, max_examples=60)
 
 
 def reached(graph: EnvironmentGraph, steps) -> list[World]:
