@@ -11,8 +11,7 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -20,6 +19,7 @@ from typing import Annotated
 import typer
 
 from hearth.commands import output
+from hearth.rendering.quiet import quiet
 
 LIBRARIES = {
     "libusb-1.0.so.0": "libusb-1.0-0",
@@ -132,24 +132,11 @@ def codecs() -> Finding:
         return Finding("video (OpenCV)", BROKEN, "not installed", "no pictures, no video: run `make setup`")
     import cv2
 
-    with tempfile.TemporaryDirectory() as folder, _quiet():
+    with tempfile.TemporaryDirectory() as folder, quiet():
         works = [name for name, ending in CODECS.items() if _opens(name, Path(folder, f"video{ending}"))]
     lacking = sorted(set(CODECS) - set(works))
     found = f"OpenCV {cv2.__version__}: {', '.join(works) or 'no codec'}"
     return Finding("video (OpenCV)", MISSING if lacking else OK, found, f"no {', '.join(lacking)}" if lacking else "")
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep what C libraries write to standard error off the screen."""
-    kept = os.dup(2)
-    with Path(os.devnull).open("w") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def _opens(codec: str, path: Path) -> bool:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from math import cos, radians, sin
 from pathlib import Path
@@ -16,6 +14,7 @@ from numpy.typing import NDArray
 from hearth.rendering.acting import Actor
 from hearth.rendering.camera import Camera, follow, look_at, top_view
 from hearth.rendering.motion import Frame, Span, frames, spans
+from hearth.rendering.quiet import quiet
 from hearth.rendering.retake import Take, take
 from hearth.rendering.snapshots import AUTO, TOP, Play
 from hearth.rendering.viewpoints import best_view, home_box, kept_inside, room_views
@@ -34,19 +33,6 @@ CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 """What OpenCV writes into each kind of file: browsers play VP80."""
 
 
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep the writer from telling, for each webm, that such files have no tags."""
-    kept = os.dup(2)
-    with Path(os.devnull).open("w") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-
-
 class Writer:
     """A video file that is there under its name only when it is complete."""
 
@@ -57,7 +43,7 @@ class Writer:
         self.path, self.part = path, path.with_name(f".part{path.suffix}")
         self.file: Any = None
         if codec:
-            with _quiet():
+            with quiet():
                 self.file = cv2.VideoWriter(str(self.part), cv2.VideoWriter.fourcc(*codec), fps, (width, height))
         if self.file is None or not self.file.isOpened():
             known = ", ".join(f"*{suffix}" for suffix in CODECS)

@@ -179,7 +179,7 @@ def test_a_bomb_in_a_zip_and_a_path_leaving_it(tmp_path, monkeypatch):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("bomb.txt", b"a\n" * 2_000_000)
         archive.writestr("../../etc/evil.txt", PROGRAM)
-        archive.writestr("/root/evil.txt", PROGRAM)
+        archive.writestr("/evil.txt", PROGRAM)
         archive.writestr("good.txt", PROGRAM)
     found = read(path)
     assert codes(found) == ["FILE_TOO_LARGE", "BAD_ARCHIVE", "BAD_ARCHIVE", "program"]
