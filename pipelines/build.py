@@ -10,6 +10,7 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engines import engine as make_engine
 from hearth.pipelines.lock import locked
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.parts import Counts
@@ -17,7 +18,6 @@ from hearth.pipelines.progress import Progress
 from hearth.pipelines.run import REJECTS, run_stage
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stages import STAGES, stage
-from hearth.pipelines.workers import Workers
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
@@ -66,6 +66,8 @@ def build(
     out: str = "data_out",
     *,
     workers: int = 1,
+    engine: str = "local",
+    scheduler: str = "",
     only: str | None = None,
     progress: Progress | None = None,
     **options: Any,
@@ -76,6 +78,8 @@ def build(
         sources: files and folders, in any mix of forms; the embedded corpus when there are none.
         out: gets one folder a stage; the dataset is its `publish`.
         workers: processes; any number gives the same bytes.
+        engine: what runs them, one of `engines.ENGINES`; any gives the same bytes.
+        scheduler: address of a running cluster's scheduler, for the dask engine.
         only: the one stage to run, on what the earlier ones wrote.
         progress: told how it goes.
         options: the other fields of `Settings` (seed, limit, homes, ...).
@@ -86,7 +90,7 @@ def build(
     settings = Settings(tuple(sources) or corpus(), out, **options)
     names = [only] if only else list(STAGES)
     fresh: list[str] = []
-    with locked(Path(out)), Workers(workers) as pool:
+    with locked(Path(out)), make_engine(engine, workers, scheduler) as pool:
         for name in names:
             result = run_stage(stage(name), settings, pool, progress)
             if result.fresh:

@@ -12,6 +12,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from hearth.pipelines.engines import Engine
 from hearth.pipelines.files import TEMPORARY, value_digest, write_json
 from hearth.pipelines.lock import locked
 from hearth.pipelines.manifest import NAME, TIMING, Manifest, read_manifest, write_manifest
@@ -37,7 +38,7 @@ class Result:
 
 
 def run_stage(
-    stage: Stage, settings: Settings, workers: Workers | None = None, progress: Progress | None = None
+    stage: Stage, settings: Settings, workers: Engine | None = None, progress: Progress | None = None
 ) -> Result:
     """Bring a stage's folder up to date.
 
@@ -57,13 +58,13 @@ def run_stage(
         ) from error
 
 
-def _run(stage: Stage, settings: Settings, workers: Workers, progress: Progress) -> Result:
+def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) -> Result:
     inputs = _inputs(stage, settings)
     job = Job(stage, settings, stage.prepare(settings))
     key = value_digest([job.key, inputs])
     folder = job.folder
     known = read_manifest(folder)
-    if known and known.key == key and known.intact():
+    if known and known.key == key and known.intact() and not known.counts.codes[Code.TIMED_OUT]:
         os.utime(folder / NAME)
         progress.end(stage.name, known.counts, 0.0, fresh=False)
         return Result(known, fresh=False)
@@ -75,6 +76,7 @@ def _run(stage: Stage, settings: Settings, workers: Workers, progress: Progress)
     numbers, counts = _partitions(job, workers, progress)
     _gather_rejects(job, numbers)
     _drop_stale(job, numbers)
+    _drop_leftovers(folder)
     if stage.finish:
         stage.finish(job, counts)
     counts.check(stage.name)
@@ -116,6 +118,11 @@ def _clear(folder: Path) -> None:
     """Make the folder say that it is not complete, and drop what was half written."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / NAME).unlink(missing_ok=True)
+    _drop_leftovers(folder)
+
+
+def _drop_leftovers(folder: Path) -> None:
+    """Remove what workers that were lost had half written."""
     for leftover in folder.rglob(f".*{TEMPORARY}"):
         leftover.unlink(missing_ok=True)
 
@@ -133,7 +140,7 @@ def input_partitions(job: Job) -> Iterator[Partition]:
             number += 1
 
 
-def _partitions(job: Job, workers: Workers, progress: Progress) -> tuple[list[int], Counts]:
+def _partitions(job: Job, workers: Engine, progress: Progress) -> tuple[list[int], Counts]:
     """Run what is not complete yet."""
     numbers: list[int] = []
     counts = Counts()
@@ -142,7 +149,7 @@ def _partitions(job: Job, workers: Workers, progress: Progress) -> tuple[list[in
         for partition in (job.stage.partitions or input_partitions)(job):
             numbers.append(partition.number)
             state = part_state(job.folder, job.stage.tables, partition.number)
-            if state and state[0] == job.part_key(partition) and _rejects_kept(job, partition.number, state[1]):
+            if state and state[0] == job.part_key(partition) and _is_whole(job, partition.number, state[1]):
                 counts.add(state[1])
                 progress.seen(state[1].records_in, state[1].rejected)
             else:
@@ -160,9 +167,12 @@ def _forget(job: Job, number: int) -> None:
         part_path(job.folder, table, number).unlink(missing_ok=True)
 
 
-def _rejects_kept(job: Job, number: int, counts: Counts) -> bool:
+def _is_whole(job: Job, number: int, counts: Counts) -> bool:
+    """Whether a partition's rejects are there, too, and none of its records ran out of time."""
     if not counts.rejected and not counts.partial:
         return True
+    if counts.codes[Code.TIMED_OUT]:
+        return False
     return rejects_path(job.folder, number).exists() or (job.folder / REJECTS).exists()
 
 

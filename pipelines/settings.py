@@ -26,6 +26,8 @@ class Settings:
         homes_each: homes to sample each program in, drawn from `homes`; 0 for all of them.
         tries: repairs of one program, at most.
         pictures: how many executions to film.
+        time_limit: seconds that a record may take in a stage; 0 for any time. Those that take longer are tried again by
+            the next build.
     """
 
     sources: tuple[str, ...] = ()
@@ -42,6 +44,7 @@ class Settings:
     homes_each: int = 0
     tries: int = 20
     pictures: int = 3
+    time_limit: float = 60.0
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
         """The named options, as they stand in a manifest."""

@@ -15,17 +15,19 @@ from typing import Any
 
 import pyarrow as pa
 
+from hearth.pipelines.deadline import Deadline, OverTime
 from hearth.pipelines.files import code_digest, value_digest
 from hearth.pipelines.parts import Counts, PartWriter, Row, read_rows
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.settings import Settings
+from hearth.schemas.failures import Code
 
 Record = dict[str, Any]
 Plan = dict[str, Any]
 Output = Row | Reject | tuple[str, Row]
 
 BATCH = 64
-"""Records whose rows are turned into Arrow together."""
+"""Records whose rows are turned into Arrow together, where a stage says nothing else: graphs are large."""
 
 _EVERY_STAGE = ("schemas", "version.py", "pipelines/stage.py", "pipelines/parts.py", "pipelines/rejects.py")
 
@@ -68,8 +70,10 @@ class Stage:
         select: which rows of the input are records at all.
         identify: the id of a record.
         columns: columns of the input to read; None for all.
+        batch: how many records' rows are turned into Arrow together, of a partition.
         tally: a label under which a row is counted, or None.
         finish: writes what needs all partitions, before the manifest.
+        patience: how many times the usual limit a record may take.
 
     A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
     """
@@ -89,8 +93,10 @@ class Stage:
     select: Callable[[Record, Plan], bool] = lambda record, plan: True
     identify: Callable[[Record], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
+    batch: Callable[[Partition], int] = lambda partition: BATCH
     tally: Callable[[Row], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
+    patience: int = 1
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
         """Workers get a stage by the module that defines it, as its `STAGE`."""
@@ -143,11 +149,12 @@ def run_partition(job: Job, partition: Partition, seen: Callable[[int, int], Non
     """Process one partition and write it. `seen(records, rejects)` is told of progress."""
     stage = job.stage
     writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
+    deadline = Deadline(job.settings.time_limit * stage.patience)
     try:
-        sink = _Sink(job, partition.number, writer)
+        sink = _Sink(job, partition, writer)
         for record in _records(job, partition):
             before = sink.counts.rejected
-            sink.take(stage.identify(record), _attempt(stage, record, job.context))
+            sink.take(stage.identify(record), _attempt(stage, record, job.context, deadline))
             seen(1, sink.counts.rejected - before)
         sink.flush()
         sink.counts.check(f"{stage.name}, partition {partition.number}")
@@ -155,6 +162,8 @@ def run_partition(job: Job, partition: Partition, seen: Callable[[int, int], Non
     except BaseException:
         writer.abandon()
         raise
+    finally:
+        deadline.close()
     return sink.counts
 
 
@@ -166,11 +175,16 @@ def _records(job: Job, partition: Partition) -> Iterable[Record]:
     return (row for row in read_rows(Path(partition.payload), columns) if stage.select(row, job.plan))
 
 
-def _attempt(stage: Stage, record: Record, context: Any) -> list[Output]:
-    """All that a record gives; an exception gives a reject and none of its rows."""
+def _attempt(stage: Stage, record: Record, context: Any, deadline: Deadline) -> list[Output]:
+    """All that a record gives; an exception or too long a time gives a reject and none of its rows."""
     try:
-        outputs = stage.process(record, context)
-        return [outputs] if isinstance(outputs, Reject) else list(outputs)
+        with deadline:
+            outputs = stage.process(record, context)
+            return [outputs] if isinstance(outputs, Reject) else list(outputs)
+    except OverTime:
+        message = f"took longer than {deadline.seconds:g} s"
+        place = str(record.get("place") or "")
+        return [Reject.of(Code.TIMED_OUT, message, file=place, suggestion="give it more time with --time-limit")]
     except Exception as error:
         return [Reject.caused(error, str(record.get("place") or ""))]
 
@@ -178,24 +192,26 @@ def _attempt(stage: Stage, record: Record, context: Any) -> list[Output]:
 class _Sink:
     """Counts what records gave and writes it in batches."""
 
-    def __init__(self, job: Job, number: int, writer: PartWriter) -> None:
-        self.stage, self.number, self.writer = job.stage, number, writer
+    def __init__(self, job: Job, partition: Partition, writer: PartWriter) -> None:
+        self.stage, self.number, self.writer = job.stage, partition.number, writer
+        self.batch = job.stage.batch(partition)
         self.counts = Counts()
         self._waiting: list[tuple[str, list[tuple[str, Row]], list[Reject]]] = []
 
     def take(self, record_id: str, outputs: list[Output]) -> None:
         """Take all that one record gave."""
         self.counts.records_in += 1
-        rejects = [output for output in outputs if isinstance(output, Reject)]
-        rows = [
-            output if isinstance(output, tuple) else ("", output)
-            for output in outputs
-            if not isinstance(output, Reject)
-        ]
+        rows: list[tuple[str, Row]] = []
+        rejects: list[Reject] = []
+        for output in outputs:
+            if isinstance(output, Reject):
+                rejects.append(output)
+            else:
+                rows.append(output if isinstance(output, tuple) else ("", output))
         if not outputs:
             rejects = [Reject.caused(AssertionError("neither rows nor a reject came of this record"))]
         self._waiting.append((record_id, rows, rejects))
-        if len(self._waiting) >= BATCH:
+        if len(self._waiting) >= self.batch:
             self.flush()
 
     def flush(self) -> None:
@@ -224,15 +240,21 @@ class _Sink:
 
     def _batch(self, schema: pa.Schema, rows: list[Row]) -> pa.RecordBatch:
         names = frozenset(schema.names)
-        for row in rows:
-            if not row.keys() <= names:
-                raise TypeError(f"columns that the table lacks: {', '.join(sorted(row.keys() - names))}")
+        for columns in {tuple(row) for row in rows}:
+            if not names.issuperset(columns):
+                raise TypeError(f"columns that the table lacks: {', '.join(sorted({*columns} - names))}")
         return pa.RecordBatch.from_pylist(rows, schema)
 
     def _count(self, record_id: str, rows: list[tuple[str, Row]], rejects: list[Reject]) -> None:
         counts, partial = self.counts, bool(rows)
         counts.through += partial
         counts.rejected += not partial
+        for _, row in rows:
+            label = self.stage.tally(row)
+            if label is not None:
+                counts.tally[label] += 1
+        if not rejects:
+            return
         if partial:
             counts.partial += len(rejects)
         else:
@@ -241,7 +263,3 @@ class _Sink:
         for number, row in enumerate(faults):
             told = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
             self.writer.reject([{**row, **told, "fault": number}])
-        for _, row in rows:
-            label = self.stage.tally(row)
-            if label is not None:
-                counts.tally[label] += 1

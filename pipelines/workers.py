@@ -6,21 +6,21 @@ import gc
 import itertools
 import multiprocessing
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from types import TracebackType
 from typing import Any
 
+from hearth.pipelines.engines import Done, Seen
 from hearth.pipelines.parts import Counts
 from hearth.pipelines.stage import Job, Partition, run_partition
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
-Seen = Callable[[int, int], None]
-Done = tuple[Partition, Counts]
+AHEAD = 2
+"""Partitions handed out for each process: the next is there when one is done."""
 
-_AHEAD = 2
 _POLL_SECONDS = 0.2
 
 
@@ -78,8 +78,8 @@ class Workers:
         before = self._told()
         running: dict[Future[Counts], Partition] = {}
         while True:
-            for partition in itertools.islice(partitions, self.count * _AHEAD - len(running)):
-                running[pool.submit(_run, job, partition)] = partition
+            for partition in itertools.islice(partitions, self.count * AHEAD - len(running)):
+                running[pool.submit(run_here, job, partition)] = partition
             if not running:
                 return
             done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
@@ -107,14 +107,13 @@ class Workers:
             return self._seen[0], self._seen[1]
 
 
-_seen: Any = None
+_told: Any = None
 _job: Job | None = None
 
 
-def _begin(seen: Any) -> None:
-    global _seen  # noqa: PLW0603 - a worker's own state
-    _seen = seen
-    _collect_seldom()
+def _begin(told: Any) -> None:
+    global _told  # noqa: PLW0603 - a worker's own state
+    _told = told
 
 
 def _collect_seldom() -> None:
@@ -123,15 +122,18 @@ def _collect_seldom() -> None:
     gc.set_threshold(50_000, 20, 100)
 
 
-def _run(job: Job, partition: Partition) -> Counts:
+def run_here(job: Job, partition: Partition) -> Counts:
     """Run a partition in a worker, with the context that the same job opened before."""
     global _job  # noqa: PLW0603 - a worker's own state
+    if _job is None:
+        _collect_seldom()
     if _job is None or (_job.key, _job.settings) != (job.key, job.settings):
         _job = job
     return run_partition(_job, partition, _count)
 
 
 def _count(records: int, rejects: int) -> None:
-    with _seen.get_lock():
-        _seen[0] += records
-        _seen[1] += rejects
+    if _told is not None:
+        with _told.get_lock():
+            _told[0] += records
+            _told[1] += rejects

@@ -93,6 +93,7 @@ class Code(StrEnum):
     LOCKED = "LOCKED"
     INTERNAL_ERROR = "INTERNAL_ERROR"
     DAMAGED_FILE = "DAMAGED_FILE"
+    TIMED_OUT = "TIMED_OUT"
 
 
 @dataclass(frozen=True, slots=True)

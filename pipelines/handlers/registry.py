@@ -54,7 +54,7 @@ ELSEWHERE: frozenset[Code] = frozenset(
         Code.UNKNOWN_ID, Code.MISSING_PREDICTION, Code.REPLAY_DIFFERS, Code.NOT_RENDERED,
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
         Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.HEARD_NEARLY, Code.DAMAGED_FILE,
-        Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR,
+        Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
     }
 )  # fmt: skip
 """Codes of reading, checking, grounding, repairing itself, scoring and publishing: no run of a program ends in them."""

@@ -19,8 +19,8 @@ import sys
 from hearth.pipelines.build import build
 
 if __name__ == "__main__":
-    out, workers, homes, *sources = sys.argv[1:]
-    build(sources, out, workers=int(workers), homes=("cabin",), homes_folder=homes, pictures=0)
+    out, workers, engine, homes, *sources = sys.argv[1:]
+    build(sources, out, workers=int(workers), engine=engine, homes=("cabin",), homes_folder=homes, pictures=0)
 """
 
 VARYING = {"timing.json", "catalog.duckdb", ".lock"}
@@ -35,10 +35,11 @@ def contents(out: Path) -> dict[str, bytes]:
     }
 
 
-def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = "0"):
+def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = "0", engine: str = "local"):
     script = tmp_path / "build_it.py"
     script.write_text(BUILD)
-    command = [sys.executable, str(script), str(out), str(workers), made.settings.homes_folder, *made.settings.sources]
+    asked = [str(out), str(workers), engine, made.settings.homes_folder, *made.settings.sources]
+    command = [sys.executable, str(script), *asked]
     return subprocess.Popen(command, env={**os.environ, "PYTHONHASHSEED": hash_seed}, start_new_session=True)
 
 
@@ -49,9 +50,21 @@ def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = 
 def test_for_any_number_of_workers_and_any_hash_seed(made, tmp_path, workers, hash_seed):
     out = tmp_path / "again"
     assert started(out, made, tmp_path, workers, hash_seed).wait(timeout=900) == 0
-    expected, found = contents(made.out), contents(out)
+    assert_same(made.out, out)
+
+
+def assert_same(one: Path, other: Path) -> None:
+    expected, found = contents(one), contents(other)
     assert found.keys() == expected.keys()
     assert [name for name in expected if found[name] != expected[name]] == []
+
+
+@pytest.mark.tools
+def test_on_a_dask_cluster(made, tmp_path):
+    pytest.importorskip("distributed")
+    out = tmp_path / "again"
+    assert started(out, made, tmp_path, workers=2, engine="dask").wait(timeout=900) == 0
+    assert_same(made.out, out)
 
 
 def test_a_second_build_does_nothing(made):
@@ -76,6 +89,4 @@ def test_killed_at_random_moments_and_taken_up_again(made, tmp_path):
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
     assert started(out, made, tmp_path, workers=2).wait(timeout=900) == 0
-    expected, found = contents(made.out), contents(out)
-    assert found.keys() == expected.keys()
-    assert [name for name in expected if found[name] != expected[name]] == []
+    assert_same(made.out, out)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import replace
 
 import pyarrow as pa
@@ -206,3 +207,22 @@ def test_a_stage_says_which_one_it_lacks(settings):
     stage = replace(STAGE, reads=("validate",))
     with pytest.raises(HearthError, match="run `validate` first"):
         run_stage(stage, settings)
+
+
+def test_a_record_that_hangs_costs_only_itself_and_is_tried_again(settings):
+    patience = {"n5": 60.0}
+
+    def slow(record, context):
+        end = time.monotonic() + patience.get(record["program_id"], 0.0)
+        while time.monotonic() < end:
+            pass
+        return [{"program_id": record["program_id"], "number": record["number"], "half": 0}]
+
+    stage = replace(STAGE, process=slow)
+    result = run_stage(stage, replace(settings, time_limit=0.2))
+    assert [(row["record_id"], row["code"]) for row in rejects(result)] == [("n5", "TIMED_OUT")]
+    assert result.manifest.counts.through == 99
+    patience.clear()
+    again = run_stage(stage, replace(settings, time_limit=0.2))
+    assert again.fresh and again.manifest.counts.through == 100
+    assert not run_stage(stage, settings).fresh
