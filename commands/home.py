@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,6 +12,7 @@ import typer
 from hearth.commands import output
 
 if TYPE_CHECKING:
+    from hearth.schemas.errors import Diagnostic
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.homes.graph_layout import LaidOut
 
@@ -101,9 +103,9 @@ def lint(
 
     graph = _graph(home, homes)
     faults = check(graph, file=home if Path(home).suffix else "")
-    laid = _laid_out(graph, home) if layout else None
+    laid = _laid_out(home, homes) if layout else None
     if as_json:
-        told = {"home": home, "faults": [output.diagnostic_json(fault) for fault in faults]}
+        told = {"home": home, "faults": [output.diagnostic_json(fault) for fault in faults], "by_code": _codes(faults)}
         if laid is not None:
             told |= {"met": met(laid), "unmet": [output.diagnostic_json(fault) for fault in laid.unmet]}
         output.emit(told)
@@ -114,8 +116,13 @@ def lint(
                 print(f"{fault.message} ({fault.suggestion})")
             output.table(("of the graph", "there are", "shown by the layout"), [
                 (row["what"], row["all"], row["shown"]) for row in met(laid)])  # fmt: skip
-        print(f"{home}: {output.counted(len(faults), 'fault')}")
+        codes = ", ".join(f"{code} {count}" for code, count in _codes(faults).items())
+        print(f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else ""))
     output.status(len(faults), strict=True)
+
+
+def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
+    return dict(sorted(Counter(str(fault.code) for fault in faults).items()))
 
 
 def met(laid: LaidOut) -> list[dict[str, Any]]:
@@ -129,10 +136,10 @@ def met(laid: LaidOut) -> list[dict[str, Any]]:
     return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
 
 
-def _laid_out(graph: EnvironmentGraph, home: str) -> LaidOut:
-    from hearth.simulation.homes.graph_layout import lay_out
+def _laid_out(home: str, homes: Path | None) -> LaidOut:
+    from hearth.simulation.homes import catalog
 
-    return lay_out(graph, Path(home).stem)
+    return catalog.laid_out(home, homes)
 
 
 @app.command()
@@ -162,7 +169,7 @@ def convert(
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(_laid_out(graph, home).graph if layout else graph, out)
+        written = exporting.write_release(_laid_out(home, homes).graph if layout else graph, out)
     if as_json:
         output.emit({"home": home, "file": out, "nodes": written})
     else:

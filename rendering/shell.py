@@ -24,6 +24,23 @@ def walls_of(graph: EnvironmentGraph, rooms: Sequence[Node]) -> list[Thing]:
     return [thing for room in rooms if room.box for thing in _around(room, room.box, holes)]
 
 
+def around_openings(wall: Box, openings: Sequence[Box]) -> list[Box]:
+    """A wall panel without what opens in it: itself where nothing does."""
+    (x, y, z), (w, h, d) = wall
+    axis = 2 if w > d else 0
+    middle, length = (x, w) if axis == 2 else (z, d)
+    whole = (middle - length / 2, middle + length / 2, y - h / 2, y + h / 2)
+    left = pieces(whole, _cut(openings, wall.center[axis], axis))
+    if left == [whole]:
+        return [wall]
+    found = []
+    for a0, a1, y0, y1 in left:
+        at, up = (a0 + a1) / 2, (y0 + y1) / 2
+        center, size = ((at, up, z), (a1 - a0, y1 - y0, d)) if axis == 2 else ((x, up, at), (w, y1 - y0, a1 - a0))
+        found.append(Box(center, size))
+    return found
+
+
 def _around(room: Node, box: Box, openings: Sequence[Box]) -> Iterator[Thing]:
     (x, y, z), (w, h, d) = box.center, box.size
     seed, low = derive(0, "walls", room.id), y - h / 2

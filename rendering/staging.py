@@ -14,7 +14,7 @@ from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look, Size
 from hearth.rendering.models import Model, choice_of, model_of
 from hearth.rendering.scene import Scene
-from hearth.rendering.shell import walls_of
+from hearth.rendering.shell import OPENINGS, around_openings, walls_of
 from hearth.rendering.things import Thing
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.rng import derive
@@ -108,6 +108,11 @@ class Stage:
         """The doorways."""
         return tuple(node for node in self.graph.nodes if node.class_name == "doorjamb" and node.box)
 
+    @cached_property
+    def openings(self) -> tuple[Box, ...]:
+        """What opens in walls."""
+        return tuple(node.box for node in self.graph.nodes if node.class_name in OPENINGS and node.box)
+
     def seed_of(self, node: Node) -> int:
         """What decides a node's colours: furniture of one class in one room is alike."""
         if (
@@ -155,6 +160,11 @@ class Stage:
             return
         room = self.rooms.get(self.room_of.get(node.id, -1))
         choice = choice_of(node.class_name, self.knowledge)
+        parts = around_openings(node.box, self.openings) if choice.recipe == "wall" else [node.box]
+        if parts != [node.box]:
+            for part in parts:
+                yield from self.things(replace(node, box=part))
+            return
         box, yaw = node.box, node.yaw or 0.0
         if choice.recipe == "door" and "CLOSED" in node.states:
             box, yaw = self._shut(box) or (box, yaw)

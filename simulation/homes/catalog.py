@@ -65,10 +65,16 @@ def layout_of(path: Path | str) -> Layout:
     return measured(graph, found.stem) if has_geometry(graph) else laid_out(found).layout
 
 
+def laid_out(home: Path | str, directory: Path | str | None = None) -> LaidOut:
+    """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and what of them that
+    does not show; errors as of `load_graph`.
+    """
+    return _laid_out(Path(home) if Path(home).suffix else _file(str(home), directory))
+
+
 @lru_cache(maxsize=16)
-def laid_out(path: Path) -> LaidOut:
-    """A scene graph file with the geometry that its relations suggest, and what of them it does not show."""
-    return lay_out(_graph(path), path.stem)
+def _laid_out(path: Path) -> LaidOut:
+    return lay_out(graph_of(path), path.stem)
 
 
 def graph_of(path: Path | str) -> EnvironmentGraph:

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import product
+from typing import TYPE_CHECKING
 
 from hearth.simulation.homes import raster
 from hearth.simulation.homes.floor import BODY, CELL, HEAD
 from hearth.simulation.homes.forms import Form, form
-from hearth.simulation.homes.geometry import DIRECTIONS, Rect, along_x, bottom, box_over, facing_from, footprint, top
+from hearth.simulation.homes.geometry import DIRECTIONS, Rect, bottom, box_over, facing_from, footprint, top
 from hearth.simulation.homes.geometry import turned as extents
+from hearth.simulation.homes.graph_obstacles import Obstacles, Spot
 from hearth.simulation.homes.graph_parts import Parts
-from hearth.simulation.homes.graph_relations import NEAR, gap, sees
+from hearth.simulation.homes.graph_relations import NEAR, gap, gaps, seen
 from hearth.simulation.homes.packing import contents
 from hearth.simulation.homes.plan import Faults, Room
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from hearth.schemas.graph import Box
 
 ALONG, ACROSS = 0.25, 0.5
 """Metres between places tried along walls, and out in the room."""
@@ -24,11 +31,12 @@ MOST_LOOKED_AT = 40
 """Of the best places so many are tried for whether they block the way."""
 MARGIN = 0.5
 """Metres beyond a room's walls that are looked at: its doors' holes."""
-LOOSE_WALL = 0.6
+SLACK = 0.2
+"""Metres by which things are placed nearer than they need be: what is on and in them is not at their edge."""
+MUST = 60.0
+"""What being ON a wall, a tile or a rug is worth, in relations."""
+LOOSE_WALL = 5.0
 """What a place at a wall is worth, in relations: furniture out in the room needs a reason."""
-
-Spot = tuple[Rect, float, float]
-"""Where a thing may stand: the floor under it, its yaw, its underside."""
 
 
 class Crowd:
@@ -39,11 +47,16 @@ class Crowd:
         squeezed: those that stand in the place of others, because there was no room.
     """
 
-    def __init__(self, parts: Parts, built: Shell) -> None:
+    def __init__(self, parts: Parts, built: Shell, before: Mapping[int, Thing]) -> None:
         self.parts = parts
         self.built = built
         self.things: dict[int, Thing] = {}
         self.squeezed: set[int] = set()
+        self._before = before
+
+    def known(self, node: int) -> Thing | None:
+        """Where a thing is, or else where it was when all were placed before."""
+        return self.things.get(node) or self._before.get(node)
 
 
 def furnish(crowd: Crowd, room_id: int, room: Room) -> bool:
@@ -102,28 +115,51 @@ def _front(class_name: str, shaped: Form) -> float:
 
 def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing], kept: list[Rect]) -> Spot | None:
     """The free spot where most relations are met; of equal ones the first."""
-    own = crowd.parts.family(node)
-    near = [crowd.things[n] for m in sorted(own) for n in crowd.parts.near.get(m, ()) if n in crowd.things]
-    faced = [crowd.things[n] for m in sorted(own) for n in crowd.parts.faces.get(m, ()) if n in crowd.things]
-    facing = [t for n, t in crowd.things.items() if own & set(crowd.parts.faces.get(n, ())) and t.room == room.name]
-    rugs = [crowd.things[n] for n in crowd.parts.over.get(node, ()) if n in crowd.things]
     front = _front(crowd.parts.nodes[node].class_name, shaped)
-    found: list[tuple[float, int, Spot]] = []
-    for number, (spot, worth) in enumerate(_spots(room, shaped)):
-        if not _fits(crowd, room, spot, shaped, front=front, solids=solids, kept=kept):
-            continue
-        box = box_over(spot[0], spot[2], spot[2] + shaped.size[1])
-        score = worth + sum(gap(box, thing.box) <= NEAR - 0.3 for thing in near)
-        score += 2 * sum(sees(box, spot[1], thing.box) for thing in faced)
-        score += sum(sees(thing.box, thing.yaw, box) for thing in facing)
-        score += 2 * sum(spot[0].overlap(footprint(rug.box)) > 0 for rug in rugs)
-        found.append((-round(score, 6), number, spot))
-    found.sort()
+    every = list(_spots(room, shaped))
+    openings = [hole for hole in crowd.built.openings if hole.room == room.name]
+    free = Obstacles(room, solids, kept, openings).free([spot for spot, _ in every], shaped, front)
+    spots = [spot for spot, is_free in zip(every, free, strict=True) if is_free]
+    if not spots:
+        return None
+    scores = _scores(crowd, room, node, [spot for spot, _ in spots], shaped.size[1])
+    order = sorted(range(len(spots)), key=lambda k: (-round(float(scores[k]) + spots[k][1], 6), k))
     blocks = shaped.mount not in ("flat", "ceiling") and (shaped.mount != "wall" or shaped.up < HEAD)
-    for _, _, spot in found[:MOST_LOOKED_AT]:
-        if not blocks or passable(room, [footprint(t.box) for t in solids if bottom(t.box) < HEAD] + [spot[0]], kept):
+    standing = [footprint(t.box) for t in solids if bottom(t.box) < HEAD]
+    # The best must not keep a rarer spot that blocks nothing from being found: so a few of every part of the order.
+    for k in dict.fromkeys((*order[:MOST_LOOKED_AT], *order[:: max(1, len(order) // MOST_LOOKED_AT)])):
+        spot = spots[k][0]
+        if not blocks or passable(room, [*standing, spot[0]], kept):
             return spot
     return None
+
+
+def _scores(crowd: Crowd, room: Room, node: int, spots: list[Spot], height: float) -> np.ndarray:
+    """For each spot how much would be met of what the graph says of a thing and of all on and in it."""
+    import numpy as np
+
+    parts, own = crowd.parts, sorted(crowd.parts.family(node))
+    boxes = [box_over(rect, low, low + height) for rect, _, low in spots]
+    yaws = [yaw for _, yaw, _ in spots]
+    near = [t for m in own for n in parts.near.get(m, ()) if (t := crowd.known(n)) is not None]
+    faced = [t for m in own for n in parts.faces.get(m, ()) if (t := crowd.known(n)) is not None]
+    lookers = [t for m in own for r, n, out in parts.said.get(m, ()) if r == "FACING" and not out
+               and (t := crowd.known(n)) is not None and t.yaw is not None and t.room == room.name]  # fmt: skip
+    score: np.ndarray = (gaps(boxes, [t.box for t in near]) <= NEAR - SLACK).sum(axis=1).astype(float)
+    score += 2 * seen(boxes, yaws, [t.box for t in faced]).sum(axis=1)
+    score += seen([t.box for t in lookers], [t.yaw or 0.0 for t in lookers], boxes).sum(axis=0)
+    for other in (*parts.over.get(node, ()), *parts.under.get(node, ())):
+        thing = crowd.known(other)
+        if thing is not None:
+            score += MUST * np.array([_over(box, thing) for box in boxes])
+    return score
+
+
+def _over(box: Box, thing: Thing) -> bool:
+    """Whether a box is against a wall, or over (or under) a tile or rug."""
+    if thing.class_name == "wall":
+        return gap(box, thing.box) < 0.1
+    return footprint(box).overlap(footprint(thing.box)) > 0.01
 
 
 def _spots(room: Room, shaped: Form) -> Iterator[tuple[Spot, float]]:
@@ -196,49 +232,3 @@ def passable(room: Room, standing: list[Rect], doors: list[Rect]) -> bool:
     regions = raster.regions(raster.eroded(free, round(BODY / CELL) + 1))
     beyond = [set(np.unique((regions * outside)[cells(door.inset(-MARGIN))]).tolist()) - {0} for door in doors]
     return not doors or bool(set.intersection(*beyond))
-
-
-def _fits(
-    crowd: Crowd, room: Room, spot: Spot, shaped: Form, *, front: float, solids: list[Thing], kept: list[Rect]
-) -> bool:
-    rect, yaw, low = spot
-    high = low + shaped.size[1]
-    if not interior(room).contains(rect):
-        return False
-    if shaped.mount == "flat":
-        return True
-    for thing in solids:
-        if bottom(thing.box) < high and low < top(thing.box) and _meet(rect, footprint(thing.box)):
-            return False
-        if thing.front and low < 1.0 and _meet(rect, _before(footprint(thing.box), thing.yaw or 0.0, thing.front)):
-            return False
-    zone = _before(rect, yaw, front)
-    if front and not interior(room).contains(zone, slack=0.05):
-        return False
-    if front and any(_meet(zone, footprint(t.box)) for t in solids if bottom(t.box) < 1.0):
-        return False
-    if low < HEAD and any(_meet(rect, zone) for zone in kept):
-        return False
-    return not any(_hides(room, hole, rect, (low, high), yaw, shaped.mount) for hole in crowd.built.openings)
-
-
-def _hides(room: Room, hole: object, rect: Rect, heights: tuple[float, float], yaw: float, mount: str) -> bool:
-    """Whether it hangs in a hole of the wall, or stands high before a window."""
-    from hearth.simulation.homes.shell import Opening
-
-    assert isinstance(hole, Opening)
-    if hole.room != room.name or heights[0] >= hole.y1 or heights[1] <= hole.y0:
-        return False
-    deep = strip(interior(room), hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
-    high = hole.window is not None and heights[1] > hole.y0 + 0.3
-    return _meet(rect, deep) and ((mount == "wall" and facing_from(hole.wall) == yaw) or high)
-
-
-def _before(rect: Rect, yaw: float, depth: float) -> Rect:
-    side = next(name for name, degrees in DIRECTIONS.items() if degrees == yaw % 360)
-    start, end = (rect.x0, rect.x1) if along_x(side) else (rect.z0, rect.z1)
-    return strip(rect, side, start, end, -depth)
-
-
-def _meet(a: Rect, b: Rect) -> bool:
-    return a.x0 < b.x1 - 0.005 and b.x0 < a.x1 - 0.005 and a.z0 < b.z1 - 0.005 and b.z0 < a.z1 - 0.005

@@ -6,7 +6,7 @@ cannot be had is told, edge by edge.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import sqrt
 
@@ -15,20 +15,24 @@ from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.simulation.homes import graph_panels as panels
 from hearth.simulation.homes import shell
-from hearth.simulation.homes.geometry import OPPOSITE_WALL, Rect, box_over
+from hearth.simulation.homes.geometry import OPPOSITE_WALL, Rect
+from hearth.simulation.homes.graph_embedding import guessed
 from hearth.simulation.homes.graph_furnishing import Crowd, furnish
 from hearth.simulation.homes.graph_parts import Parts
-from hearth.simulation.homes.graph_relations import unmet
+from hearth.simulation.homes.graph_relations import missed, unmet
 from hearth.simulation.homes.graph_rooms import Pair, packed
 from hearth.simulation.homes.layout import Layout
-from hearth.simulation.homes.plan import Doorway, Faults, Plan, Room, Window
-from hearth.simulation.homes.shell import Thing, interior, shared_wall, span
+from hearth.simulation.homes.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
+from hearth.simulation.homes.shell import Thing, shared_wall, span
 
 HEIGHT = 2.6
 LEAST_SIDE = 2.6
 SPACE = 2.4
 """Square metres of room for each square metre of furniture."""
+GOES = 2
+"""How often a home is furnished in a series, each time with what was learnt."""
 ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
 """Factors by which a room's floor is enlarged until everything stands."""
 
@@ -59,19 +63,8 @@ def lay_out(graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None
     if not parts.rooms:
         raise HearthError.of(Code.NO_ROOM, "there is no room to lay out", file=name,
                              suggestion="a node of the category Rooms")  # fmt: skip
-    best: tuple[Plan, shell.Shell, Crowd] | None = None
-    factors = dict.fromkeys(parts.rooms, 0)
-    for _ in range(len(ENLARGED)):
-        plan, built = _plan(parts, name, {room: ENLARGED[step] for room, step in factors.items()})
-        crowd = Crowd(parts, built)
-        short = [room for room, found in zip(parts.rooms, plan.rooms, strict=True) if furnish(crowd, room, found)]
-        best = plan, built, crowd
-        if not short or all(factors[room] == len(ENLARGED) - 1 for room in short):
-            break
-        factors.update({room: min(factors[room] + 1, len(ENLARGED) - 1) for room in short})
-    assert best is not None
-    plan, built, crowd = best
-    things = _shell_things(parts, plan, built) | crowd.things
+    plan, built = _large_enough(parts, name)
+    crowd, things = _arranged(parts, plan, built)
     layout = Layout(plan, built, (*built.things, *crowd.things.values()))
     people = [node.id for node in graph.nodes if node.class_name == CHARACTER_CLASS]
     for person in people[:1]:
@@ -80,6 +73,44 @@ def lay_out(graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None
         things[person] = layout.character
     new = EnvironmentGraph(tuple(_placed(node, things.get(node.id)) for node in graph.nodes), graph.edges, graph.extra)
     return LaidOut(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
+
+
+def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:
+    """Rooms in which all furniture stands, or that are as large as they may be."""
+    factors = dict.fromkeys(parts.rooms, 0)
+    for _ in ENLARGED:
+        plan, built = _plan(parts, name, {room: ENLARGED[step] for room, step in factors.items()})
+        short = _short(Crowd(parts, built, {}), plan)
+        if all(factors[room] == len(ENLARGED) - 1 for room in short):
+            break
+        factors.update({room: min(factors[room] + 1, len(ENLARGED) - 1) for room in short})
+    return plan, built
+
+
+def _short(crowd: Crowd, plan: Plan) -> list[int]:
+    """Furnish all rooms; those where something of size found no place."""
+    return [room for room, found in zip(crowd.parts.rooms, plan.rooms, strict=True) if furnish(crowd, room, found)]
+
+
+def _arranged(parts: Parts, plan: Plan, built: shell.Shell) -> tuple[Crowd, dict[int, Thing]]:
+    """Everything in its place, the best of several goes: each knows where the one before has put things.
+
+    The furniture decides which tile is where, and then the tiles where the furniture is. One series of goes begins with
+    nothing known, the other with a guess.
+    """
+    fixed, places = panels.rooms_and_doors(parts, plan, built), panels.slots(parts, plan, built)
+    guess = guessed(parts, plan, fixed)
+    found: list[tuple[int, Crowd, dict[int, Thing]]] = []
+    for start in ({}, guess | panels.assigned(parts, places, guess | fixed, anew=True)):
+        before: dict[int, Thing] = start
+        for _ in range(GOES):
+            crowd = Crowd(parts, built, before | fixed)
+            lost = 1000 * len(_short(crowd, plan))
+            before = fixed | crowd.things
+            before |= panels.assigned(parts, places, before)
+            found.append((lost + missed(parts, before), crowd, before))
+    _, crowd, things = min(found, key=lambda go: go[0])
+    return crowd, dict(things)
 
 
 def _placed(node: Node, thing: Thing | None) -> Node:
@@ -99,7 +130,7 @@ def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, 
     rects, _ = packed(sizes, list(parts.between.values()))
     x, z = min(rect.x0 for rect in rects.values()), min(rect.z0 for rect in rects.values())
     moved = {r: Rect(*(round(v, 2) for v in (q.x0 - x, q.z0 - z, q.x1 - x, q.z1 - z))) for r, q in rects.items()}
-    doors = tuple(_doorways(parts, moved))
+    doors = (*_doorways(parts, moved), *_ways_out(parts, moved))
     rooms = tuple(
         Room(_name(node := parts.nodes[r]), node.class_name, moved[r], _windows(parts, r, moved), line=r)
         for r in parts.rooms
@@ -116,18 +147,35 @@ def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
             pairs.setdefault(pair, []).append(door)
     found = []
     for (one, other), doors in pairs.items():
-        leaf = any(parts.nodes[door].class_name == "door" for door in doors)
         names = _name(parts.nodes[one]), _name(parts.nodes[other])
-        found.append(Doorway(names, leaf=leaf, into=names[1], line=doors[0]))
+        leaves = [door for door in doors if parts.nodes[door].class_name == "door"]
+        into = next(
+            (_name(parts.nodes[r]) for door in leaves if (r := parts.room.get(door, -1)) in (one, other)), names[1]
+        )
+        found.append(Doorway(names, leaf=bool(leaves), into=into, line=doors[0]))
     return found
+
+
+def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
+    """A room's main door, in the last of its outer walls; the others are for windows."""
+    for room in parts.rooms:
+        walls = _outer(room, rects)
+        for door in parts.of_class(room, "maindoor")[: len(walls[:1])]:
+            yield Doorway((_name(parts.nodes[room]), OUTSIDE), wall=walls[-1], line=door)
+
+
+def _outer(room: int, rects: Mapping[int, Rect]) -> list[str]:
+    """The walls of a room that no other room shares."""
+    beside = (shared_wall(rects[room], rects[other]) for other in rects if other != room)
+    inner = {shared[0] for shared in beside if shared is not None}
+    return [wall for wall in OPPOSITE_WALL if wall not in inner]
 
 
 def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window, ...]:
     """As many as the graph has, in the middle of outer walls and then beside the middle; curtains as it has them."""
-    inner = {
-        shared[0] for other in rects if other != room and (shared := shared_wall(rects[room], rects[other])) is not None
-    }
-    walls = [wall for wall in OPPOSITE_WALL if wall not in inner]
+    walls = _outer(room, rects)
+    if parts.of_class(room, "maindoor"):
+        walls = walls[:-1]
     count, curtains = len(parts.of_class(room, "window")), len(parts.of_class(room, "curtain"))
     found = []
     for number, wall in zip(range(count), walls, strict=False):
@@ -136,37 +184,3 @@ def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window
         hung = min(2, curtains - 2 * number) if curtains > 2 * number else 0
         found.append(Window(wall, None, width, 1.2, 0.9, curtains=hung))
     return tuple(found)
-
-
-def _shell_things(parts: Parts, plan: Plan, built: shell.Shell) -> dict[int, Thing]:
-    """Rooms, doors, windows, curtains, floors and ceilings of the graph, as far as the rooms have them."""
-    found: dict[int, Thing] = {}
-    for node, room, thing in zip(parts.rooms, plan.rooms, Layout(plan, built, ()).rooms(), strict=True):
-        found[node] = thing
-        own = [t for t in built.things if t.room == room.name]
-        for class_name in ("window", "curtain"):
-            found |= _matched(parts.of_class(node, class_name), [t for t in own if t.class_name == class_name])
-        for class_name, heights in (("floor", (-0.1, 0.0)), ("ceiling", (HEIGHT, HEIGHT + 0.1))):
-            found |= _tiled(parts.of_class(node, class_name), class_name, room, heights)
-    for door in plan.doorways:
-        hung = [t for t in built.things if t.line == door.line and t.mount == "door"]
-        pair = {room for room in parts.rooms if _name(parts.nodes[room]) in door.rooms}
-        here = [d for d, rooms in sorted(parts.between.items()) if set(rooms) == pair]
-        for class_name in ("door", "doorjamb"):
-            nodes = [d for d in here if parts.nodes[d].class_name == class_name]
-            found |= _matched(nodes, [t for t in hung if t.class_name == class_name])
-    return found
-
-
-def _tiled(nodes: Sequence[int], class_name: str, room: Room, heights: tuple[float, float]) -> dict[int, Thing]:
-    """A room's floor or ceiling in as many strips as the graph has tiles of it."""
-    inner, found = interior(room), {}
-    for k, node in enumerate(nodes):
-        x0, x1 = (inner.x0 + inner.width * i / len(nodes) for i in (k, k + 1))
-        box = box_over(Rect(x0, inner.z0, x1, inner.z1), *heights)
-        found[node] = Thing(str(node), class_name, room.name, box)
-    return found
-
-
-def _matched(nodes: Sequence[int], things: Sequence[Thing]) -> dict[int, Thing]:
-    return dict(zip(nodes, things, strict=False))

@@ -26,7 +26,10 @@ class Parts:
         children: ids of what stands on or in a thing.
         over: what else a thing is ON: rugs, the floor.
         between: the two rooms of each door.
+        under: what is ON a rug, a tile or a wall, by that.
         near, faces: CLOSE and FACING, by source.
+        said: ON, CLOSE (by source only) and FACING of each node, as (relation, other, whether it is the source); of
+            INSIDE only what the shell is in (a curtain in a shower).
     """
 
     def __init__(self, graph: EnvironmentGraph, knowledge: Knowledge) -> None:
@@ -38,16 +41,30 @@ class Parts:
             if edge.source in self.nodes and edge.target in self.nodes and edge.source != edge.target:
                 targets[edge.relation][edge.source].append(edge.target)
         self.near, self.faces = targets["CLOSE"], targets["FACING"]
+        self.said: dict[int, list[tuple[str, int, bool]]] = defaultdict(list)
+        for relation in ("ON", "CLOSE", "FACING", "INSIDE"):
+            for source, found in targets[relation].items():
+                for target in found:
+                    if relation == "INSIDE" and (target in self.rooms or self.nodes[source].class_name not in SHELL):
+                        continue
+                    self.said[source].append((relation, target, True))
+                    if relation != "CLOSE":
+                        self.said[target].append((relation, source, False))
         self.between = {
             door: (pair[0], pair[1])
             for door, found in targets["BETWEEN"].items()
             if len(pair := sorted(set(found) & set(self.rooms))) == 2
         }
+        self._places = {"ON": targets["ON"], "INSIDE": targets["INSIDE"]}
         self.parent: dict[int, tuple[int, str]] = {}
-        for relation, word in (("INSIDE", "inside"), ("ON", "on")):
+        for relation, word in (("INSIDE", "inside"), ("ON", "on"), ("INSIDE", "in anything")):
             for child, places in sorted(targets[relation].items()):
                 self._settle(child, word, places)
         self.over = {child: places for child, places in targets["ON"].items() if child not in self.parent}
+        self.under: dict[int, list[int]] = defaultdict(list)
+        for child, places in self.over.items():
+            for place in places:
+                self.under[place].append(child)
         self.children: dict[int, list[int]] = defaultdict(list)
         for child, (parent, _) in self.parent.items():
             self.children[parent].append(child)
@@ -59,7 +76,8 @@ class Parts:
             return
         able = [place for place in places if self._bears(place, word) and child not in self._line(place)]
         if able:
-            self.parent[child] = (min(able, key=lambda place: (self._volume(place), place)), word)
+            place = min(able, key=lambda place: (self._volume(place), place))
+            self.parent[child] = (place, "inside" if word == "in anything" else word)
 
     def _is_thing(self, node: int) -> bool:
         known = self.nodes[node]
@@ -69,6 +87,8 @@ class Parts:
     def _bears(self, place: int, word: str) -> bool:
         """Whether things are put there: what is on a rug stands on the floor."""
         shaped = form(self.nodes[place].class_name, self.knowledge)
+        if word == "inside" and not {"CONTAINERS", "CAN_OPEN"} & set(self.nodes[place].properties):
+            return False
         return self._is_thing(place) and shaped is not None and not (word == "on" and shaped.mount == "flat")
 
     def _line(self, node: int) -> list[int]:
@@ -88,6 +108,11 @@ class Parts:
             if found:
                 return min(found)
         return -1
+
+    def both_ways(self, one: int, other: int) -> tuple[str, ...]:
+        """Which of ON and INSIDE are said of two things both ways round."""
+        return tuple(name for name, places in self._places.items()
+                     if other in places.get(one, ()) and one in places.get(other, ()))  # fmt: skip
 
     def roots(self, room: int) -> list[int]:
         """What stands in a room on nothing else, the largest first."""
