@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
 from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 from hearth.pipelines.readers import crowd
 from hearth.pipelines.readers.item import Item, refused
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.tally import Tally, digest
 from hearth.schemas.failures import Code
 
 ALIKE_WORDS = 0.8
@@ -28,7 +29,8 @@ _FEWEST_STEPS = 4
 _SKETCH = 6
 _MOST_CANDIDATES = 20
 
-Digest = bytes
+RECENT = 20_000
+"""Answers of each stage among which a copy is looked for: whoever copies does so within a batch."""
 
 
 class Copies:
@@ -36,12 +38,13 @@ class Copies:
 
     Args:
         pasted: digests of (worker, program) given for many descriptions, from a first reading.
+        recent: how many answers of each stage are kept to compare with.
     """
 
-    def __init__(self, pasted: frozenset[Digest] = frozenset()) -> None:
+    def __init__(self, pasted: frozenset[int] = frozenset(), recent: int = RECENT) -> None:
         self._pasted = pasted
-        self._by_sketch: dict[int, list[tuple[str, Sequence[int]]]] = defaultdict(list)
-        self._by_worker: dict[tuple[str, str], list[tuple[str, Sequence[int]]]] = defaultdict(list)
+        self._told = _Recent(recent)
+        self._written = _Recent(recent)
 
     def checked(self, item: Item) -> Item:
         """The item, or its refusal as a copy."""
@@ -63,46 +66,78 @@ class Copies:
         if len(words) < _FEWEST_WORDS:
             return ""
         sketch = sorted({hash_of(f"{a} {b}") for a, b in pairwise(words)})[:_SKETCH]
-        candidates = {name: other for key in sketch for name, other in self._by_sketch[key]}
-        for name, other in candidates.items():
+        for name, other in self._told.among(sketch):
             alike = _alike(words, other)
             if alike >= ALIKE_WORDS:
                 return f"nearly the words of {name} (similarity {alike:.2f})"
-        for key in sketch:
-            if len(self._by_sketch[key]) < _MOST_CANDIDATES:
-                self._by_sketch[key].append((record_id, words))
+        self._told.keep(record_id, words, sketch)
         return ""
 
     def _written_before(self, record_id: str, cells: dict[str, str]) -> str:
         steps = [hash_of(step) for step in _steps(cells)]
         if len(steps) < _FEWEST_STEPS:
             return ""
-        written = self._by_worker[cells["WorkerId"].strip(), cells["Input.description_id"].strip()]
-        for name, other in written:
+        task = hash_of("\0".join((cells["WorkerId"].strip(), cells["Input.description_id"].strip())))
+        for name, other in self._written.among([task]):
             alike = _alike(steps, other)
             if alike >= ALIKE_STEPS:
                 return f"nearly the program of {name}, of the same worker (similarity {alike:.2f})"
-        if len(written) < _MOST_CANDIDATES:
-            written.append((record_id, steps))
+        self._written.keep(record_id, steps, [task])
         return ""
 
 
-def pasted(items: Iterable[Item]) -> frozenset[Digest]:
+class _Recent:
+    """The last so many answers, found by any of their keys; under each key the first few that are still kept."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._kept: dict[int, tuple[str, array[int], tuple[int, ...]]] = {}
+        self._by_key: dict[int, list[int]] = {}
+        self._next = 0
+
+    def among(self, keys: Iterable[int]) -> Iterator[tuple[str, Sequence[int]]]:
+        """Names and contents of those that share a key, each once."""
+        numbers = dict.fromkeys(number for key in keys for number in self._by_key.get(key, ()))
+        for number in numbers:
+            name, content, _ = self._kept[number]
+            yield name, content
+
+    def keep(self, name: str, content: Sequence[int], keys: Iterable[int]) -> None:
+        """Keep one more, and forget the oldest."""
+        own = tuple(key for key in keys if len(self._by_key.get(key, ())) < _MOST_CANDIDATES)
+        self._kept[self._next] = (name, array("I", content), own)
+        for key in own:
+            self._by_key.setdefault(key, []).append(self._next)
+        self._next += 1
+        if len(self._kept) > self._most:
+            self._forget(self._next - 1 - self._most)
+
+    def _forget(self, number: int) -> None:
+        for key in self._kept.pop(number)[2]:
+            numbers = self._by_key[key]
+            numbers.remove(number)
+            if not numbers:
+                del self._by_key[key]
+
+
+def pasted(items: Iterable[Item]) -> frozenset[int]:
     """Programs that one worker gave for many descriptions, as digests of worker and program."""
-    found: dict[Digest, set[Digest]] = defaultdict(set)
+    answers, given = Tally(), Tally()
+    found: set[int] = set()
     for item in items:
         if item.reader == crowd.NAME and item.value["stage"] == 2:
             cells = item.value["cells"]
-            digest = program_digest(cells)
-            if digest and len(found[digest]) < PASTED:
-                found[digest].add(_digest(cells["Input.description_id"].strip() or cells["Input.description"]))
-    return frozenset(digest for digest, described in found.items() if len(described) >= PASTED)
+            program = program_digest(cells)
+            described = cells["Input.description_id"].strip() or cells["Input.description"]
+            if program and not answers.add(digest([program, described])) and given.add(program) + 1 == PASTED:
+                found.add(program)
+    return frozenset(found)
 
 
-def program_digest(cells: dict[str, Any]) -> Digest:
-    """A worker and what they wrote, spaces and case aside; empty for a program of very few steps."""
+def program_digest(cells: dict[str, Any]) -> int:
+    """A worker and what they wrote, spaces and case aside; 0 for a program of very few steps."""
     steps = _steps(cells)
-    return _digest("\n".join([cells["WorkerId"].strip(), *steps])) if len(steps) >= _FEWEST_STEPS else b""
+    return digest([cells["WorkerId"].strip(), *steps]) if len(steps) >= _FEWEST_STEPS else 0
 
 
 def _steps(cells: dict[str, Any]) -> list[str]:
@@ -122,7 +157,3 @@ def _alike(one: Sequence[int], other: Sequence[int]) -> float:
 def hash_of(text: str) -> int:
     """A number that stands for a text; equal in every process, unlike `hash`."""
     return int.from_bytes(blake2b(text.encode("utf-8", "surrogatepass"), digest_size=4).digest(), "little")
-
-
-def _digest(text: str) -> Digest:
-    return blake2b(text.encode("utf-8", "surrogatepass"), digest_size=12).digest()

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
-
-import orjson
 
 from hearth.pipelines.duplicates import Copies, pasted
 from hearth.pipelines.files import value_digest
@@ -15,10 +12,10 @@ from hearth.pipelines.readers import crowd, ours, published, release, scenes, sk
 from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, Recognised, recognise
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.repeated import Repeated
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import labelled, salt
-from hearth.pipelines.stage import Job, Partition, Record, Stage
-from hearth.schemas.failures import Code
+from hearth.pipelines.stage import BATCH, Job, Partition, Record, Stage
 from hearth.schemas.tables import INGESTED
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
@@ -57,15 +54,17 @@ _FULL = 8_192
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
     """Every record of the sources with its source's label; copies of one that was there before are refused."""
-    seen: set[bytes] = set()
+    repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in recognise(source.path, source.label)]
     copies = Copies(pasted(item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry)))
     for label, entry in found:
         if entry.refusal:
             yield label, refused(entry.inside, entry.refusal)
             continue
-        for item in _scanned(entry):
-            yield label, copies.checked(_first(item, seen))
+        checked = repeated.first(_scanned(entry), entry.reader, entry.inside)
+        if entry.reader == crowd.NAME:
+            checked = map(copies.checked, checked)
+        yield from ((label, item) for item in checked)
 
 
 def _scanned(entry: Recognised) -> Iterator[Item]:
@@ -74,34 +73,6 @@ def _scanned(entry: Recognised) -> Iterator[Item]:
         yield from SCANNERS[entry.reader](entry.path, entry.inside)
     except DamagedError as error:
         yield refused(entry.inside, Reject.because([f.at(entry.inside) for f in error.diagnostics]), f"{entry.inside}~")
-
-
-def _first(item: Item, seen: set[bytes]) -> Item:
-    if item.reader == "refused":
-        return item
-    what = "this text" if item.reader == spoken.NAME else "this answer of the same worker"
-    for twin, twins in ((item.record_id, "this id"), (_answer(item), what)):
-        digest = twin and _short(twin)
-        if digest and digest in seen:
-            message, name = f"{twins} was read before", item.record_id
-            fault = Reject.of(Code.DUPLICATE, message, file=item.place, line=item.line, found=name)
-            return refused(item.place, fault, name)
-        if digest:
-            seen.add(digest)
-    return item
-
-
-def _answer(item: Item) -> Any:
-    """What makes two records one: a crowd worker's answer, its own id left out, or steps in words; else None."""
-    if item.reader == spoken.NAME:
-        return [spoken.NAME, item.value["text"]]
-    if item.reader != crowd.NAME:
-        return None
-    return {name: cell for name, cell in item.value["cells"].items() if name != "HITId"}
-
-
-def _short(value: Any) -> bytes:
-    return hashlib.blake2b(orjson.dumps(value, option=orjson.OPT_SORT_KEYS), digest_size=12).digest()
 
 
 def partitions(job: Job) -> Iterator[Partition]:
@@ -172,6 +143,8 @@ STAGE = Stage(
         "pipelines/ingest.py",
         "pipelines/readers",
         "pipelines/duplicates.py",
+        "pipelines/repeated.py",
+        "pipelines/tally.py",
         "pipelines/spoken.py",
         "pipelines/rows.py",
     ),
@@ -180,5 +153,6 @@ STAGE = Stage(
     prepare=prepare,
     partitions=partitions,
     records=records,
+    batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
     tally=lambda row: row["kind"],
 )

@@ -26,6 +26,9 @@ MOST_PACKED = 200
 
 _HARMLESS = 64_000_000
 
+_READ = 1 << 15
+"""Bytes unpacked at a time: where a file breaks off, no more than these are lost."""
+
 
 @dataclass(frozen=True, slots=True)
 class Member:
@@ -149,7 +152,7 @@ class _Guarded(io.RawIOBase):
 
     def readinto(self, buffer: bytearray) -> int:  # type: ignore[override]
         try:
-            data = self._stream.read(len(buffer))
+            data = self._stream.read(min(len(buffer), _READ))
         except Exception as error:  # archives raise what their compression raises: zlib, lzma, EOFError, ArrowIOError
             raise _damaged(self._name, f"can't be unpacked: {error}") from error
         self._size += len(data)

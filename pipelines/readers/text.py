@@ -4,26 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import Any
 
-from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused, size_of
+from hearth.pipelines.readers.blocks import LONGEST_PROGRAM, Block, blocks
+from hearth.pipelines.readers.item import Item, Place, fault_of, pieces, refused, size_of
 from hearth.pipelines.rejects import Reject
-from hearth.schemas.blocks import STEP, Splitter
+from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import MAX_LINE
 
 NAME = "text"
 
 
-_FIRST_STEP = re.compile(rf"^(?:{STEP.pattern})", re.MULTILINE)
-
-
-@dataclass(slots=True)
-class _Block:
-    first: int
-    lines: list[str] = field(default_factory=list)
-    longest: int = 0
+_FIRST_STEP = re.compile(r"^[^\S\n]*+[\[<(|]", re.MULTILINE)
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
@@ -31,54 +24,38 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
     What begins the next program is told by `hearth.schemas.blocks`; a title without steps is a record of its own.
     """
-    found = False
-    for number, block in enumerate(_blocks(path), 1):
-        found = True
-        record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}#{number}"
-        yield _item(block, record_id, place)
-    if not found:
+    number = 0
+    for number, block in enumerate(blocks(pieces(path)), 1):
+        yield _item(block, f"{NAME}:{place}#{number}" if number > 1 else f"{NAME}:{place}", place)
+    if not number:
         reason = "nothing to read" if size_of(path) else "an empty file"
         suggestion = "write a title, a blank line, then one [Step] a line"
         yield refused(place, Reject.of(Code.EMPTY, reason, file=place, suggestion=suggestion))
 
 
-def _item(block: _Block, record_id: str, place: str) -> Item:
-    text = "\n".join(block.lines)
-    fault = fault_of(text, place, block.first)
+def _item(block: Block, record_id: str, place: str) -> Item:
+    first, text, cut = block
+    fault = fault_of(text, place, first)
+    if fault is None and (cut or len(text) > MAX_LINE):
+        fault = _too_long(block, place)
     if fault:
-        return refused(place, Reject((fault,)), record_id, block.first)
-    if block.longest > MAX_LINE:
-        long = next(number for number, line in enumerate(block.lines) if len(line) > MAX_LINE)
-        reject = Reject.of(
-            Code.LINE_TOO_LONG,
-            f"a line of {block.longest:,} characters",
-            file=place,
-            line=block.first + long,
-            found=block.lines[long][:60],
-            suggestion=f"at most {MAX_LINE:,}",
-        )
-        return refused(place, reject, record_id, block.first)
-    return Item(record_id, NAME, place, {"text": text + "\n", "line": block.first - 1})
+        return refused(place, Reject((fault,)), record_id, first)
+    return Item(record_id, NAME, place, {"text": text if text.endswith("\n") else text + "\n", "line": first - 1})
 
 
-def _blocks(path: Place) -> Iterator[_Block]:
-    block: _Block | None = None
-    splitter = Splitter()
-    for number, (line, length) in enumerate(lines(path), 1):
-        if not line or line.isspace():
-            splitter.blank()
-            if block:
-                block.lines.append("")
-            continue
-        if splitter.begins(line, length > MAX_LINE or STEP.match(line) is not None):
-            if block:
-                yield block
-            block = _Block(number)
-        assert block is not None
-        block.lines.append(line)
-        block.longest = max(block.longest, length)
-    if block:
-        yield block
+def _too_long(block: Block, place: str) -> Diagnostic | None:
+    """A line, or else a program, that is longer than any that people write."""
+    for number, line in enumerate(block.text.split("\n"), block.first):
+        if len(line) > MAX_LINE:
+            told = f"more than {MAX_LINE:,}" if block.cut else f"{len(line):,}"
+            message, found, suggestion = f"a line of {told} characters", line[:60], f"at most {MAX_LINE:,}"
+            return Diagnostic(
+                Code.LINE_TOO_LONG, message, place, number, 1, len(found), found, suggestion, source=line[:200]
+            )
+    if not block.cut:
+        return None
+    message = f"a program of more than {LONGEST_PROGRAM:,} characters"
+    return Diagnostic(Code.LINE_TOO_LONG, message, place, block.first, suggestion="begin each program with its title")
 
 
 def header(text: str) -> tuple[str, str]:

@@ -93,9 +93,9 @@ def test_a_bad_program_costs_no_other_program_of_its_file(write):
     assert faults(found) == [("NOT_TEXT", "tv.txt", 7)]
 
 
-def test_the_length_of_a_long_line_is_told(write):
+def test_a_line_beyond_all_bounds_is_told(write):
     ((_, reject),) = read(write("a.txt", "Walk\n\n[Walk] <" + "x" * 3_000_000 + "> (1)\n"))
-    assert "3,000,013 characters" in reject.diagnostics[0].message
+    assert "more than 10,000 characters" in reject.diagnostics[0].message
 
 
 # Crowd-sourcing batches
