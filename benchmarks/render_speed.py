@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.figure import BODIES, Figure
+from hearth.rendering.geometry import Still
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.modalities import MODALITIES, render
 from hearth.rendering.models import Model
@@ -33,8 +34,7 @@ OBJECTS = 10
 def scenes(graph: EnvironmentGraph, frames: int) -> Iterator[Scene]:
     """Somebody walks through the largest room; ten objects move with them."""
     whole = scene_of(graph)
-    still = tuple(thing for thing in whole.things if not (thing.above or thing.lamp))
-    rest = tuple(thing for thing in whole.things if thing.above or thing.lamp)
+    still = Still(whole.things)
     (x, y, z), (w, h, d) = room_of(graph).box or home_box(graph)
     for number in range(frames):
         share = number / max(frames - 1, 1) - 0.5
@@ -43,7 +43,7 @@ def scenes(graph: EnvironmentGraph, frames: int) -> Iterator[Scene]:
         carried = tuple(
             Thing(60_001 + k, "ball", BALL, (at[0] + 0.4, at[1] + 0.2 * k, at[2] + 0.1 * k)) for k in range(OBJECTS)
         )
-        yield replace(whole, things=(*rest, person, *carried), still=still)
+        yield replace(whole, things=(person, *carried), still=still)
 
 
 BALL = Model("toy", Look((0.12, 0.12, 0.12), kind="ball"))

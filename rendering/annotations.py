@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.camera import Camera, point_of
 from hearth.rendering.figure import Figure, figure_mesh
+from hearth.rendering.maps import extents
 from hearth.rendering.modalities import Shot
 from hearth.rendering.models import draw
 from hearth.rendering.things import Thing
@@ -56,20 +57,28 @@ class Skeleton(NamedTuple):
 
 def seen(shot: Shot) -> list[Seen]:
     """The things that have a pixel, by node id; characters, too. A thing drawn in parts is told as its first part."""
-    things = shot.geometry.things
-    ids = np.array([*(thing.id for thing in things), 0]).take(shot.owner, mode="wrap")
-    order = np.argsort(ids, kind="stable")
-    numbers, starts = np.unique(ids[order], return_index=True)
-    parts = dict(zip(numbers.tolist(), np.split(order, starts[1:]), strict=True))
+    things, camera = shot.geometry.things, shot.camera
+    found = np.tile(np.array((camera.width, camera.height, 0, 0, 0), np.int32), (len(things), 1))
+    extents(shot.hits.triangle, shot.geometry.owners, camera.width, found)
     first: dict[int, Thing] = {}
+    joined: dict[int, NDArray[np.int32]] = {}
+    for number in np.flatnonzero(found[:, 4]).tolist():
+        joined[things[number].id] = _joined(joined.get(things[number].id), found[number])
     for thing in things:
         first.setdefault(thing.id, thing)
-    return [_seen(shot.camera, first[node], pixels) for node, pixels in parts.items() if node in first]
+    return [_seen(camera, first[node], extent) for node, extent in sorted(joined.items())]
 
 
-def _seen(camera: Camera, thing: Thing, pixels: NDArray[np.int64]) -> Seen:
-    row, column = np.divmod(pixels, camera.width)
-    box = (int(column.min()), int(row.min()), int(column.max()) + 1, int(row.max()) + 1)
+def _joined(one: NDArray[np.int32] | None, other: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The extent of two parts of a thing."""
+    if one is None:
+        return other
+    return np.array((*np.minimum(one[:2], other[:2]), *np.maximum(one[2:4], other[2:4]), one[4] + other[4]), np.int32)
+
+
+def _seen(camera: Camera, thing: Thing, extent: NDArray[np.int32]) -> Seen:
+    left, top, right, bottom, pixels = extent.tolist()
+    box = (left, top, right, bottom)
     mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
     low, high = (bound.astype(np.float64) for bound in mesh.bounds())
     middle = (low + high) / 2
@@ -77,7 +86,7 @@ def _seen(camera: Camera, thing: Thing, pixels: NDArray[np.int64]) -> Seen:
     places, depths = camera.project(corners)
     places[depths <= 0] = np.nan
     center = _placed(thing, point_of(middle))
-    return Seen(thing.id, thing.class_name, len(pixels), box, center, point_of(high - low), thing.yaw, places)
+    return Seen(thing.id, thing.class_name, pixels, box, center, point_of(high - low), thing.yaw, places)
 
 
 def _corners(low: NDArray[Any], high: NDArray[Any]) -> list[Point]:
@@ -120,8 +129,7 @@ def _is_visible(shot: Shot, thing: Thing, place: Point) -> bool:
         return False
     pixel = int(row) * camera.width + int(column)
     owner = int(shot.owner[pixel])
-    skipped = shot.skipped if isinstance(shot.skipped, float) else float(shot.skipped[pixel])
-    there = float(shot.hits.distance[pixel]) + skipped
+    there = float(shot.distance[pixel])
     return there > depth or (owner >= 0 and shot.geometry.things[owner].id == thing.id and there > depth - BEHIND)
 
 

@@ -7,7 +7,7 @@ y up, z forward; poses are proper rotations, and the intrinsics turn y over into
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from math import atan, degrees, radians, tan
 from typing import Any
 
@@ -62,13 +62,13 @@ class Camera:
 
     def rays(self, offset: tuple[float, float] = (0.5, 0.5)) -> Floats:
         """(height * width, 6) origins and directions of one ray a pixel; directions have camera-space z = 1."""
-        focal = self.intrinsics[0, 0]
-        x = (np.arange(self.width) + offset[0] - self.width / 2) / focal
-        y = (self.height / 2 - np.arange(self.height) - offset[1]) / focal
-        rays = np.empty((self.height, self.width, 6), np.float32)
-        rays[..., :3] = self.eye
-        rays[..., 3:] = self.pose[:3, 2] + x[None, :, None] * self.pose[:3, 0] + y[:, None, None] * self.pose[:3, 1]
-        return rays.reshape(-1, 6)
+        from hearth.rendering.kernels import ray_grid
+
+        pose = self.pose
+        frame = np.array([*self.eye, *pose[:3, 0], *pose[:3, 1], *pose[:3, 2], self.intrinsics[0, 0]], np.float32)
+        rays = np.empty((self.height * self.width, 6), np.float32)
+        ray_grid(frame, self.width, self.height, np.array(offset, np.float32), rays)
+        return rays
 
     def project(self, points: NDArray[np.floating[Any]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(N, 2) pixels and (N,) depths of (N, 3) world points."""
@@ -76,11 +76,22 @@ class Camera:
         image = local @ self.intrinsics.T
         return image[:, :2] / image[:, 2:], local[:, 2]
 
+    def extent(self, box: Floats) -> tuple[int, int, int, int]:
+        """(left, top, right, bottom) of the pixels that a box (low and high corners) can cover; ends are outside."""
+        x, y, z = ((box[axis], box[axis + 3]) for axis in range(3))
+        places, depths = self.project(np.array([(a, b, c) for a in x for b in y for c in z], np.float64))
+        if depths.max() <= 0:
+            return 0, 0, 0, 0
+        if depths.min() < NEAREST:
+            return 0, 0, self.width, self.height
+        limit = (self.width, self.height)
+        low = np.clip(np.floor(places.min(axis=0)) - 1, 0, limit).astype(int)
+        high = np.clip(np.ceil(places.max(axis=0)) + 1, 0, limit).astype(int)
+        return int(low[0]), int(low[1]), int(high[0]), int(high[1])
 
-@lru_cache(maxsize=16)
-def cached_rays(camera: Camera, offset: tuple[float, float]) -> Floats:
-    """`camera.rays(offset)` as rows, (6, N), kept for cameras that take many pictures. Not to be written to."""
-    return np.ascontiguousarray(camera.rays(offset).T)
+
+NEAREST = 0.01
+"""Metres before a camera within which nothing is projected."""
 
 
 TOP_FOV = 14.0

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.kernels import COLUMNS, nearer, triangle_rows
 from hearth.rendering.meshes.mesh import Floats, Mesh, join
-from hearth.rendering.meshes.shapes import face_normals
-from hearth.rendering.rays import Caster, Hits, put
+from hearth.rendering.rays import Caster, Hits
 from hearth.rendering.things import Thing, placed
 
-Ids = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+Numbers = NDArray[np.integer[Any]]
 
-# Rows of `Part.rows`: what shading looks up of a triangle. Differences are to the first corner.
-NORMAL, NORMAL_U, NORMAL_V = slice(0, 3), slice(3, 6), slice(6, 9)
-UV, UV_U, UV_V = slice(9, 11), slice(11, 13), slice(13, 15)
-FLAT, DENSITY, COLOR, GLOW, SHINE, TEXTURE, SOLID = slice(15, 18), 18, slice(19, 22), 22, 23, 24, 25
-ROWS = 26
+MARGIN = 0.01
+"""Metres by which boxes around moving things are widened."""
+
+NEXT_TO = 0.15
+"""Metres between boxes that are taken for one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Part:
     things: tuple[Thing, ...]
     mesh: Mesh
     owner: NDArray[np.int32]
-    starts: Ids
+    starts: Numbers
 
     @classmethod
     def of(cls, things: tuple[Thing, ...]) -> Part:
@@ -60,36 +60,55 @@ class Part:
 
     @cached_property
     def rows(self) -> Floats:
-        """(ROWS, T) what shading looks up, a column a triangle; `solid` is what one must not see from behind."""
+        """(T, COLUMNS) what shading looks up; `solid` is what one must not see from behind."""
         mesh = self.mesh
-        rows = np.empty((ROWS, len(mesh)), np.float32)
-        normals, uvs = mesh.normals.transpose(1, 2, 0), mesh.uvs.transpose(1, 2, 0)
-        rows[NORMAL], rows[NORMAL_U], rows[NORMAL_V] = normals[0], normals[1] - normals[0], normals[2] - normals[0]
-        rows[UV], rows[UV_U], rows[UV_V] = uvs[0], uvs[1] - uvs[0], uvs[2] - uvs[0]
-        rows[FLAT] = face_normals(mesh.corners).T
-        rows[DENSITY] = _density(mesh)
-        rows[COLOR], rows[GLOW], rows[SHINE] = mesh.surface[:, :3].T, mesh.surface[:, 3], mesh.surface[:, 4]
-        rows[TEXTURE] = mesh.textures
-        rows[SOLID] = np.array([thing.laid for thing in self.things], np.float32)[self.owner] if len(mesh) else 0
+        solid = np.array([thing.laid for thing in self.things], np.float32)
+        rows = np.empty((len(mesh), COLUMNS), np.float32)
+        arrays = (np.ascontiguousarray(a, np.float32) for a in (mesh.corners, mesh.normals, mesh.uvs, mesh.surface))
+        triangle_rows(*arrays, np.ascontiguousarray(mesh.textures), solid[self.owner] if len(mesh) else solid, rows)
         return rows
 
-
-def _density(mesh: Mesh) -> Floats:
-    """(T,) tiles of its texture a metre of each triangle."""
-    spans, tiles = (
-        np.sqrt(((values[:, 1:] - values[:, :1]) ** 2).sum(axis=2).max(axis=1)) for values in (mesh.corners, mesh.uvs)
-    )
-    density: Floats = (tiles / np.maximum(spans, 1e-6)).astype(np.float32)
-    return density
+    @cached_property
+    def boxes(self) -> Floats:
+        """(K, 6) low and high corners of boxes that hold everything, few and small."""
+        bounds = [placed(thing).bounds() for thing in self.things if len(placed(thing))]
+        merged = _merged([(low - MARGIN, high + MARGIN) for low, high in bounds])
+        return np.array([(*low, *high) for low, high in merged], np.float32).reshape(-1, 6)
 
 
-@lru_cache(maxsize=4)
-def still_part(things: tuple[Thing, ...]) -> Part:
-    """The part of things that stay; kept, since all moments and often several programs share it."""
-    return Part.of(things)
+def _merged(boxes: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+    """Boxes around groups of boxes that are next to each other."""
+    groups: list[tuple[Floats, Floats]] = []
+    for low, high in boxes:
+        apart = []
+        for other in groups:
+            if (low - NEXT_TO < other[1]).all() and (high + NEXT_TO > other[0]).all():
+                low, high = np.minimum(low, other[0]), np.maximum(high, other[1])  # noqa: PLW2901 - it grows
+            else:
+                apart.append(other)
+        groups = [*apart, (low, high)]
+    return groups
 
 
-EMPTY: tuple[Thing, ...] = ()
+class Still:
+    """Things that stay: their triangles are prepared once and shared by all scenes that hold this object."""
+
+    def __init__(self, things: tuple[Thing, ...] = ()) -> None:
+        self.things = things
+
+    @cached_property
+    def whole(self) -> Part:
+        """Everything."""
+        return Part.of(self.things)
+
+    @cached_property
+    def opened(self) -> Part:
+        """Everything but ceilings and what hangs there."""
+        kept = tuple(thing for thing in self.things if not thing.above)
+        return Part.of(kept) if len(kept) < len(self.things) else self.whole
+
+
+NOTHING = Still()
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,11 +117,6 @@ class Geometry:
 
     still: Part
     moving: Part
-
-    @classmethod
-    def of(cls, still: tuple[Thing, ...], moving: tuple[Thing, ...]) -> Geometry:
-        """Of things that stay and things that do not."""
-        return cls(still_part(still), Part.of(moving))
 
     @cached_property
     def things(self) -> tuple[Thing, ...]:
@@ -114,42 +128,20 @@ class Geometry:
         """The number of the first triangle that moves."""
         return len(self.still.mesh)
 
+    @cached_property
+    def owners(self) -> NDArray[np.int32]:
+        """(T + 1,) index into `things` of each triangle; the last is -1: none."""
+        return np.concatenate(
+            (self.still.owner, self.moving.owner + np.int32(len(self.still.things)), np.array([-1], np.int32))
+        )
+
     def cast(self, rays: Floats) -> Hits:
-        """The first hit of each of (6, N) rays."""
-        return nearer(self.still.caster.cast(rays), self.moving.caster.cast(rays), self.first)
+        """The first hit of each of (N, 6) rays."""
+        hits = self.still.caster.cast(rays)
+        everywhere = np.arange(len(rays), dtype=np.int32)
+        nearer(everywhere, *self.moving.caster.raw(rays), self.first, *hits, np.empty_like(everywhere))
+        return hits
 
-    def occluded(self, origins: Floats, directions: Floats, far: float = 0.999, shadows: bool = False) -> Mask:
-        """(N,) whether anything (but a lamp, for `shadows`) lies between origins and origin + far * direction."""
-        still, moving = (part.shadows if shadows else part.caster for part in (self.still, self.moving))
-        found = moving.occluded(origins, directions, far)
-        rest = np.flatnonzero(~found)
-        found[rest] = still.occluded(origins[:, rest], directions[:, rest], far)
-        return found
-
-    def rows(self, triangle: Ids, which: slice = slice(None)) -> Floats:
-        """(ROWS, N) what is known of N triangles, or only those rows."""
-        first, moving = self.first, self.moving.rows[which]
-        if not first:
-            return moving.take(triangle, axis=1)
-        found: Floats = self.still.rows[which].take(triangle, axis=1, mode="clip")
-        moved = np.flatnonzero(triangle >= first)
-        if len(moved):
-            found[:, moved] = moving.take(triangle[moved] - first, axis=1)
-        return found
-
-    def owner(self, triangle: Ids) -> Ids:
+    def owner(self, triangle: Numbers) -> NDArray[np.int32]:
         """(N,) index into `things` of N triangles; -1 for none."""
-        owners = np.empty(self.first + len(self.moving.mesh) + 1, np.int64)
-        owners[: self.first] = self.still.owner
-        owners[self.first : -1] = self.moving.owner + len(self.still.things)
-        owners[-1] = -1
-        return owners.take(triangle, mode="wrap")
-
-
-def nearer(one: Hits, other: Hits, first: int) -> Hits:
-    """The nearer of two hits of the same rays, in `one`; the other's triangles are counted from `first`."""
-    won = np.flatnonzero(other.distance < one.distance)
-    if len(won):
-        found = other.part(won)
-        put(one, won, found._replace(triangle=found.triangle + first))
-    return one
+        return self.owners.take(triangle, mode="wrap")

@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering import shading
-from hearth.rendering.camera import Camera, cached_rays
+from hearth.rendering import maps, shading
+from hearth.rendering.camera import Camera
 from hearth.rendering.geometry import Geometry
+from hearth.rendering.kernels import nearer, taken
 from hearth.rendering.lights import from_above
 from hearth.rendering.rays import Hits
 from hearth.rendering.scene import Scene
+from hearth.rendering.shading import Setting
+from hearth.rendering.threads import each
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -23,8 +26,6 @@ Image = NDArray[Any]
 Floats = NDArray[np.floating[Any]]
 
 QUALITIES = ("draft", "fine")
-SUBPIXELS = ((0.625, 0.125), (0.125, 0.375), (0.875, 0.625), (0.375, 0.875))
-"""Where the four rays of a fine pixel go: a rotated grid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +34,8 @@ class Shot:
 
     Attributes:
         scene, camera, geometry: what, from where.
-        rays: (6, H*W); moved down to the cut for views from above.
-        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; 0 without a cut.
+        rays: (H*W, 6); moved down to the cut for views from above.
+        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; empty without a cut.
         hits: what they hit.
         class_ids: class -> number.
     """
@@ -43,14 +44,20 @@ class Shot:
     camera: Camera
     geometry: Geometry
     rays: Floats
-    skipped: Floats | float
+    skipped: Floats
     hits: Hits
     class_ids: Mapping[str, int]
 
     @cached_property
-    def owner(self) -> NDArray[np.int64]:
+    def owner(self) -> NDArray[np.int32]:
         """(H*W,) index of the thing that is seen, -1 for none."""
         return self.geometry.owner(self.hits.triangle)
+
+    @cached_property
+    def distance(self) -> Floats:
+        """(H*W,) along the camera's axis, metres; infinite for none."""
+        far: Floats = self.hits.distance + self.skipped if len(self.skipped) else self.hits.distance
+        return far
 
     def image(self, values: NDArray[Any]) -> Image:
         """(H*W, ...) values as (H, W, ...)."""
@@ -71,7 +78,7 @@ def render(
         scene: what there is.
         camera: from where, and how large.
         modalities: names of `MODALITIES`.
-        quality: `draft` (one ray a pixel, hard shadows) or `fine` (four rays, soft shadows, ambient occlusion).
+        quality: `draft` (one ray a pixel, hard shadows) or `fine` (smooth edges, soft shadows, ambient occlusion).
         class_ids: class -> number, for `class_ids`; the scene's classes from 1 on, sorted, where none are given.
 
     Returns:
@@ -102,40 +109,93 @@ def shoot(
     """Cast a camera's rays, through `offset` in each pixel."""
     rays, skipped = camera_rays(camera, offset)
     geometry = scene.geometry if camera.cut is None else scene.opened
-    return Shot(scene, camera, geometry, rays, skipped, geometry.cast(rays), class_ids or {})
+    hits = Hits.none(len(rays))
+    cast_at(geometry, rays, everywhere(len(rays)), hits)
+    overlay(geometry, camera, rays, hits)
+    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {})
 
 
-@lru_cache(maxsize=16)
-def camera_rays(camera: Camera, offset: tuple[float, float]) -> tuple[Floats, Floats | float]:
-    """(6, N) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
-    rays = cached_rays(camera, offset)
+def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:
+    """Fill in what some pixels' rays hit of the part that stays."""
+    prepare(geometry)
+
+    def work(chunk: NDArray[np.int32]) -> None:
+        part = slice(int(chunk[0]), int(chunk[-1]) + 1)
+        for values, found in zip(hits, geometry.still.caster.cast(rays[part]), strict=True):
+            values[part] = found
+
+    each(work, shading.chunks(pixels))
+
+
+def prepare(geometry: Geometry) -> None:
+    """Build what threads share, before they do."""
+    for part in (geometry.still, geometry.moving):
+        _ = part.caster, part.shadows, part.rows
+
+
+def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDArray[np.int32]:
+    """Cast the rays that can meet moving things at them; gives the pixels that show one."""
+    moving = geometry.moving
+    if not len(moving.mesh):
+        return everywhere(0)
+    covered = np.zeros(camera.height * camera.width, np.bool_)
+    for box in moving.boxes:
+        left, top, right, bottom = camera.extent(box)
+        covered.reshape(camera.height, camera.width)[top:bottom, left:right] = True
+    pixels = np.flatnonzero(covered).astype(np.int32)
+
+    def work(chunk: NDArray[np.int32]) -> NDArray[np.int32]:
+        some = np.empty((len(chunk), 6), np.float32)
+        taken(rays, chunk, some)
+        won = np.empty(len(chunk), np.int32)
+        return won[: nearer(chunk, *moving.caster.raw(some), geometry.first, *hits, won)]
+
+    found = each(work, shading.chunks(pixels))
+    return np.concatenate(found) if found else everywhere(0)
+
+
+@lru_cache(maxsize=8)
+def everywhere(size: int) -> NDArray[np.int32]:
+    """All pixels. Not to be written to."""
+    return np.arange(size, dtype=np.int32)
+
+
+NO_CUT: Floats = np.zeros(0, np.float32)
+
+
+@lru_cache(maxsize=6)
+def camera_rays(camera: Camera, offset: tuple[float, float]) -> tuple[Floats, Floats]:
+    """(N, 6) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
+    rays = camera.rays(offset)
     if camera.cut is None:
-        return rays, 0.0
-    skipped = np.maximum((rays[1] - camera.cut) / np.maximum(-rays[4], 1e-6), 0).astype(np.float32)
-    rays = rays.copy()
-    rays[:3] += rays[3:] * skipped
+        return rays, NO_CUT
+    skipped = np.maximum((rays[:, 1] - camera.cut) / np.maximum(-rays[:, 4], 1e-6), 0).astype(np.float32)
+    rays[:, :3] += rays[:, 3:] * skipped[:, None]
     return rays, skipped
 
 
 def _rgb(shot: Shot, quality: str) -> Image:
-    if quality == "draft":
-        return shot.image(draft(shot))
-    camera = shot.camera
-    total = np.zeros((camera.height * camera.width, 3), np.float32)
-    for number, offset in enumerate(SUBPIXELS):
-        one = shoot(shot.scene, camera, offset, shot.class_ids)
-        noise = _noise(camera.height, camera.width, number)
-        total += shading.develop(_light(one, shading.View(one.rays, one.hits, noise, pixel_angle(one), True)))
-    return shot.image((total / len(SUBPIXELS) + 0.5).astype(np.uint8))
+    if quality == "fine":
+        from hearth.rendering.fine import fine
+
+        return shot.image(fine(shot))
+    return shot.image(draft(shot))
 
 
-def draft(shot: Shot, among: NDArray[np.int64] | None = None) -> NDArray[np.uint8]:
-    """(N, 3) colours of all pixels, or of those among these indices."""
-    view = shading.View(shot.rays, shot.hits, NO_NOISE, pixel_angle(shot), False)
-    return shading.develop(_light(shot, view if among is None else view.part(among)))
+def draft(shot: Shot) -> NDArray[np.uint8]:
+    """(H*W, 3) colours with one ray a pixel and hard shadows."""
+    out = np.empty((len(shot.rays), 3), np.uint8)
+    shading.whole(
+        shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting_of(shot), out
+    )
+    return out
 
 
-NO_NOISE: Floats = np.zeros((2, 0), np.float32)
+def setting_of(shot: Shot, *, fine: bool = False, share: float = 1.0) -> Setting:
+    """The light of a shot; `share` of a pixel is what one ray stands for."""
+    above = shot.camera.cut is not None
+    day = from_above(shot.scene.day) if above else shot.scene.day
+    return Setting.of(shot.scene.lights, day, plain=above, angle=pixel_angle(shot) * share, fine=fine)
 
 
 def pixel_angle(shot: Shot) -> float:
@@ -147,32 +207,18 @@ def pixel_angle(shot: Shot) -> float:
     return angle * (1 + float(np.median(shot.skipped)) / max((shot.camera.cut - shot.camera.target[1]) / 2, 0.1))
 
 
-def _light(shot: Shot, view: shading.View) -> Floats:
-    above = shot.camera.cut is not None
-    day = from_above(shot.scene.day) if above else shot.scene.day
-    light = shading.radiance(shot.scene.lights, shot.geometry, view, day)
-    missed = np.flatnonzero(view.hits.triangle < 0)
-    if len(missed):
-        light[:, missed] = shading.background(shot.scene.day, view.rays.take(missed, axis=1), above)
-    return light
-
-
-def _noise(height: int, width: int, number: int) -> Floats:
-    """(2, H*W) numbers from 0 to 1: the 16 points of a plastic sequence over each 4 by 4 pixels, other ones a pass."""
-    order = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
-    index = np.tile(order, (height // 4 + 1, width // 4 + 1))[:height, :width].reshape(-1) + 16 * number
-    return np.stack(((0.5 + index * 0.7548776662) % 1, (0.5 + index * 0.5698402910) % 1)).astype(np.float32)
-
-
 def _depth(shot: Shot, quality: str) -> Image:
-    far = np.where(shot.hits.triangle >= 0, shot.hits.distance + shot.skipped, 0)
-    return shot.image(np.minimum(far * 1000 + 0.5, 65535).astype(np.uint16))
+    out = np.empty(len(shot.rays), np.uint16)
+    maps.depths(shot.hits.distance, shot.hits.triangle, shot.skipped, out)
+    return shot.image(out)
 
 
 def _per_thing(shot: Shot, values: Sequence[int]) -> Image:
     """(H, W) a value of each thing where it is seen, 0 elsewhere."""
     dtype = np.uint16 if max(values, default=0) < 1 << 16 else np.int32
-    return shot.image(np.array([*values, 0], dtype).take(shot.owner, mode="wrap"))
+    out = np.empty(len(shot.rays), dtype)
+    maps.labels(shot.hits.triangle, shot.geometry.owners, np.array([*values, 0], dtype), out)
+    return shot.image(out)
 
 
 def _instances(shot: Shot, quality: str) -> Image:
@@ -187,13 +233,14 @@ def _classes(shot: Shot, quality: str) -> Image:
 
 
 def _normals(shot: Shot, quality: str) -> Image:
-    found = np.flatnonzero(shot.hits.triangle >= 0)
-    image = np.zeros((shot.rays.shape[1], 3), np.float32)
-    if len(found):
-        view = shading.View(shot.rays, shot.hits, NO_NOISE, 0.0, False).part(found)
-        normals = shading.surface_at(shot.geometry, view).normals
-        image[found] = (normals / np.sqrt(shading.dot(normals, normals))).T
-    return shot.image(image)
+    out = np.empty((len(shot.rays), 3), np.float32)
+
+    def work(chunk: NDArray[np.int32]) -> None:
+        spots = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
+        maps.facings(chunk, spots.normals, out)
+
+    each(work, shading.chunks(everywhere(len(shot.rays))))
+    return shot.image(out)
 
 
 MODALITIES: dict[str, Callable[[Shot, str], Image]] = {

@@ -167,7 +167,7 @@ class _Set:
         if key not in self.known:
             nodes = [node for node in moment.places.nodes() if node.id not in held]
             base = self.staged.prepared.scene(nodes)
-            kept = frozenset(self.staged.still)
+            kept = frozenset(self.staged.still.things)
             self.known[key] = tuple(thing for thing in base.things if thing not in kept), base
         return self.known[key]
 

@@ -57,29 +57,31 @@ class Hits(NamedTuple):
     """
 
     distance: Floats
-    triangle: NDArray[np.int64]
+    triangle: NDArray[np.int32]
     u: Floats
     v: Floats
 
-    def part(self, found: NDArray[np.int64]) -> Hits:
-        """Only those rays."""
-        distance, triangle, u, v = self
-        return Hits(distance.take(found), triangle.take(found), u.take(found), v.take(found))
+    @classmethod
+    def none(cls, size: int) -> Hits:
+        """Of rays that hit nothing."""
+        far, flat = np.full(size, np.inf, np.float32), np.zeros(size, np.float32)
+        return cls(far, np.full(size, -1, np.int32), flat, flat.copy())
 
     def copy(self) -> Hits:
         """The same, to be written to."""
         return Hits(self.distance.copy(), self.triangle.copy(), self.u.copy(), self.v.copy())
 
 
-def put(hits: Hits, where: NDArray[np.int64], found: Hits) -> None:
-    """Write what some rays found into the hits of all."""
-    for name in Hits._fields:
-        getattr(hits, name)[where] = getattr(found, name)
+NO_TRIANGLE = 0xFFFFFFFF
+"""What Embree calls the triangle of a ray that hits nothing; -1 when read with a sign."""
 
 
 @dataclass(frozen=True, eq=False)
 class Caster:
-    """Triangles that rays can be cast at. Rays are (6, N): rows of origins x, y, z and directions x, y, z."""
+    """Triangles that rays can be cast at. Rays are (N, 6) float32: origins x, y, z and directions x, y, z.
+
+    Casts use the thread they are called from, and let other threads go on.
+    """
 
     count: int
     scene: Any
@@ -88,34 +90,35 @@ class Caster:
     def of(cls, corners: Floats) -> Caster:
         """Over (T, 3, 3) corners."""
         core, geometry = engine().core, engine().t.geometry
-        scene = geometry.RaycastingScene()
+        scene = geometry.RaycastingScene(1 if len(corners) < SMALL else 0)
         if len(corners):
             points = np.ascontiguousarray(corners.reshape(-1, 3), np.float32)
             indices = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
-            scene.add_triangles(core.Tensor(points), core.Tensor(indices))
+            scene.add_triangles(core.Tensor.from_numpy(points), core.Tensor.from_numpy(indices))
         return cls(len(corners), scene)
 
-    def cast(self, rays: Floats) -> Hits:
-        """The first hit of each of (6, N) rays."""
-        size = rays.shape[1]
+    def raw(self, rays: Floats) -> tuple[Floats, NDArray[np.uint32], Floats]:
+        """(N,) distances, (N,) triangles and (N, 2) weights of the first hits; infinitely far where there is none."""
+        size = len(rays)
         if not self.count or not size:
-            none, flat = np.full(size, np.inf, np.float32), np.zeros(size, np.float32)
-            return Hits(none, np.full(size, -1, np.int64), flat, flat)
-        answer = self.scene.cast_rays(_tensor(rays))
-        number = answer["primitive_ids"].numpy().astype(np.int32).astype(np.int64)
-        u, v = np.ascontiguousarray(answer["primitive_uvs"].numpy().T)
-        return Hits(answer["t_hit"].numpy(), number, u, v)
+            nothing = np.full(size, NO_TRIANGLE, np.uint32)
+            return np.full(size, np.inf, np.float32), nothing, np.zeros((size, 2), np.float32)
+        answer = self.scene.cast_rays(engine().core.Tensor.from_numpy(rays), 1)
+        return answer["t_hit"].numpy(), answer["primitive_ids"].numpy(), answer["primitive_uvs"].numpy()
 
-    def occluded(self, origins: Floats, directions: Floats, far: float = 0.999) -> NDArray[np.bool_]:
-        """(N,) whether anything lies between (3, N) origins and origin + far * direction."""
-        size = origins.shape[1]
-        if not self.count or not size:
-            return np.zeros(size, np.bool_)
-        rays = np.empty((size, 6), np.float32)
-        rays[:, :3], rays[:, 3:] = origins.T, directions.T
-        found: NDArray[np.bool_] = self.scene.test_occlusions(engine().core.Tensor(rays), 0.0, far).numpy()
+    def cast(self, rays: Floats) -> Hits:
+        """The first hit of each of (N, 6) rays."""
+        distance, number, uvs = self.raw(rays)
+        return Hits(distance, number.view(np.int32), np.ascontiguousarray(uvs[:, 0]), np.ascontiguousarray(uvs[:, 1]))
+
+    def occluded(self, rays: Floats, far: float = 0.999) -> NDArray[np.bool_]:
+        """(N,) whether anything lies between origins and origin + far * direction of (N, 6) rays."""
+        if not self.count or not len(rays):
+            return np.zeros(len(rays), np.bool_)
+        tensor = engine().core.Tensor.from_numpy(rays)
+        found: NDArray[np.bool_] = self.scene.test_occlusions(tensor, 0.0, far, 1).numpy()
         return found
 
 
-def _tensor(rays: Floats) -> Any:
-    return engine().core.Tensor(np.ascontiguousarray(rays.T))
+SMALL = 20_000
+"""Triangles up to which the tree over them is built by one thread."""

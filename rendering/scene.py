@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from hearth.rendering.geometry import Geometry
+from hearth.rendering.geometry import NOTHING, Geometry, Part, Still
 from hearth.rendering.lights import Daylight, Light, daylight
 from hearth.rendering.things import Thing
 
@@ -24,23 +24,23 @@ class Scene:
     things: tuple[Thing, ...]
     lights: tuple[Light, ...] = ()
     day: Daylight = field(default_factory=daylight)
-    still: tuple[Thing, ...] = ()
+    still: Still = NOTHING
 
     @property
     def everything(self) -> tuple[Thing, ...]:
         """All things with a shape."""
-        return self.still + self.things
+        return self.still.things + self.things
 
     @cached_property
     def geometry(self) -> Geometry:
         """Everything."""
-        return Geometry.of(self.still, self.things)
+        return Geometry(self.still.whole, Part.of(self.things))
 
     @cached_property
     def opened(self) -> Geometry:
         """Everything but ceilings and what hangs there: for views from above."""
-        still, moving = (tuple(t for t in things if not t.above) for things in (self.still, self.things))
-        return Geometry.of(still, moving)
+        moving = tuple(thing for thing in self.things if not thing.above)
+        return Geometry(self.still.opened, Part.of(moving) if len(moving) < len(self.things) else self.geometry.moving)
 
     @cached_property
     def _by_id(self) -> dict[int, Thing]:

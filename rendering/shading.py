@@ -1,330 +1,307 @@
-"""From hits to light: textures, sun, windows, lamps, ambient light with occlusion, gloss, and a picture's tone.
+"""From hits to light: which lights each visible point sees, and the colours that come of it.
 
-Points and vectors are rows of x, y and z, (3, N): numpy is several times as fast on them as on columns.
+Pixels are worked on some thousands at a time, by as many threads as there are processors: their numbers stay in the
+processor's cache. The loops are in `aiming` and `lamplight`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering import geometry as g
-from hearth.rendering import textures
+from hearth.rendering import aiming
+from hearth.rendering import lamplight as loops
+from hearth.rendering.aiming import OPEN
 from hearth.rendering.geometry import Geometry
+from hearth.rendering.kernels import COLUMNS, gather_rows
 from hearth.rendering.lights import Daylight, Light
-from hearth.rendering.rays import Hits
+from hearth.rendering.rays import Caster, Hits
+from hearth.rendering.textures import decode, texels
+from hearth.rendering.threads import each
 
 Floats = NDArray[np.floating[Any]]
-Ids = NDArray[np.int64]
-
-LIFT = 2e-3
-"""Metres by which points are lifted off their surface before rays are cast from them."""
-
-REACH = 7.0
-"""Metres beyond which lamps are not looked at."""
-
-NEAR = 0.7
-"""Metres within which something darkens the ambient light of a corner."""
-
-FAINT = 6e-3
-"""Light below which nobody looks for its shadow."""
-
-SECTION = (0.05, 0.055, 0.065)
-"""Where a view from above cuts through a wall."""
+Ints = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
 
 CHUNK = 16384
-"""Rays that are shaded together: their numbers fit the processor's cache."""
+"""Pixels that are worked on together."""
+
+SUN = 0
+"""Column of `Plate.seen` for the sun; lights follow."""
+
+DIM = np.uint8(64)
+"""How visible a window stays when something stands before its middle: it is wide."""
 
 
 @dataclass(frozen=True, eq=False)
-class View:
-    """N rays, what they hit, and how they are to be shaded.
+class Setting:
+    """What light there is, in rows for the loops.
 
     Attributes:
-        rays: (6, N).
-        hits: what they hit.
-        noise: (2, N) for soft shadows and occlusion; empty unless fine.
-        angle: radians a pixel spans.
+        lights: those of the scene; their rows and the day's row are (L, L_COLUMNS) and (D_COLUMNS,).
         fine: soft shadows and ambient occlusion.
     """
 
-    rays: Floats
-    hits: Hits
-    noise: Floats
-    angle: float
-    fine: bool
+    lights: tuple[Light, ...]
+    rows: Floats
+    day: Floats
+    fine: bool = False
 
-    def part(self, found: Ids) -> View:
-        """Only those rays."""
-        noise = self.noise.take(found, axis=1) if self.fine else self.noise
-        return View(self.rays.take(found, axis=1), self.hits.part(found), noise, self.angle, self.fine)
+    @classmethod
+    def of(cls, lights: tuple[Light, ...], day: Daylight, *, plain: bool, angle: float, fine: bool = False) -> Setting:
+        """Of a scene's lights.
 
+        Args:
+            lights: lamps that are on, and windows.
+            day: sun and sky.
+            plain: whether a plain ground is shown outside.
+            angle: radians a pixel spans.
+            fine: soft shadows and ambient occlusion.
+        """
+        rows = np.array([_light_row(light) for light in lights], np.float32).reshape(-1, aiming.L_COLUMNS)
+        return cls(lights, rows, _day_row(day, plain, angle), fine)
 
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """M visible points: what shading needs to know of them.
+    def reaching(self, bounds: Floats) -> Ints:
+        """The lights that reach (x0, x1, z0, z1)."""
+        area = self.rows[:, aiming.L_AREA : aiming.L_AREA + 4].T
+        x0, x1, z0, z1 = bounds
+        return np.flatnonzero((area[0] < x1) & (area[1] > x0) & (area[2] < z1) & (area[3] > z0)).astype(np.int32)
 
-    Attributes:
-        points, normals: (3, M), normals towards the viewer; `flat` are those of the triangles.
-        view: (3, M) unit vectors along the ray.
-        albedo: (3, M) linear. glow, shine: (M,).
-        noise: (2, M) numbers from 0 to 1 that differ among neighbouring pixels and passes.
-        inner: (M,) whether it is the inside of a wall that was cut through.
-        light, gloss: (3, M) light that arrives, and mirror images of lights: filled while shading.
-    """
-
-    points: Floats
-    normals: Floats
-    flat: Floats
-    view: Floats
-    albedo: Floats
-    glow: Floats
-    shine: Floats
-    noise: Floats
-    inner: NDArray[np.bool_]
-    light: Floats
-    gloss: Floats
-
-
-def radiance(lights: tuple[Light, ...], geometry: Geometry, view: View, day: Daylight) -> Floats:
-    """(3, N) linear light along N rays; zero where nothing was hit."""
-    image = np.zeros((3, view.rays.shape[1]), np.float32)
-    found = np.flatnonzero(view.hits.triangle >= 0)
-    for start in range(0, len(found), CHUNK):
-        chunk = found[start : start + CHUNK]
-        image[:, chunk] = _shaded(lights, geometry, view.part(chunk), day)
-    return image
-
-
-def _shaded(lights: tuple[Light, ...], geometry: Geometry, view: View, day: Daylight) -> Floats:
-    surface = surface_at(geometry, view)
-    surface.light[:] = _ambient(day, surface, geometry, view.fine)
-    _add_sun(day, surface, geometry, view.fine)
-    for source in _in_reach(lights, surface.points):
-        _add_light(source, surface, geometry, view.fine)
-    color = surface.albedo * (surface.light + surface.glow) + surface.gloss + _reflection(surface)
-    color[:, surface.inner] = np.array(SECTION, np.float32)[:, None]
-    return color
-
-
-def _in_reach(lights: tuple[Light, ...], points: Floats) -> list[Light]:
-    """The lights that reach some of the points' neighbourhood."""
-    (west, east), (south, north) = ((axis.min(), axis.max()) for axis in (points[0], points[2]))
-    areas = [(light, area(light)) for light in lights]
-    return [light for light, (x0, x1, z0, z1) in areas if x0 < east and x1 > west and z0 < north and z1 > south]
+    def shadowed(self, number: int) -> bool:
+        """Whether shadows of a light are looked for: windows are wide, and have only soft ones."""
+        return self.fine or self.lights[number].facing is None
 
 
 def area(source: Light) -> tuple[float, float, float, float]:
     """(x0, x1, z0, z1) beyond which a light is not looked at."""
     x, _, z = source.position
-    return source.room or (x - REACH, x + REACH, z - REACH, z + REACH)
+    reach = float(aiming.REACH)
+    return source.room or (x - reach, x + reach, z - reach, z + reach)
 
 
-def dot(a: Floats, b: Floats) -> Floats:
-    """(N,) scalar products of (3, N) vectors, or of one (3,) with many."""
-    result: Floats = a[0] * b[0]
-    result += a[1] * b[1]
-    result += a[2] * b[2]
-    return result
+def _light_row(light: Light) -> tuple[float, ...]:
+    facing = light.facing or (0.0, 0.0, 0.0)
+    return (*light.position, *light.color, float(light.facing is not None), *facing, *area(light), *light.span)
 
 
-def visible_points(geometry: Geometry, view: View) -> tuple[Floats, Floats]:
-    """(3, M) points of rays that all hit something, lifted off their surface, and (3, M) flat normals there."""
-    flat = geometry.rows(view.hits.triangle, g.FLAT)
-    direction = view.rays[3:]
-    flat *= np.where(dot(flat, direction) > 0, np.float32(-1), np.float32(1))
-    return view.rays[:3] + direction * view.hits.distance + flat * np.float32(LIFT), flat
+def _day_row(day: Daylight, plain: bool, angle: float) -> Floats:
+    up = day.sun is not None
+    sun = day.sun or (0.0, 1.0, 0.0)
+    row = (*sun, *day.sunlight, float(up), day.ambient, *day.zenith, *day.horizon, day.sky, float(plain), angle)
+    return np.array(row, np.float32)
 
 
-def surface_at(geometry: Geometry, view: View) -> Surface:
-    """The visible points of rays that all hit something."""
-    hits = view.hits
-    rows = geometry.rows(hits.triangle)
-    direction = view.rays[3:]
-    length = np.sqrt(dot(direction, direction))
-    toward = direction / length
-    normals = rows[g.NORMAL] + rows[g.NORMAL_U] * hits.u + rows[g.NORMAL_V] * hits.v
-    uvs = rows[g.UV] + rows[g.UV_U] * hits.u + rows[g.UV_V] * hits.v
-    flat = rows[g.FLAT]
-    behind = dot(flat, toward) > 0
-    flat *= np.where(behind, np.float32(-1), np.float32(1))
-    normals *= np.where(dot(normals, flat) < 0, np.float32(-1), np.float32(1))
-    points = view.rays[:3] + direction * hits.distance + flat * np.float32(LIFT)
-    footprint = hits.distance * length * np.float32(view.angle) * rows[g.DENSITY]
-    albedo = rows[g.COLOR] * textures.sample(rows[g.TEXTURE].astype(np.int64), uvs, footprint)
-    inner = behind & (rows[g.SOLID] > 0)
-    light, gloss = np.zeros_like(points), np.zeros_like(points)
-    return Surface(points, normals, flat, toward, albedo, rows[g.GLOW], rows[g.SHINE], view.noise, inner, light, gloss)
+@dataclass(frozen=True, eq=False)
+class Spots:
+    """What some pixels show.
+
+    Attributes:
+        pixels: (M,) which.
+        rows: (M, COLUMNS) of their triangles.
+        points: (M, 3) lifted off their surface.
+        normals, flats: (M, 3) towards the viewer; those of the triangles are 0 where nothing is.
+        views: (M, 3) unit vectors along the rays.
+        bounds: least and greatest x and z of the points.
+    """
+
+    pixels: Ints
+    rows: Floats
+    points: Floats
+    normals: Floats
+    flats: Floats
+    views: Floats
+    bounds: Floats
 
 
-def _ambient(day: Daylight, surface: Surface, geometry: Geometry, fine: bool) -> Floats:
-    """Light from everywhere: more from above, less in corners."""
-    level = day.ambient * (1.0 + 0.22 * surface.normals[1] + 0.06 * surface.normals[0])
-    if fine:
-        level = level * (1 - 0.85 * _occlusion(surface, geometry, 2))
-    return np.outer(np.array((1.0, 0.985, 0.96), np.float32), level).astype(np.float32)
+def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry) -> Spots:
+    """What some pixels show, given the rays and hits of all."""
+    count = len(pixels)
+    rows = np.empty((count, COLUMNS), np.float32)
+    gather_rows(pixels, hits.triangle, geometry.still.rows, geometry.moving.rows, rows)
+    points, normals, flats, views = np.empty((4, count, 3), np.float32)
+    bounds = np.empty(4, np.float32)
+    aiming.locate(pixels, rays, hits.distance, hits.u, hits.v, rows, points, normals, flats, views, bounds)
+    return Spots(pixels, rows, points, normals, flats, views, bounds)
 
 
-def _occlusion(surface: Surface, geometry: Geometry, count: int) -> Floats:
-    """(M,) share of `count` rays over the hemisphere that hit something near."""
-    blocked = np.zeros(surface.points.shape[1], np.float32)
-    for k in range(count):
-        u = (surface.noise[0] + k / count) % 1.0
-        phi = 2 * np.pi * ((surface.noise[1] + k * 0.618) % 1.0)
-        z = 1 - 2 * u
-        ring = np.sqrt(np.maximum(1 - z * z, 0))
-        # A point of the unit ball set on the normal's tip is a direction of cosine density.
-        direction = surface.flat * 1.02 + np.stack((ring * np.cos(phi), z, ring * np.sin(phi)))
-        direction *= NEAR / np.maximum(np.sqrt(dot(direction, direction)), 1e-3)
-        blocked += geometry.occluded(surface.points, direction.astype(np.float32))
-    return blocked / count
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """Some pixels, and what lights what they show.
+
+    Attributes:
+        pixels: (M,) which.
+        points: (M, 3) what they show, lifted off its surface.
+        near: lights that may reach them.
+        seen: (M, lights + 2) how visible the sun, each light and the open are, 0 to 255.
+        lit: for the sun and each light that has shadows, the points (of M) that it reaches.
+    """
+
+    pixels: Ints
+    points: Floats
+    near: Ints
+    seen: Bytes
+    lit: dict[int, Ints]
 
 
-def _add_sun(day: Daylight, surface: Surface, geometry: Geometry, fine: bool) -> None:
-    """Add direct sunlight, with soft edges when fine."""
-    if day.sun is None:
-        return
-    facing = dot(np.array(day.sun, np.float32), surface.normals)
-    lit = facing_sun(day, facing, surface.flat)
-    direction = np.repeat(np.array(day.sun, np.float32)[:, None], len(lit), axis=1)
-    if fine:
-        direction += (surface.noise[[0, 1, 0]][:, lit] - 0.5) * np.array(((0.05,), (0.02,), (-0.05,)), np.float32)
-    free = lit[~geometry.occluded(surface.points.take(lit, axis=1), direction * np.float32(FAR))]
-    surface.light[:, free] += facing[free] * np.array(day.sunlight, np.float32)[:, None]
+def chunks(pixels: Ints) -> list[Ints]:
+    """Pixels in parts that are worked on together."""
+    return [pixels[start : start + CHUNK] for start in range(0, len(pixels), CHUNK)]
 
 
-FAR = 60.0
-"""Metres beyond which nothing keeps the sun away."""
+NO_NOISE: Floats = np.zeros((0, 2), np.float32)
+NO_LIGHT: Ints = np.zeros(0, np.int32)
 
 
-def facing_sun(day: Daylight, facing: Floats, flat: Floats) -> Ids:
-    """Which points the sun could light; `facing` is the cosine at their shading normals."""
-    return np.flatnonzero((facing > 0) & (dot(np.array(day.sun, np.float32), flat) > 0))
+def expose(spots: Spots, geometry: Geometry, setting: Setting, noise: Floats = NO_NOISE) -> Plate:
+    """What the part that stays lets through to the points that some pixels show; `dim` does the rest.
+
+    Args:
+        spots: what they show.
+        geometry, setting: triangles and lights.
+        noise: (M, 2) from 0 to 1 for soft shadows and occlusion, which look at what moves, too.
+    """
+    count, points = len(spots.pixels), spots.points
+    near = setting.reaching(spots.bounds)
+    seen = np.full((count, len(setting.lights) + 2), OPEN, np.uint8)
+    lit: dict[int, Ints] = {}
+    out, index = np.empty((count, 6), np.float32), np.empty(count, np.int32)
+    power = np.empty(count, np.float32)
+    # Soft rays go all over a light: they are cast at everything at once, since they can't be found again.
+    parts = (geometry.still, geometry.moving) if setting.fine else (geometry.still,)
+    if setting.day[aiming.D_UP]:
+        aiming.facing_sun(spots.normals, spots.flats, setting.day, power)
+        found = aiming.aim_at_sun(points, power, setting.day, noise, out, index)
+        blocked = _blocked([part.caster for part in parts], out[:found], 0.999)
+        lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
+    for number in near.tolist():
+        if setting.shadowed(number):
+            light = setting.rows[number]
+            aiming.reach(points, spots.normals, light, power)
+            found = aiming.aim_at_light(points, spots.flats, power, light, noise, out, index)
+            blocked = _blocked([part.shadows for part in parts], out[:found], 0.97)
+            value = np.uint8(0) if setting.lights[number].facing is None else DIM
+            lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
+    for number in range(AROUND if setting.fine else 0):
+        found = aiming.aim_around(points, spots.flats, noise, number, np.float32(number / AROUND), out, index)
+        blocked = _blocked([part.caster for part in parts], out[:found], 0.999)
+        aiming.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
+    return Plate(spots.pixels, points, near, seen, lit)
 
 
-def _add_light(source: Light, surface: Surface, geometry: Geometry, fine: bool) -> None:
-    """Add what a lamp or window gives to the surface's light, and its highlights to its gloss."""
-    near = within(source, surface.points)
-    if not len(near):
-        return
-    whole = len(near) == surface.points.shape[1]
-    points, normals = (a if whole else a.take(near, axis=1) for a in (surface.points, surface.normals))
-    way = _targets(source, surface.noise[:, near] if fine else surface.noise, fine) - points
-    square = dot(way, way)
-    toward = way / np.sqrt(square)
-    strength = _strength(source, toward, normals, square)
-    seen = strength > FAINT
-    if fine or source.facing is None:
-        cast = np.flatnonzero(seen & (dot(surface.flat.take(near, axis=1), toward) > 0))
-        blocked = geometry.occluded(points.take(cast, axis=1), way.take(cast, axis=1), 0.97, shadows=True)
-        strength[cast[blocked]] *= 0.0 if source.facing is None else 0.25
-    color = np.array(source.color, np.float32)[:, None]
-    surface.light[:, near] += strength * color
-    glossy = np.flatnonzero(seen & (surface.shine[near] > 0.05))
-    if len(glossy):
-        spots = near[glossy]
-        surface.gloss[:, spots] += _highlight(surface, spots, toward[:, glossy], strength[glossy]) * color
+AROUND = 2
+"""Rays a fine point casts over its hemisphere."""
 
 
-def within(source: Light, points: Floats) -> Ids:
-    """Which points a light may reach: those in its room; a lamp's also a little beyond, through doors."""
-    x0, x1, z0, z1 = area(source)
-    x, z = points[0], points[2]
-    return np.flatnonzero((x > x0) & (x < x1) & (z > z0) & (z < z1))
+def _blocked(casters: Sequence[Caster], rays: Floats, far: float) -> NDArray[np.bool_]:
+    found = casters[0].occluded(rays, far)
+    for caster in casters[1:]:
+        found |= caster.occluded(rays, far)
+    return found
 
 
-def _targets(source: Light, noise: Floats, fine: bool) -> Floats:
-    """(3, 1) the light's middle, or (3, K) points all over it."""
-    middle = np.array(source.position, np.float32)[:, None]
-    if not fine:
-        return middle
-    third = (noise[0] + noise[1]) % 1.0
-    order = (third, noise[1], noise[0]) if source.span[0] < source.span[2] else (noise[0], noise[1], third)
-    targets: Floats = middle + (np.stack(order) * 2 - 1) * np.array(source.span, np.float32)[:, None]
-    return targets
+def _marked(seen: Bytes, column: int, index: Ints, blocked: NDArray[np.bool_], value: np.uint8) -> Ints:
+    """The points whose rays got through; the others are marked."""
+    lit = np.empty(len(index), np.int32)
+    return lit[: aiming.mark(index, blocked, seen, column, value, lit)]
 
 
-def _strength(source: Light, toward: Floats, normals: Floats, square: Floats) -> Floats:
-    """(K,) how much of a light reaches points at squared distances, before shadows."""
-    cosine = dot(normals, toward)
-    if source.facing is None:
-        bare: Floats = np.maximum(cosine, 0) * np.maximum(1 - (square / REACH**2) ** 2, 0) / (square + 0.35)
-        return bare
-    # The sky is wide: surfaces turned a little away from the window still see some of it.
-    leaving = 0.25 + 0.75 * np.maximum(-dot(np.array(source.facing, np.float32), toward), 0)
-    wide: Floats = np.maximum((cosine + 0.25) / 1.25, 0) * leaving / (square + 0.8)
-    return wide
+def dim(plate: Plate, geometry: Geometry, setting: Setting, skipped: NDArray[np.bool_]) -> tuple[Bytes, Ints]:
+    """What moving things take away.
+
+    Args:
+        plate: what gets through the part that stays.
+        geometry, setting: as of `expose`, without noise.
+        skipped: (M,) points that need not be looked at.
+
+    Returns:
+        `seen` as it is with them, and the points where that differs.
+    """
+    moving = geometry.moving
+    changed: list[Ints] = []
+    seen = plate.seen
+    for column, lit in plate.lit.items():
+        target = setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
+        out, index = np.empty((len(lit), 6), np.float32), np.empty(len(lit), np.int32)
+        found = aiming.aim_again(lit, skipped, plate.points, target, column == SUN, moving.boxes, out, index)
+        if not found:
+            continue
+        caster, far = (moving.caster, 0.999) if column == SUN else (moving.shadows, 0.97)
+        dark = index[:found][caster.occluded(out[:found], far)]
+        if len(dark):
+            seen = seen.copy() if seen is plate.seen else seen
+            window = column != SUN and setting.lights[column - 1].facing is not None
+            seen[dark, column] = DIM if window else 0
+            changed.append(dark)
+    return seen, np.unique(np.concatenate(changed)) if changed else NO_LIGHT
 
 
-def _highlight(surface: Surface, spots: Ids, toward: Floats, strength: Floats) -> Floats:
-    """(K,) the mirror image of a light on polished surfaces."""
-    shine = surface.shine[spots]
-    half = toward - surface.view.take(spots, axis=1)
-    half /= np.maximum(np.sqrt(dot(half, half)), 1e-6)
-    cosine = np.maximum(dot(half, surface.normals.take(spots, axis=1)), 0)
-    return shine * shine * 1.2 * cosine ** (8 + 70 * shine) * strength
+def paint(spots: Spots, near: Ints, seen: Bytes, rays: Floats, hits: Hits, setting: Setting, out: Bytes) -> None:
+    """Write the colours of some pixels.
 
-
-def _reflection(surface: Surface) -> Floats:
-    """What polished surfaces mirror of a bright ceiling and a darker floor; no rays are cast for it."""
-    cosine = -dot(surface.view, surface.normals)
-    mirrored = surface.view[1] + 2 * cosine * surface.normals[1]
-    away = 1 - np.clip(cosine, 0, 1)
-    square = away * away
-    fresnel = 0.05 + 0.95 * square * square * away
-    share = surface.shine**2 * np.clip(fresnel + 0.25 * (surface.shine > 0.85), 0, 0.6)
-    room = 0.35 + 0.65 * (mirrored > 0.15) * np.clip(mirrored + 0.3, 0, 1)
-    light = surface.light
-    reflected: Floats = share * room * (light[0] + light[1] + light[2]) / 3
-    return reflected
-
-
-GROUND = 0.55
-"""How bright the plain ground is that a view from above shows around a home."""
-
-
-def background(day: Daylight, rays: Floats, plain: bool) -> Floats:
-    """(3, N) sky and lawn outside, or a plain ground for views from above."""
-    if plain:
-        return np.full((3, rays.shape[1]), GROUND, np.float32)
-    direction = rays[3:] / np.sqrt(dot(rays[3:], rays[3:]))
-    up = np.clip(direction[1], 0, 1) ** np.float32(0.6)
-    zenith, horizon = (np.array(c, np.float32)[:, None] for c in (day.zenith, day.horizon))
-    color = horizon + (zenith - horizon) * up
-    low = np.flatnonzero(direction[1] < -1e-3)
-    if len(low):
-        origin, way = rays[:3].take(low, axis=1), direction.take(low, axis=1)
-        far = (origin[1] + 0.3) / -way[1]
-        spot = origin + way * far
-        slots = np.full(len(low), textures.SLOTS["grass"], np.int64)
-        lawn = textures.sample(slots, spot[[0, 2]] * np.float32(0.4), far * np.float32(0.004))
-        lawn *= np.array(((0.17,), (0.30,), (0.08,)), np.float32) * (0.25 + 0.75 * min(1.0, day.sky))
-        haze = np.clip(far / 90.0, 0, 0.75)
-        color[:, low] = lawn * (1 - haze) + horizon * haze * 0.85
-    outside: Floats = color.astype(np.float32)
-    return outside
+    Args:
+        spots: (M) what they show.
+        near: lights that may reach them.
+        seen: (M, lights + 2) as of `Plate`.
+        rays, hits: of all pixels.
+        setting: the lights.
+        out: (N, 3) sRGB of all pixels, written to.
+    """
+    count, day = len(spots.pixels), setting.day
+    light, gloss, power = (
+        np.empty((count, 3), np.float32),
+        np.zeros((count, 3), np.float32),
+        np.empty(count, np.float32),
+    )
+    loops.ambient(spots.normals, seen, day, light)
+    if day[aiming.D_UP]:
+        aiming.facing_sun(spots.normals, spots.flats, day, power)
+        loops.add(power, seen, SUN, day[aiming.D_COLOR :], light)
+    polished = np.empty(count, np.int32)
+    polished = polished[: loops.shiny(spots.rows, polished)]
+    for number in near.tolist():
+        row = setting.rows[number]
+        color = row[aiming.L_COLOR :]
+        aiming.reach(spots.points, spots.normals, row, power)
+        loops.add(power, seen, number + 1, color, light)
+        if len(polished):
+            faces = (spots.rows, spots.points, spots.normals, spots.views)
+            loops.add_glints(polished, *faces, power, seen, number + 1, row, color, gloss)
+    faces = (spots.rows, spots.normals, spots.flats, spots.views)
+    atlas = (texels(), decode(), tones(), out)
+    where = (spots.pixels, rays, hits.distance, hits.u, hits.v)
+    loops.colour(*where, *faces, light, gloss, day[aiming.D_ANGLE], *atlas)
+    loops.outside(spots.pixels, rays, spots.flats, spots.views, day, *atlas)
 
 
 EXPOSURE = 1.5
 
-STEPS = 4096
-"""Entries of the tone table: neighbours differ by less than one grey level."""
 
-
-def _tone_table() -> NDArray[np.uint8]:
-    """(STEPS + 1,) sRGB byte of sqrt(1 - exp(-x)) in equal steps: fine in the dark, where eyes are."""
-    tone = (np.arange(STEPS + 1) / STEPS) ** 2
+@cache
+def tones() -> Bytes:
+    """(TONE_STEPS + 1,) sRGB bytes of linear light, by TONE_SCALE times its root: neighbours differ by less than one
+    grey level. Bright parts are compressed, so that nothing is blown out.
+    """
+    light = (np.arange(loops.TONE_STEPS + 1) / float(loops.TONE_SCALE)) ** 2
+    tone = 1 - np.exp(-EXPOSURE * light)
     code = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * np.power(np.maximum(tone, 1e-6), 1 / 2.4) - 0.055)
     return (code * 255 + 0.5).astype(np.uint8)
 
 
-TONES = _tone_table()
+def whole(
+    pixels: Sequence[Ints], rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes
+) -> list[Plate]:
+    """Draft colours of pixels, chunk by chunk; gives the plates with what stays let through."""
 
+    def work(chunk: Ints) -> Plate:
+        spots = located(chunk, rays, hits, geometry)
+        plate = expose(spots, geometry, setting)
+        seen, _ = dim(plate, geometry, setting, np.zeros(len(chunk), np.bool_))
+        paint(spots, plate.near, seen, rays, hits, setting, out)
+        return plate
 
-def develop(image: Floats) -> NDArray[np.uint8]:
-    """(3, N) linear light to (N, 3) sRGB bytes; bright parts are compressed, so that nothing is blown out."""
-    tone = np.sqrt(1 - np.exp(np.float32(-EXPOSURE) * np.maximum(image, 0)))
-    return np.ascontiguousarray(TONES.take((tone * np.float32(STEPS)).astype(np.int32)).T)
+    return each(work, pixels)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.acting import Actor, carried, cast, moved, posed
 from hearth.rendering.camera import Camera, top_view
+from hearth.rendering.geometry import Still
 from hearth.rendering.ground import Ground
 from hearth.rendering.history import graphs
 from hearth.rendering.modalities import render
@@ -103,7 +104,7 @@ class Play:
 
     prepared: Stage
     moments: tuple[Moment, ...]
-    still: tuple[Thing, ...]
+    still: Still
 
 
 def play(
@@ -118,12 +119,12 @@ def play(
     check_geometry(home)
     prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
     found = list(_played(execution, home, prepared, seed))
-    still = _still([moment.scene for moment in found])
-    kept = frozenset(still)
+    still = Still(_still([moment.scene for moment in found]))
+    kept = frozenset(still.things)
     return Play(prepared, tuple(_parted(moment, still, kept) for moment in found), still)
 
 
-def _parted(moment: Moment, still: tuple[Thing, ...], kept: frozenset[Thing]) -> Moment:
+def _parted(moment: Moment, still: Still, kept: frozenset[Thing]) -> Moment:
     moving = tuple(thing for thing in moment.scene.things if thing not in kept)
     return replace(moment, scene=replace(moment.scene, things=moving, still=still))
 
@@ -141,11 +142,11 @@ def check_geometry(home: EnvironmentGraph) -> None:
 
 
 def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
-    """The things that are the same in all scenes, but for lamps, which cast no shadows, and what hangs above."""
+    """The things that are the same in all scenes."""
     common = set(scenes[0].things)
     for scene in scenes[1:]:
         common &= set(scene.things)
-    return tuple(thing for thing in scenes[0].things if thing in common and not (thing.above or thing.lamp))
+    return tuple(thing for thing in scenes[0].things if thing in common)
 
 
 def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed: int) -> Iterator[Moment]:

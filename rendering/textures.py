@@ -191,28 +191,6 @@ def atlas() -> NDArray[np.uint8]:
 
 
 @cache
-def _texels() -> NDArray[np.uint8]:
-    """(3, slots * texels) the atlas, a row a colour."""
-    return np.ascontiguousarray(atlas().reshape(-1, 3).T)
-
-
-_STARTS = OFFSETS[:-1].astype(np.int32)
-
-
-def sample(slots: NDArray[np.int64], uvs: Image, footprint: Image) -> Image:
-    """(3, N) linear texture colours.
-
-    Args:
-        slots: (N,) texture of each point.
-        uvs: (2, N) coordinates in tiles; they repeat.
-        footprint: (N,) how many tiles a pixel spans; picks the mipmap.
-    """
-    texels = np.maximum(footprint * np.float32(SIDE * 2**0.3), 1.0)
-    # The exponent of a float is the whole part of its logarithm.
-    level = np.minimum((texels.astype(np.float32).view(np.int32) >> 23) - 127, LEVELS - 1)
-    side = SIDE >> level
-    wrapped = uvs - np.floor(uvs)
-    column, row = (np.minimum((w * side).astype(np.int32), side - 1) for w in wrapped)
-    index = slots * int(OFFSETS[-1]) + (_STARTS.take(level) + row * side + column)
-    found: Image = decode().take(_texels().take(index, axis=1))
-    return found
+def texels() -> NDArray[np.uint8]:
+    """(slots * texels, 3) the atlas, texture after texture."""
+    return atlas().reshape(-1, 3)

@@ -139,7 +139,7 @@ def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequenc
     width, height = GLANCE
     small = [replace(camera, width=width, height=height) for camera in cameras]
     # All glances are cast at once: a cast of few rays costs as much as one of many.
-    hits = scene.geometry.cast(np.concatenate([camera.rays() for camera in small]).T)
+    hits = scene.geometry.cast(np.concatenate([camera.rays() for camera in small]))
     numbers = np.array([*(thing.id for thing in scene.geometry.things), 0])
     ids = numbers.take(scene.geometry.owner(hits.triangle), mode="wrap").reshape(len(small), -1)
     return [_score(scene, camera, seen, actor, named) for camera, seen in zip(small, ids, strict=True)]
