@@ -60,6 +60,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "verify": Entry("verify:verify", "Check a dataset: hashes, counts, references, every execution run again."),
         "diff": Entry("diff:diff", "Say what changed between two datasets, by table and by row."),
         "export": Entry("export:export", "Write a dataset in another form: release, words, JSON Lines, code, graphs."),
+        "plan": Entry("plan:plan", "Solve planning problems of a dataset, and run the plans."),
         "report": Entry("report:report", "Write a dataset as static HTML that needs no network."),
         "augmented": Entry("augmented:augmented", "Compare an augmented dataset with the thesis's, table 5.1."),
         "score": Entry("score:app", "Score predicted programs against references."),

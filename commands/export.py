@@ -25,7 +25,7 @@ def export(
 
     Forms: release (the original layout, which `ingest` reads back), nl (steps in words, pairs for instruction tuning,
     the planning papers' examples), jsonl (every table), code (Python functions), networkx (node-link JSON) and graphml
-    (graphs before and after), rdf (Turtle).
+    (graphs before and after), rdf (Turtle), pddl (a domain, and a problem for each execution).
 
     \b
     Example:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hearth.exports.code import code
 from hearth.exports.graphs import graphml, node_link
+from hearth.exports.pddl import pddl
 from hearth.exports.reading import Wanted
 from hearth.exports.release import release
 from hearth.exports.tables import jsonl
@@ -24,10 +25,17 @@ FORMATS: dict[str, Callable[[Dataset, Path, Wanted], int]] = {
     "networkx": node_link,
     "graphml": graphml,
     "rdf": rdf,
+    "pddl": pddl,
 }
 """Writes a dataset, or some of its programs, into a folder; returns how many things were written."""
 
-COUNTED = {"release": "execution", "jsonl": "line", "networkx": "execution", "graphml": "execution"}
+COUNTED = {
+    "release": "execution",
+    "jsonl": "line",
+    "networkx": "execution",
+    "graphml": "execution",
+    "pddl": "problem",
+}
 """What a form counts, where that is not programs."""
 
 

@@ -1,0 +1,209 @@
+"""`pddl`: a planning domain from the knowledge of actions, and a problem for every execution.
+
+A problem begins as the execution did; its goal is what the execution changed: states, and the ON, INSIDE and HOLDS
+edges of the things it moved, those that ended included. CLOSE and FACING, which say only where the character stood, are
+no goals.
+
+Left out of a problem are things that cannot matter to it. What remains: the character and what it holds, what the goal
+names, what these are INSIDE, up to their rooms, and what is ON a seat or bed among them. A plan of the pruned problem
+is one of the whole home, too: what was left out could only take up a hand, hide something or occupy a seat, and all
+that does so is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from hearth.exports.planning_domain import (
+    LIMITS,
+    planning_domain,
+    relation_predicate,
+    unary_predicates,
+)
+from hearth.exports.reading import Wanted, file_name, runs, write
+from hearth.kb import knowledge as kb
+from hearth.kb.pddl import class_predicate, limit_predicate, named_predicate, property_predicate, state_predicate
+from hearth.pipelines.dataset import Dataset, Run
+from hearth.pipelines.rows import change_of
+from hearth.pipelines.verify import StoredHomes
+from hearth.schemas.graph import Edge
+from hearth.schemas.vocabulary import STATE_ID, STATES
+from hearth.simulation import rows
+from hearth.simulation.bits import indices
+from hearth.simulation.world import World
+
+WANTED = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
+"""Relations that a goal is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What a planner is asked.
+
+    Attributes:
+        name: of the execution.
+        world: the start.
+        objects: node ids that are part of the problem.
+        states: (node, state, whether it is to hold).
+        edges: (edge, whether it is to hold).
+    """
+
+    name: str
+    world: World
+    objects: tuple[int, ...]
+    states: tuple[tuple[int, str, bool], ...]
+    edges: tuple[tuple[Edge, bool], ...]
+
+    def reached(self, final: World) -> bool:
+        """Whether a world is as wanted."""
+        now = {edge for edge in final.edges() if edge.relation in WANTED}
+        return all(final.has_state(node, state) is holds for node, state, holds in self.states) and all(
+            (edge in now) is holds for edge, holds in self.edges
+        )
+
+
+def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """`domain.pddl` and `problems/EXECUTION.pddl`; executions that changed nothing lasting have no goal and no problem.
+
+    Returns:
+        how many problems.
+    """
+    write(to / "domain.pddl", planning_domain(kb.default()).encode())
+    number = 0
+    for task in tasks(dataset, wanted):
+        write(to / "problems" / f"{file_name(task.name)}.pddl", problem(task).encode())
+        number += 1
+    return number
+
+
+def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
+    """The planning task of each execution that has a goal, sorted by the ids of program and execution."""
+    from hearth.pipelines.cases import start_of
+
+    homes = StoredHomes(dataset)
+    for _, run in runs(dataset, wanted):
+        states, edges = _goal(run)
+        if states or edges:
+            world = start_of(run.row, homes)
+            named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
+            yield Task(run.row["execution_id"], world, tuple(_objects(world, named)), states, edges)
+
+
+def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
+    """What all ticks together came to: what came and went again is none of it."""
+    edges: dict[Edge, list[bool]] = {}
+    states: dict[tuple[int, str], list[bool]] = {}
+    for tick in run.row["ticks"]:
+        change = change_of(tick)
+        for holds, moved, entered in (
+            (False, change.removed, change.cleared_states),
+            (True, change.added, change.set_states),
+        ):
+            for edge in moved:
+                edges.setdefault(edge, []).append(holds)
+            for state in entered:
+                states.setdefault(state, []).append(holds)
+    # Of an even number of turns nothing is left.
+    return (
+        tuple((*state, turns[-1]) for state, turns in sorted(states.items()) if len(turns) % 2),
+        tuple((edge, turns[-1]) for edge, turns in sorted(edges.items()) if len(turns) % 2 and edge.relation in WANTED),
+    )
+
+
+def _objects(world: World, nodes: set[int]) -> list[int]:
+    home = world.home
+    kept = 0
+    waiting = home.characters
+    for node in nodes:
+        waiting |= 1 << home.index[node]
+    for agent in world.agents:
+        waiting |= agent.right | agent.left
+    seats = home.properties["SITTABLE"] | home.properties["LIEABLE"]
+    while waiting:
+        kept |= waiting
+        found = 0
+        for i in indices(waiting):
+            found |= rows.containers(world, i)
+            room = rows.room_of(world, i)
+            found |= 1 << room if room >= 0 else 0
+            found |= rows.bearing(world, i) if seats >> i & 1 else 0
+        waiting = found & ~kept
+    return sorted(home.ids[i] for i in indices(kept))
+
+
+def problem(task: Task) -> str:
+    """The problem as text."""
+    world, names = task.world, object_names(task)
+    agents = {world.home.ids[i] for i in world.home.agents}
+    objects = (f"    {name} - {'agent' if node in agents else 'object'}" for node, name in names.items())
+    goals = [_literal(f"({state_predicate(state)} {names[node]})", holds) for node, state, holds in task.states]
+    goals += [_literal(_edge(edge, names), holds) for edge, holds in task.edges]
+    lines = [
+        f"; {task.name.splitlines()[0]}",
+        "(define (problem execution)",
+        "  (:domain hearth)",
+        "  (:objects",
+        *objects,
+        "  )",
+        "  (:init",
+        *(f"    {fact}" for fact in _facts(task, names)),
+        "  )",
+        "  (:goal (and",
+        *(f"    {goal}" for goal in goals),
+        "  ))",
+        ")",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def object_names(task: Task) -> dict[int, str]:
+    """What each node is called: `coffee_table_41`."""
+    home = task.world.home
+    return {node: f"{_word(home.classes[home.index[node]])}_{node}" for node in task.objects}
+
+
+def _word(text: str) -> str:
+    word = "".join(char if char.isascii() and char.isalnum() else "_" for char in text.lower())
+    return word if word[:1].isalpha() else f"o{word}"
+
+
+def _literal(fact: str, holds: bool) -> str:
+    return fact if holds else f"(not {fact})"
+
+
+def _edge(edge: Edge, names: dict[int, str]) -> str:
+    return f"({relation_predicate(edge.relation)} {names[edge.source]} {names[edge.target]})"
+
+
+def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
+    world = task.world
+    home = world.home
+    mask = sum(1 << home.index[node] for node in task.objects)
+    known = set(unary_predicates(home.knowledge))
+    for node, name in names.items():
+        yield from (f"({kind} {name})" for kind in _kinds(world, home.index[node], known))
+    for edge in sorted(world.edges(mask)):
+        yield _edge(edge, names)
+    for node, name in names.items():
+        i = home.index[node]
+        room = rows.room_of(world, i)
+        if room >= 0 and room != i and not rows.containers(world, i) >> room & 1:
+            yield f"(inside {name} {names[home.ids[room]]})"
+
+
+def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:
+    """What a thing is, and the states it is in."""
+    home = world.home
+    bit, name = 1 << i, home.classes[i]
+    if home.rooms & bit:
+        yield "is-room"
+    yield from (property_predicate(prop) for prop, mask in sorted(home.properties.items()) if mask & bit)
+    if class_predicate(name) in known:
+        yield class_predicate(name)
+    parts = sorted(kind.removeprefix("named-") for kind in known if kind.startswith("named-"))
+    yield from (named_predicate(part) for part in parts if part in name)
+    for kind, word in LIMITS.items():
+        yield limit_predicate(word, home.limit(i, lying=kind == "bed_limit"))
+    yield from (state_predicate(state) for state in STATES if world.states[STATE_ID[state]] & bit)
