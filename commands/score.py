@@ -255,23 +255,26 @@ def dataset(
     instances: Instances = False,
     seed: Seed = 0,
     by: By = None,
+    workers: Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")] = 0,
     as_json: output.Json = False,
 ) -> None:
     """Every score against a dataset: its programs are the references, its environments where programs run.
 
-    Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}; steps may be in words. Executions without a row are
-    missing predictions and score 0.
+    Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}, or {"program_id": PROGRAM, "home": HOME, "predicted":
+    PROGRAM}; steps may be in words. Executions without a row are missing predictions and score 0.
 
     \b
     Example:
       python cli.py score dataset data_out mine.jsonl --split activities --by activity
     """
+    import os
+
     from hearth.pipelines.dataset import Dataset
     from hearth.pipelines.judging import judge
     from hearth.scoring.evaluate import Options
 
     options = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
-    scored = judge(Dataset.open(folder), file, split, part if split else "", options)
+    scored = judge(Dataset.open(folder), file, split, part if split else "", options, workers or os.cpu_count() or 1)
     if as_json:
         output.emit(_program_json(scored, options, by))
     else:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -18,21 +19,26 @@ from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.evaluate import Options, Scored, evaluate
-from hearth.scoring.predictions import read_pairs
+from hearth.scoring.evaluate import Options, Scored, lcs_of, scored
+from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.rows import Named
 
-PART = 500
-"""References whose environments are in memory at a time."""
+PART = 250
+"""References whose environments are in memory at a time, and a worker's share."""
+
+Job = tuple[str, list[Pair], Options]
+"""A dataset's folder, pairs without their references, and how to score them."""
 
 
 def judge(
-    dataset: Dataset, file: Path, split: str = "", part: str = "", options: Options | None = None
+    dataset: Dataset, file: Path, split: str = "", part: str = "", options: Options | None = None, workers: int = 1
 ) -> list[Scored]:
     """Score a file of predictions for executions of a dataset; those without a prediction are missing.
 
-    A row has `id`, an execution's, and `predicted`: a program's text, its steps, or steps in words. Its reference is
-    the program that the dataset has for the execution, bound as there, and it runs in the same environment. Rows of
-    executions outside the part are not looked at.
+    A row has `predicted`, a program's text, its steps, or steps in words, and says what it is for: `id` (or
+    `execution_id`) is an execution's; `program_id` with `home` are all executions of that program there, without `home`
+    all that it has. Its reference is the program that the dataset has for the execution, bound as there, and it runs in
+    the same environment. Rows of executions outside the part are not looked at.
 
     Args:
         dataset: with the references.
@@ -40,33 +46,86 @@ def judge(
         split: a split of the dataset, or "" for all executions.
         part: of the split; one that begins so counts (`test` is all tests).
         options: how to score; each execution's own rules are used.
+        workers: processes; the scores are the same for any number.
+
+    Returns:
+        the scores by id; worlds are not kept.
 
     Raises:
         HearthError: what `read_pairs` raises; UNKNOWN_ID where the dataset has no such split or part.
     """
     wanted = chosen(dataset, split, part)
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
-    predicted = {pair.id: pair for pair in read_pairs(file, known, reader=read_line)}
-    scored: list[Scored] = []
-    homes = StoredHomes(dataset)
-    for start in range(0, len(wanted), PART):
-        cases = {case["execution_id"]: case for case in _cases(dataset, wanted[start : start + PART])}
-        pairs = []
-        for name in wanted[start : start + PART]:
-            case = cases[name]
-            steps = program_of(case, bindings_of(case["bindings"])).steps
-            more = {**predicted[name].more, "activity": case["activity_id"], "home": case["home"]}
-            pairs.append(replace(predicted[name], reference=steps, more=more))
-        for pair in pairs:
-            case = cases[pair.id]
-            mine = replace(options or Options(), rules=RULES[case["rules"]])
-            scored += evaluate([pair], homes.home(case["home"]).knowledge, _started(case, homes), mine)
-    return scored
+    named = _named(dataset)
+    predicted = {pair.id: pair for pair in read_pairs(file, known, read_line, named)}
+    pairs = [predicted[name] for name in wanted]
+    shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
+    jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
+    return [each for done in _each(jobs, workers) for each in done]
 
 
-def _started(case: dict[str, Any], homes: StoredHomes) -> Any:
-    world = start_of(case, homes)
-    return lambda pair: world
+def _each(jobs: list[Job], workers: int) -> Iterator[list[Scored]]:
+    if workers < 2 or len(jobs) < 2:
+        yield from map(_judged, jobs)
+        return
+    import multiprocessing
+    import sys
+    from concurrent.futures import ProcessPoolExecutor
+
+    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
+        yield from pool.map(_judged, jobs)
+
+
+def _judged(job: Job) -> list[Scored]:
+    folder, pairs, options = job
+    dataset, homes = _opened(folder)
+    cases = {case["execution_id"]: case for case in _cases(dataset, [pair.id for pair in pairs])}
+    filled = [_filled(pair, cases[pair.id]) for pair in pairs]
+    found = []
+    for pair, lcs in zip(filled, lcs_of(filled, options.instances), strict=True):
+        case = cases[pair.id]
+        mine = replace(options, rules=RULES[case["rules"]])
+        each = scored(pair, lcs, homes.home(case["home"]).knowledge, start_of(case, homes), mine)
+        # A world holds its whole home: of thousands only what became of them is kept.
+        ran = each.execution and replace(each.execution, final=None)
+        found.append(replace(each, execution=ran))
+    return found
+
+
+@lru_cache(maxsize=2)
+def _opened(folder: str) -> tuple[Dataset, StoredHomes]:
+    """A dataset and its homes, once a process."""
+    dataset = Dataset.open(folder)
+    return dataset, StoredHomes(dataset)
+
+
+def _filled(pair: Pair, case: dict[str, Any]) -> Pair:
+    """A pair with its reference, and the fields it can be grouped by."""
+    steps = program_of(case, bindings_of(case["bindings"])).steps
+    return replace(pair, reference=steps, more={**pair.more, "activity": case["activity_id"], "home": case["home"]})
+
+
+def _named(dataset: Dataset) -> Named:
+    """Which executions a row without `id` is about."""
+    of_program: dict[str, list[str]] = {}
+    there: dict[tuple[str, str], list[str]] = {}
+    query = "SELECT execution_id, program_id, home FROM executions WHERE executable ORDER BY 1"
+    for execution_id, program_id, home in dataset.rows(query)[1]:
+        of_program.setdefault(program_id, []).append(execution_id)
+        there.setdefault((program_id, home), []).append(execution_id)
+
+    def named(values: Mapping[str, Any]) -> Sequence[str]:
+        if "execution_id" in values:
+            return [str(values["execution_id"])]
+        if "program_id" not in values:
+            return []
+        program, home = str(values["program_id"]), values.get("home")
+        if home is None:
+            return of_program.get(program) or [program]
+        return there.get((program, str(home))) or [f"{program} in {home}"]
+
+    return named
 
 
 def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
@@ -89,14 +148,20 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
     return found
 
 
+_NEEDED = """
+    SELECT e.execution_id, e.home, e.rules, e.bindings, p.program_id, p.activity_id, p.title, p.description, p.steps,
+        {'added_nodes': v.added_nodes, 'removed_nodes': v.removed_nodes, 'added': v.added, 'removed': v.removed,
+         'set_states': v.set_states, 'cleared_states': v.cleared_states} AS environment
+    FROM (SELECT * FROM executions SEMI JOIN (SELECT unnest($ids) AS execution_id) USING (execution_id)
+          WHERE execution_id BETWEEN $low AND $high) e
+    JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
+"""
+
+
 def _cases(dataset: Dataset, names: list[str]) -> Iterator[dict[str, Any]]:
-    runs = dataset._named("executions", "execution_id", names)
-    environments = dataset._named(
-        "environments", "environment_id", sorted({r["environment_id"] for r in runs.values()})
-    )
-    programs = dataset._named("programs", "program_id", sorted({row["program_id"] for row in runs.values()}))
-    for row in runs.values():
-        yield {**programs[row["program_id"]], **row, "environment": environments[row["environment_id"]]}
+    """What scoring asks of executions; their ticks are not read."""
+    asked = {"low": min(names), "high": max(names), "ids": names}
+    yield from dataset.connection.sql(_NEEDED, params=asked).to_arrow_table().to_pylist()
 
 
 def read_line(line: str) -> tuple[Step, ...] | Diagnostic:

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
 from hearth.scoring.counts import Matches, matched
-from hearth.scoring.side import Label, Side
-from hearth.scoring.views import View
+from hearth.scoring.side import Side
+from hearth.scoring.views import Label, View
 
 LIMIT = 1_000
 """Up to so many alignments all are tried; beyond, a search finds a lower bound of the best."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Set
-from dataclasses import replace
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.program import ObjectRef, Program
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.views import Nodes
 
 Key = tuple[str, int]
@@ -27,10 +26,13 @@ def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Progra
         knowledge: by which other names an object may stand in a graph.
         reference: bound, in the same environment.
     """
+    every = program.objects()
+    objects = [ref for ref in every if ref.node is None]
+    if not objects:
+        return program
     known = _bindings(reference) if reference else {}
     bound: dict[Key, int | None] = {}
-    objects = [ref for ref in program.objects() if ref.node is None]
-    taken: set[int | None] = {ref.node for ref in program.objects() if ref.node is not None}
+    taken: set[int | None] = {ref.node for ref in every if ref.node is not None}
     for ref in objects:
         node = known.get(ref.key)
         if node is None and nodes.classes.get(ref.instance) in knowledge.same_class(ref.name):
@@ -42,18 +44,16 @@ def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Progra
         if ref.key not in bound:
             bound[ref.key] = _first_free(ref, nodes, knowledge, taken)
             taken.add(bound[ref.key])
-    return program.with_steps(
-        replace(step, objects=tuple(ref if ref.node is not None else _bound(ref, bound) for ref in step.objects))
-        for step in program.steps
-    )
+    return program.with_steps([_bound(step, bound) for step in program.steps])
 
 
 def _bindings(program: Program) -> dict[Key, int]:
     return {ref.key: ref.node for ref in program.objects() if ref.node is not None}
 
 
-def _bound(ref: ObjectRef, nodes: dict[Key, int | None]) -> ObjectRef:
-    return replace(ref, node=nodes[ref.key])
+def _bound(step: Step, nodes: dict[Key, int | None]) -> Step:
+    objects = [ref if ref.node is not None else ObjectRef(*ref.key, nodes[ref.key]) for ref in step.objects]
+    return Step(step.action, tuple(objects), step.agent, step.joins, step.modifiers)
 
 
 def _first_free(ref: ObjectRef, nodes: Nodes, knowledge: Knowledge, taken: Set[int | None]) -> int | None:

@@ -163,37 +163,38 @@ def evaluate(
         options: how.
     """
     return [
-        _scored(pair, lcs, knowledge, environments(pair) if environments else None, options)
+        scored(pair, lcs, knowledge, environments(pair) if environments else None, options)
         for pair, lcs in zip(pairs, lcs_of(pairs, options.instances), strict=True)
     ]
 
 
-def summarise(scored: Sequence[Scored], seed: int = 0) -> Summary:
+def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
     """The means of every score that could be asked of at least one prediction, and counts of the rest."""
-    columns = {name: [metric(each) for each in scored] for name, metric in METRICS.items()}
-    failures = [each.execution for each in scored if each.execution and each.execution.error]
+    columns = {name: [metric(each) for each in every] for name, metric in METRICS.items()}
+    failures = [each.execution for each in every if each.execution and each.execution.error]
     return Summary(
-        count=len(scored),
-        missing=sum(each.missing for each in scored),
-        empty=sum(each.empty for each in scored),
-        incomparable=sum(each.comparable is False for each in scored),
-        inexact=sum(each.graph is not None and not each.graph.exact for each in scored),
+        count=len(every),
+        missing=sum(each.missing for each in every),
+        empty=sum(each.empty for each in every),
+        incomparable=sum(each.comparable is False for each in every),
+        inexact=sum(each.graph is not None and not each.graph.exact for each in every),
         means=intervals(columns, seed),
         errors=dict(sorted(Counter(each.error for each in failures if each.error).items())),
         failed_at=dict(sorted(Counter(each.failed_line for each in failures if each.failed_line is not None).items())),
     )
 
 
-def by_field(scored: Iterable[Scored], name: str, seed: int = 0) -> dict[str, Summary]:
+def by_field(every: Iterable[Scored], name: str, seed: int = 0) -> dict[str, Summary]:
     """Summaries by a field of the predictions' rows (`activity`), sorted by it; rows without it under ''."""
     groups: dict[str, list[Scored]] = {}
-    for each in scored:
+    for each in every:
         value = each.pair.more.get(name)
         groups.setdefault("" if value is None else str(value), []).append(each)
     return {value: summarise(group, seed) for value, group in sorted(groups.items())}
 
 
-def _scored(pair: Pair, lcs: LcsScore, knowledge: Knowledge, world: World | None, options: Options) -> Scored:
+def scored(pair: Pair, lcs: LcsScore, knowledge: Knowledge, world: World | None, options: Options) -> Scored:
+    """Every score of one prediction whose LCS is known, in its environment if there is one."""
     parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
     if world is None:
         return Scored(pair, lcs, parsed)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import lru_cache
 
 from hearth.kb.grammar import affordances, check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.program import Program, Step
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.binding import bind
 from hearth.scoring.parse import parsability
 from hearth.scoring.reading import Lines, steps_of
@@ -121,7 +122,7 @@ def executability(
     """
     knowledge = world.home.knowledge
     faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
-    program, _ = check(Program(steps=steps_of(lines)), knowledge)
+    program = Program(steps=tuple([_canonical(step, knowledge) for step in steps_of(lines)]))
     program = bind(program, nodes_of(world.home), knowledge, reference)
     place = [number for number, line in enumerate(lines) if isinstance(line, Step)]
     steps = zip(place, program.steps, strict=True)
@@ -140,9 +141,31 @@ def executability(
     return Executability(program, not lines, not unfit and not faults, runs, line, error, code, final)
 
 
+def _canonical(step: Step, knowledge: Knowledge) -> Step:
+    """The step with the knowledge's own names; one with a fault as it is."""
+    names = tuple([ref.name for ref in step.objects])
+    action, canonical = _names(step.action, names, knowledge)
+    if action == step.action and canonical == names:
+        return step
+    objects = tuple(replace(ref, name=name) for ref, name in zip(step.objects, canonical, strict=True))
+    return replace(step, action=action, objects=objects)
+
+
+@lru_cache(maxsize=65_536)
+def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
+    """The canonical names of a step, whatever instances it is about: a corpus says the same thing many times."""
+    program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
+    return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
+
+
 def _fits(step: Step, knowledge: Knowledge) -> bool:
     """Whether the grammar lets the step's objects be what they are to it."""
-    return not affordances(Program(steps=(step,)), knowledge)
+    return _afforded(step.action, tuple([ref.name for ref in step.objects]), knowledge)
+
+
+@lru_cache(maxsize=65_536)
+def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool:
+    return not affordances(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
-from hearth.schemas.program import Step
 from hearth.scoring.reading import Line, Lines
 from hearth.scoring.signature import signature
 
@@ -68,14 +68,18 @@ def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
     if isinstance(line, str):
         yield Fault(number, Code.SYNTAX, line[:200])
         return
-    action = knowledge.action(line.action)
+    fault = _fault(line.action, tuple([ref.name for ref in line.objects]), knowledge)
+    if fault:
+        yield Fault(number, *fault)
+
+
+@lru_cache(maxsize=65_536)
+def _fault(name: str, objects: tuple[str, ...], knowledge: Knowledge) -> tuple[Code, str] | None:
+    """The gravest fault of a step, whatever instances it is about: a corpus says the same thing many times."""
+    action = knowledge.action(name)
     if action is None:
-        yield Fault(number, Code.UNKNOWN_ACTION, line.action)
-    elif len(line.objects) != action.arity:
-        yield Fault(number, Code.WRONG_ARITY, f"{len(line.objects)} of {action.arity}")
-    elif unknown := _unknown_object(line, knowledge):
-        yield Fault(number, Code.UNKNOWN_OBJECT, unknown)
-
-
-def _unknown_object(step: Step, knowledge: Knowledge) -> str:
-    return next((ref.name for ref in step.objects if knowledge.object_class(ref.name) is None), "")
+        return Code.UNKNOWN_ACTION, name
+    if len(objects) != action.arity:
+        return Code.WRONG_ARITY, f"{len(objects)} of {action.arity}"
+    unknown = next((name for name in objects if knowledge.object_class(name) is None), "")
+    return (Code.UNKNOWN_OBJECT, unknown) if unknown else None

@@ -11,7 +11,7 @@ from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.reading import Lines, Reader, Source, read
-from hearth.scoring.rows import Row, rows_of, source_of
+from hearth.scoring.rows import Named, Row, rows_of, source_of
 
 SHOWN = 20
 """Faults of one kind that are listed; the rest are counted."""
@@ -39,7 +39,10 @@ class Pair:
 
 
 def read_pairs(
-    path: Path, references: Path | Mapping[str, Source] | None = None, reader: Reader = parse_steps
+    path: Path,
+    references: Path | Mapping[str, Source] | None = None,
+    reader: Reader = parse_steps,
+    named: Named | None = None,
 ) -> list[Pair]:
     """Read predictions with their references.
 
@@ -51,6 +54,7 @@ def read_pairs(
         references: a file of `id` and `reference`, or programs by id, when the predictions' file has none. Ids that
             only the references have are missing predictions; pairs come in the references' order.
         reader: reads one line of a program; give another for steps in words.
+        named: which of the references' ids a row is about that has no `id`, by its other columns.
 
     Raises:
         HearthError: what is not such a file, missing columns, rows that are no objects, duplicate and unknown ids; each
@@ -62,7 +66,7 @@ def read_pairs(
         pairs = [_pair(row, _program(row, "reference", path, reader, faults), path, reader, faults) for row in rows]
     else:
         known = _references(references, reader, faults)
-        rows = _rows(path, ("id", "predicted"), faults)
+        rows = _rows(path, ("id", "predicted"), faults, named)
         faults.extend(_unknown_ids(rows, known, path))
         by_id = {row.id: row for row in rows}
         pairs = [
@@ -81,10 +85,10 @@ def _references(references: Path | Mapping[str, Source], reader: Reader, faults:
     return {name: read(source, reader) for name, source in references.items()}
 
 
-def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic]) -> list[Row]:
+def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> list[Row]:
     """The rows of a file that have an id of their own; what is wrong with the others is added to the faults."""
     rows: dict[str, Row] = {}
-    for row in rows_of(path, columns, faults):
+    for row in rows_of(path, columns, faults, named):
         first = rows.setdefault(row.id, row)
         if first is not row:
             message = f"a second row of id `{row.id}`; the first is line {first.line}"

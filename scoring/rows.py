@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,15 +26,28 @@ class Row:
     line: int
 
 
-def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic]) -> Iterator[Row]:
+Named = Callable[[Mapping[str, Any]], Sequence[str]]
+"""The ids that a row without one is about, by its other columns; none where it has not the columns either."""
+
+
+def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> Iterator[Row]:
     """The rows that have these columns, the first of which is the id; the others' faults are added to `faults`.
+
+    Args:
+        path: JSON Lines or Parquet.
+        columns: that every row needs.
+        faults: gets what is wrong with rows.
+        named: says which ids rows are about that have none.
 
     Raises:
         HearthError: there is no such file, or it is neither JSON Lines nor Parquet.
     """
     data = _bytes(path)
-    records = _parquet(path, columns) if data.startswith(PARQUET) else _json_lines(data, path, faults)
-    for line, values in records:
+    needed = columns[1:] if named else columns
+    records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
+    for line, given in records:
+        values, *more = _told_apart(given, columns[0], named)
+        yield from (Row(each[columns[0]], each, line) for each in more)
         missing = [name for name in columns if name not in values]
         if missing:
             listed = ", ".join(f"`{name}`" for name in missing)
@@ -45,6 +58,13 @@ def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic]) -> Ite
             faults.append(_fault(path, line, f"`{columns[0]}` is {name!r}", "a text or a whole number"))
             continue
         yield Row(str(name), values, line)
+
+
+def _told_apart(values: dict[str, Any], column: str, named: Named | None) -> list[dict[str, Any]]:
+    """The row with its id, once for each that it is about."""
+    if named is None or column in values:
+        return [values]
+    return [{**values, column: name} for name in named(values)] or [values]
 
 
 def source_of(value: Any) -> Source | None:

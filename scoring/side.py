@@ -6,12 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Set
 
 from hearth.schemas.graph import Edge
-from hearth.scoring.views import View
-
-Label = int | str | tuple[str, int]
-"""What a node is compared by: its counterpart's id, its own id, or its class."""
-
-Tuples = Counter[object]
+from hearth.scoring.views import Label, Tuples, View
 
 
 class Side:
@@ -36,19 +31,19 @@ class Side:
         nodes = view.nodes
         self.named = named
         self._either = either
-        self._characters = nodes.characters
-        self._fixed = nodes.characters | nodes.left_out
         self._classes = nodes.classes
         self.still_states: Tuples = Counter(view.states(nodes.characters))
-        self.still_relations: Tuples = Counter()
         self._states: dict[int, Tuples] = {node: Counter() for node in movable}
-        self._relations: dict[int, Tuples] = {node: Counter() for node in movable}
-        self._to_characters: dict[int, Tuples] = {}
-        self._between: list[Edge] = []
         for node, state in view.states(movable):
             self._states[node][state] += 1
-        for edge in view.edges(movable | nodes.characters):
-            self._sort(edge, movable)
+        found = view.sorted_edges(movable)
+        self.still_relations = found.still
+        self._relations, self._to_characters = found.single, found.to_characters
+        self._out: dict[int, list[Edge]] = {}
+        self._into: dict[int, list[Edge]] = {}
+        for edge in found.between:
+            self._out.setdefault(edge.source, []).append(edge)
+            self._into.setdefault(edge.target, []).append(edge)
 
     def about(self, node: int | None) -> tuple[Tuples, Tuples]:
         """The state and relation tuples of an aligned node, its edges to movable nodes left aside."""
@@ -61,35 +56,18 @@ class Side:
     def moving(self, labels: Mapping[int, Label]) -> Tuples:
         """Edges between movable nodes of which one is scored, and the characters' to those that are not aligned."""
         about = labels.keys() if self._either else self.named
-        found: Tuples = Counter(
-            (edge.relation, self._label(edge.source, labels), self._label(edge.target, labels))
-            for edge in self._between
-            if edge.source in about or edge.target in about
-        )
+        found: Tuples = Counter()
+        for node in about:
+            for source, relation, target in self._out.get(node, ()):
+                found[relation, self._label(source, labels), self._label(target, labels)] += 1
+            for source, relation, target in self._into.get(node, ()):
+                if source not in about:
+                    found[relation, self._label(source, labels), self._label(target, labels)] += 1
         for node, tuples in self._to_characters.items():
             if node not in labels:
                 for item, count in tuples.items():
                     found[self._classes[node], item] += count
         return found
-
-    def _sort(self, edge: Edge, movable: Set[int]) -> None:
-        if edge.source in movable and edge.target in movable:
-            self._between.append(edge)
-        elif edge.source in movable:
-            self._add(edge.source, edge.target, (edge.relation, "to"))
-        elif edge.target in movable:
-            self._add(edge.target, edge.source, (edge.relation, "from"))
-        else:
-            self.still_relations[edge.relation, self._still(edge.source), self._still(edge.target)] += 1
-
-    def _add(self, node: int, other: int, how: tuple[str, str]) -> None:
-        item = (*how, self._still(other))
-        self._relations[node][item] += 1
-        if other in self._characters:
-            self._to_characters.setdefault(node, Counter())[item] += 1
-
-    def _still(self, node: int) -> Label:
-        return node if node in self._fixed else self._classes.get(node, "?")
 
     def _label(self, node: int, labels: Mapping[int, Label]) -> Label:
         return labels.get(node, self._classes[node])

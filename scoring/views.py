@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Protocol
@@ -10,7 +11,8 @@ from typing import Protocol
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation import rows
-from hearth.simulation.bits import indices
+from hearth.simulation.agent import Agent
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import with_states
 from hearth.simulation.world import World
@@ -19,6 +21,11 @@ DOORS_CATEGORY = "Doors"
 DOOR = "door"
 
 StateTuple = tuple[int, str]
+
+Label = int | str | tuple[str, int]
+"""What a node is compared by: its counterpart's id, its own id, or its class."""
+
+Tuples = Counter[object]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +44,22 @@ class Nodes:
     left_out: frozenset[int]
     characters: frozenset[int]
 
+    def label(self, node: int) -> Label:
+        """What a node is compared by as long as it does not move: rooms, doors, characters by id, else by class."""
+        fixed = node in self.characters or node in self.left_out
+        return node if fixed else self.classes.get(node, "?")
+
+    def extended(self, nodes: Iterable[Node]) -> Nodes:
+        """The table with more nodes, whose ids are above all that it has."""
+        more = Nodes.of(nodes)
+        joined = {name: self.instances.get(name, ()) + ids for name, ids in more.instances.items()}
+        return Nodes(
+            {**self.classes, **more.classes},
+            {**self.instances, **joined},
+            self.left_out | more.left_out,
+            self.characters | more.characters,
+        )
+
     @classmethod
     def of(cls, nodes: Iterable[Node]) -> Nodes:
         """The table of some nodes."""
@@ -52,6 +75,43 @@ class Nodes:
         )
 
 
+class SortedEdges:
+    """Edges by what an alignment of movable nodes can change about them.
+
+    Rooms, doors and characters are told by id, of other nodes that do not move only the class.
+
+    Attributes:
+        single: (relation, `to` or `from`, the other end) of each movable node, where the other end does not move.
+        to_characters: of these, the ones whose other end is a character.
+        between: edges from movable to movable nodes.
+        still: (relation, source, target) where neither end moves.
+    """
+
+    def __init__(self, movable: Set[int]) -> None:
+        self.single: dict[int, Tuples] = {node: Counter() for node in movable}
+        self.to_characters: dict[int, Tuples] = {}
+        self.between: list[Edge] = []
+        self.still: Tuples = Counter()
+
+    def add(self, edge: Edge, nodes: Nodes) -> None:
+        """Sort one edge in."""
+        source, relation, target = edge
+        if source in self.single and target in self.single:
+            self.between.append(edge)
+        elif source in self.single:
+            self.count(source, (relation, "to", nodes.label(target)), target in nodes.characters)
+        elif target in self.single:
+            self.count(target, (relation, "from", nodes.label(source)), source in nodes.characters)
+        else:
+            self.still[relation, nodes.label(source), nodes.label(target)] += 1
+
+    def count(self, node: int, item: object, to_character: bool) -> None:
+        """Add a tuple about one movable node."""
+        self.single[node][item] += 1
+        if to_character:
+            self.to_characters.setdefault(node, Counter())[item] += 1
+
+
 class View(Protocol):
     """A final graph as a scorer reads it."""
 
@@ -64,6 +124,9 @@ class View(Protocol):
 
     def edges(self, nodes: Collection[int]) -> set[Edge]:
         """Every edge with an end in some nodes."""
+
+    def sorted_edges(self, movable: Set[int]) -> SortedEdges:
+        """The edges of some nodes and of the characters, as an alignment counts them."""
 
 
 class GraphView:
@@ -82,6 +145,10 @@ class GraphView:
         """Every edge with an end in some nodes."""
         wanted = frozenset(nodes)
         return {edge for edge in self._graph.edges if edge.source in wanted or edge.target in wanted}
+
+    def sorted_edges(self, movable: Set[int]) -> SortedEdges:
+        """The edges of some nodes and of the characters, as an alignment counts them."""
+        return _sorted(self, movable)
 
 
 class WorldView:
@@ -114,6 +181,67 @@ class WorldView:
         found.update(Edge(*edge) for edge in others if index[edge[0]] in wanted or index[edge[2]] in wanted)
         return found
 
+    def sorted_edges(self, movable: Set[int]) -> SortedEdges:
+        """The edges of some nodes and of the characters, as an alignment counts them; read a row at a time."""
+        world = self._world
+        home = world.home
+        if len(world.agents) != 1 or home.others or movable & self.nodes.characters:
+            return _sorted(self, movable)
+        moving = mask_of(home.index[node] for node in movable)
+        found = SortedEdges(movable)
+        for i in indices(moving):
+            _sort_rows(world, i, moving, found)
+        _sort_agent(world.agents[0], home, moving, found)
+        return found
+
+
+_OUT = (("ON", rows.on), ("INSIDE", rows.inside), ("CLOSE", rows.close), ("FACING", rows.facing))
+_INTO = (("ON", rows.bears), ("INSIDE", rows.contents), ("CLOSE", rows.close), ("FACING", rows.faced))
+
+
+def _sort_rows(world: World, i: int, moving: int, found: SortedEdges) -> None:
+    """A movable thing's edges with other things."""
+    home = world.home
+    ids, labels = home.ids, labels_of(home)
+    node = ids[i]
+    mine = found.single[node]
+    for relation, read in _OUT:
+        row = read(world, i)
+        found.between.extend([Edge(node, relation, ids[j]) for j in indices(row & moving)])
+        for j in indices(row & ~moving):
+            mine[relation, "to", labels[j]] += 1
+    for relation, read in _INTO:
+        for j in indices(read(world, i) & ~moving):
+            mine[relation, "from", labels[j]] += 1
+    for j in indices(home.between[i]):
+        found.add(Edge(node, "BETWEEN", ids[j]), nodes_of(home))
+
+
+def _sort_agent(agent: Agent, home: Home, moving: int, found: SortedEdges) -> None:
+    """The only character's edges."""
+    ids, labels = home.ids, labels_of(home)
+    me = ids[agent.index]
+    out = (("ON", agent.on), ("INSIDE", agent.inside), ("CLOSE", agent.close), ("FACING", agent.facing))
+    for relation, row in (*out, ("HOLDS_RH", agent.right), ("HOLDS_LH", agent.left)):
+        for j in indices(row & moving):
+            found.count(ids[j], (relation, "from", me), to_character=True)
+        for j in indices(row & ~moving):
+            found.still[relation, me, labels[j]] += 1
+    into = (("ON", agent.worn), ("INSIDE", agent.contents), ("CLOSE", agent.close), ("FACING", agent.faced))
+    for relation, row in into:
+        for j in indices(row & moving):
+            found.count(ids[j], (relation, "to", me), to_character=True)
+        # An edge from the character to itself is the one that it already has.
+        for j in indices(row & ~moving & ~agent.bit):
+            found.still[relation, labels[j], me] += 1
+
+
+def _sorted(view: View, movable: Set[int]) -> SortedEdges:
+    found, nodes = SortedEdges(movable), view.nodes
+    for edge in view.edges(movable | nodes.characters):
+        found.add(edge, nodes)
+    return found
+
 
 def view_of(final: EnvironmentGraph | World) -> View:
     """A graph or world as a view."""
@@ -124,10 +252,27 @@ def _is_room_or_door(node: Node) -> bool:
     return node.category in (ROOM_CATEGORY, DOORS_CATEGORY) or DOOR in node.class_name
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=64)
 def nodes_of(home: Home) -> Nodes:
-    """The table of a home: a prediction and its reference end in worlds of the same one."""
-    return Nodes.of(home.node(i) for i in range(len(home)))
+    """The table of a home: a prediction and its reference end in worlds of the same one.
+
+    Of a home that was made from another by adding nodes, only these are read.
+    """
+    base = home.base[0] if home.base else None
+    if base is None or home.absent or base.absent or home.ids[: len(base)] != base.ids:
+        return Nodes.of(home.node(i) for i in indices(home.everything))
+    known, new = nodes_of(base), [home.node(i) for i in range(len(base), len(home))]
+    return known.extended(new) if new else known
+
+
+@lru_cache(maxsize=64)
+def labels_of(home: Home) -> list[Label]:
+    """What each node is compared by as long as it does not move, by index."""
+    nodes = nodes_of(home)
+    base = home.base[0] if home.base else None
+    if base is not None and home.ids[: len(base)] == base.ids:
+        return labels_of(base) + [nodes.label(node) for node in home.ids[len(base) :]]
+    return [nodes.label(node) for node in home.ids]
 
 
 def _thing_edges(world: World, i: int) -> Iterator[tuple[int, str, int]]:

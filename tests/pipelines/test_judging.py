@@ -53,6 +53,29 @@ def test_steps_in_words_and_parquet(ds, tmp_path):
     assert found.means["parsable"].mean == 1.0
 
 
+def test_any_number_of_workers_scores_the_same(ds, tmp_path, monkeypatch):
+    monkeypatch.setattr("hearth.pipelines.judging.PART", 2)
+    rows = [{"id": name, "predicted": list(print_lines(program))[1:]} for name, program in programs(ds).items()]
+    one, two = (judge(ds, written(tmp_path / "mine.jsonl", rows), workers=number) for number in (1, 2))
+    assert len(one) > 2 and one == two
+
+
+def test_a_prediction_may_name_program_and_home(ds, tmp_path):
+    rows = ds.rows("SELECT execution_id, program_id, home FROM executions WHERE executable ORDER BY 1")[1]
+    lines = {name: list(print_lines(ds[name].program)) for _, name, _ in rows}
+    by_id = [{"id": execution, "predicted": lines[name]} for execution, name, _ in rows]
+    by_home = [{"program_id": name, "home": home, "predicted": lines[name]} for _, name, home in rows]
+    by_program = [{"program_id": name, "predicted": lines[name]} for name in dict.fromkeys(name for _, name, _ in rows)]
+    told = (by_id, by_home, by_program)
+    expected, *found = (summarise(judge(ds, written(tmp_path / f"{n}.jsonl", each))) for n, each in enumerate(told))
+    assert found == [expected, expected] and expected.missing == 0
+    pq.write_table(pa.Table.from_pylist(by_home), tmp_path / "mine.parquet")
+    assert summarise(judge(ds, tmp_path / "mine.parquet")) == expected
+    by_home[0]["home"] = "nowhere"
+    with pytest.raises(HearthError, match="in nowhere"):
+        judge(ds, written(tmp_path / "bad.jsonl", by_home))
+
+
 def test_missing_predictions_count_as_zero(ds, tmp_path):
     name, program = next(iter(programs(ds).items()))
     rows = [{"id": name, "predicted": list(print_lines(program))}]
