@@ -10,7 +10,7 @@ from hearth.pipelines.files import value_digest
 from hearth.pipelines.parts import Row
 from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
 from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
-from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, Recognised, recognise
+from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.repeated import Repeated
 from hearth.pipelines.settings import Settings
@@ -23,8 +23,9 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     crowd.NAME: crowd.scan,
     text.NAME: text.scan,
     spoken.NAME: spoken.scan,
-    LISTED: spoken.scan_list,
+    TEXTS: spoken.scan_list,
     ours.NAME: ours.scan,
+    LISTED: ours.scan_list,
     DOCUMENT: ours.scan_document,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,

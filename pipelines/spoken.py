@@ -150,13 +150,13 @@ def looks_spoken(lines: list[str]) -> bool:
     return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(_TITLE.match(lines[0])))
 
 
-def blocks(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
-    """Split a text into its programs: (number of the first line, lines).
+def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split a text into its programs: (number of the first line, lines); of a longer one than `most` only so much.
 
     A program begins with a line that is not numbered, once steps were seen, or where the numbers begin again.
     """
     block: list[str] = []
-    first, last = 0, 0
+    first, last, size = 0, 0, 0
     for number, line in lines:
         match = NUMBERED.match(line)
         digits = re.search(r"\d+", match[0]) if match else None
@@ -164,10 +164,11 @@ def blocks(lines: Iterator[tuple[int, str]]) -> Iterator[tuple[int, list[str]]]:
         new = bool(line.strip()) and (last > 0 if not match else count <= 1 < last)
         if new and block:
             yield first, block
-            first, block, last = 0, [], 0
-        if line.strip() or block:
+            first, block, last, size = 0, [], 0, 0
+        if (line.strip() or block) and size <= most:
             first = first or number
             block.append(line)
+            size += len(line) + 1
         if match:
             last = max(count, 1)
     if block:

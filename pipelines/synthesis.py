@@ -246,11 +246,13 @@ def _possible(action: str, names: tuple[str, ...], made: dict[tuple[str, str], s
         made["seat", names[0]] = action
         return not again
     if action == "Grab":
-        if names[0] in held:
+        where = made.pop(("place", names[0]), None)
+        if names[0] in held or (where is not None and made.get(("door", where)) == "Close"):
             return False
         held.add(names[0])
     elif action in ("PutBack", "PutIn"):
         held.discard(names[0])
+        made["place", names[0]] = names[1]
         return names[0] != names[1]
     return True
 

@@ -34,6 +34,9 @@ PROGRAMS = (
 LONGEST_RECORD = 2_000
 """Lines that one answer may have. Beyond it a quote was never closed, and reading goes on after its line."""
 
+LONGEST_ANSWER = 2_000_000
+"""Characters after which the same is concluded."""
+
 _ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
 _LOOK_AHEAD = 200
 _DELIMITERS = ",;\t"
@@ -133,11 +136,12 @@ class _Rows(Iterator[tuple[int, str]]):
     def _record(self, number: int, line: str, header: Header) -> list[tuple[int, str]]:
         """The lines of the record that begins here, as far as quotes tell."""
         taken = [(number, line)]
-        odd = line.count('"') % 2 == 1
+        odd, size = line.count('"') % 2 == 1, len(line)
         if odd and _whole(taken, header):
             return taken
-        while odd and len(taken) < LONGEST_RECORD and (more := next(self, None)):
+        while odd and len(taken) < LONGEST_RECORD and size <= LONGEST_ANSWER and (more := next(self, None)):
             taken.append(more)
+            size += len(more[1])
             odd ^= more[1].count('"') % 2 == 1
         return taken
 

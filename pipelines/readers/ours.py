@@ -7,6 +7,7 @@ from typing import Any
 
 from hearth.pipelines.readers import spoken
 from hearth.pipelines.readers.document import document, parsed
+from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
@@ -32,13 +33,14 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def scan_document(path: Place, place: str) -> Iterator[Item]:
-    """One item for each entry of a list, or for the one record of an object."""
-    value = document(path, place)
-    if isinstance(value, Reject) or not isinstance(value, list):
-        yield _item(value, place, 1, place)
-        return
-    for number, entry in enumerate(value, 1):
-        yield _item(entry, f"{place}[{number}]", 0, f"{place}[{number}]")
+    """One item: the record of an object."""
+    yield _item(document(path, place), place, 1, place)
+
+
+def scan_list(path: Place, place: str) -> Iterator[Item]:
+    """One item for each entry of a list."""
+    for number, (line, value) in enumerate(entries(path, place), 1):
+        yield _item(value, f"{place}[{number}]", line if isinstance(value, Reject) else 0, f"{place}[{number}]")
 
 
 def _item(value: Any, place: str, line: int, name: str) -> Item:

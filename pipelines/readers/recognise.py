@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 from hearth.pipelines.files import walk
 from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
-from hearth.pipelines.readers.document import looks_like_json
+from hearth.pipelines.readers.document import document, looks_like_json, parsed
+from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, DamagedError, Place, lines, opened, size_of
 from hearth.pipelines.readers.packed import GZIP, ZSTD, Member, refusal_of
 from hearth.pipelines.rejects import Reject
@@ -115,9 +116,13 @@ def _file(path: Path, place: str) -> Iterator[Recognised]:
 def _text(path: Place, place: str) -> Recognised:
     """What a text is, packed or not, by its first lines."""
     try:
-        first = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
+        return _told(path, place)
     except DamagedError as error:
         return Recognised(path, place, "", Reject.because(error.diagnostics, place))
+
+
+def _told(path: Place, place: str) -> Recognised:
+    first = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
     told = [line for line in first if line.strip()]
     line = told[0] if told else ""
     if crowd.header_of(line[:10_000]):
@@ -141,38 +146,43 @@ def _is_spoken(told: list[str]) -> bool:
 
 def _json(path: Place, place: str, told: list[str]) -> Recognised:
     """Which of the JSON forms it is: lines where the first is a whole value and others follow, else one document."""
-    from hearth.pipelines.readers.document import document, parsed
-
     first = parsed(told[0], place, 1)
     several = len(told) > 1 and not isinstance(first, Reject)
     if several or (not isinstance(first, Reject) and size_of(path) > LARGEST_FILE):
         return Recognised(path, place, ours.NAME)
-    try:
+    if told[0].lstrip().startswith("["):
+        reader = _form_of_list(path, place)
+    elif all(found == "[" for found in map(kinds(path).get, sketches.COLUMNS)):
+        reader = sketches.NAME
+    else:
         value = document(path, place)
-    except DamagedError as error:
-        value = Reject.because(error.diagnostics, place)
-    if isinstance(value, Reject):
-        return Recognised(path, place, "", value)
-    reader = _form_of(value)
+        if isinstance(value, Reject):
+            return Recognised(path, place, "", value)
+        reader = _form_of(value)
     return Recognised(path, place, reader) if reader else _refused(path, place, "JSON of no form that is known")
 
 
+def _form_of_list(path: Place, place: str) -> str:
+    """By its first entry that can be read; a list without any is one of records."""
+    for _, value in entries(path, place):
+        if isinstance(value, str):
+            return TEXTS
+        if not isinstance(value, Reject):
+            return LISTED if isinstance(value, dict) else ""
+    return LISTED
+
+
 def _form_of(value: Any) -> str:
-    if isinstance(value, list):
-        if value and isinstance(value[0], str):
-            return LISTED
-        return DOCUMENT if not value or isinstance(value[0], dict) else ""
     if not isinstance(value, dict):
         return ""
-    if all(isinstance(value.get(name), list) for name in sketches.COLUMNS):
-        return sketches.NAME
     graph = value.get("init_graph", value)
     if isinstance(graph, dict) and {"nodes", "edges"} <= graph.keys():
         return scenes.NAME
     return DOCUMENT if value.keys() & {"steps", "text", "program", "description", "title"} else ""
 
 
-LISTED = "spoken list"
+TEXTS = "spoken list"
+LISTED = "records list"
 DOCUMENT = "records document"
 """Readers' names for what is scanned otherwise and read alike."""
 

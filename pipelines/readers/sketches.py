@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import zip_longest
 from typing import Any
 
 from hearth.pipelines.readers import release
-from hearth.pipelines.readers.document import document
+from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, refused
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
@@ -19,20 +20,21 @@ COLUMNS = ("answer", "input")
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each sketch."""
-    value = document(path, place)
-    if isinstance(value, Reject):
-        yield refused(place, value)
-        return
-    answers, inputs = (value.get(name) for name in COLUMNS)
-    if not isinstance(answers, list) or not isinstance(inputs, list) or len(answers) != len(inputs):
-        message = "no sketches: `answer` and `input` are not lists of one length"
-        yield refused(place, Reject.of(Code.BAD_JSON, message, file=place))
-        return
-    represent = value.get("represent")
-    represent = represent if isinstance(represent, list) and len(represent) == len(answers) else [1] * len(answers)
-    for number, (keep, given, fits) in enumerate(zip(answers, inputs, represent, strict=True), 1):
-        told = {"keep": keep, "input": given, "represent": fits}
-        yield Item(f"{NAME}:{place}[{number}]", NAME, f"{place}[{number}]", told)
+    columns = [entries(path, place, key) for key in (*COLUMNS, "represent")]
+    for number, ((_, keep), (line, given), (_, fits)) in enumerate(zip_longest(*columns, fillvalue=_ABSENT), 1):
+        where = f"{place}[{number}]"
+        fault = next((value for value in (keep, given) if isinstance(value, Reject)), None)
+        if keep is None or given is None:
+            message = "no sketches: `answer` and `input` are not lists of one length"
+            fault = fault or Reject.of(Code.BAD_JSON, message, file=place, line=line)
+        if fault:
+            yield refused(where, fault)
+            return
+        told = {"keep": keep, "input": given, "represent": 1 if fits is None or isinstance(fits, Reject) else fits}
+        yield Item(f"{NAME}:{where}", NAME, where, told)
+
+
+_ABSENT = (0, None)
 
 
 def read(item: Item) -> dict[str, Any] | Reject:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from hearth.pipelines import spoken
-from hearth.pipelines.readers.document import document
+from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
@@ -26,17 +26,17 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 def scan_list(path: Place, place: str) -> Iterator[Item]:
     """One item for each text of a JSON list of texts."""
-    texts = document(path, place)
-    if isinstance(texts, Reject):
-        yield refused(place, texts)
-        return
-    for number, text in enumerate(texts, 1):
+    for number, (line, text) in enumerate(entries(path, place), 1):
         where = f"{place}[{number}]"
         if isinstance(text, str):
             yield checked(text, 1, f"{NAME}:{where}", where)
+        elif isinstance(text, Reject):
+            yield refused(where, text, line=line)
         else:
             message = f"entry {number} of the list is no text"
-            fault = Reject.of(Code.BAD_JSON, message, file=where, suggestion="a list of texts, or of records")
+            fault = Reject.of(
+                Code.BAD_JSON, message, file=where, line=line, suggestion="a list of texts, or of records"
+            )
             yield refused(where, fault)
 
 

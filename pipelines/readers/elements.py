@@ -1,0 +1,149 @@
+"""JSON lists read entry by entry, so that memory does not grow with the list: at the top of a file, or under a key."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from typing import Any
+
+from hearth.pipelines.readers.document import parsed
+from hearth.pipelines.readers.item import Place, fault_of, pieces
+from hearth.pipelines.rejects import Reject
+from hearth.schemas.failures import Code
+
+LONGEST_ENTRY = 16_000_000
+"""Characters that one entry may have."""
+
+_TOKEN = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[\[\]{},:"]', re.DOTALL)
+_OPENS, _CLOSES = frozenset("[{"), frozenset("]}")
+_PAIR = {"]": "[", "}": "{"}
+
+
+class BrokenError(Exception):
+    """A document that ends too early, goes on too long, or has an entry that is too long; the line tells where."""
+
+    def __init__(self, message: str, line: int, code: Code = Code.BAD_JSON) -> None:
+        super().__init__(message)
+        self.line, self.code = line, code
+
+
+def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any | Reject]]:
+    """The values of a list with the lines they begin in; those that are no JSON, and a broken end, as rejects.
+
+    Args:
+        path: the file.
+        place: its name, for diagnostics.
+        key: of the list in the object that the file holds; empty where the file is the list.
+    """
+    try:
+        for line, text in _Scanner(key).entries(pieces(path)):
+            fault = fault_of(text, place, line)
+            yield line, Reject((fault,)) if fault else parsed(text, place, line)
+    except BrokenError as error:
+        suggestion = "save it as JSON in UTF-8, or write JSON Lines, one record a line"
+        yield error.line, Reject.of(error.code, str(error), file=place, line=error.line, suggestion=suggestion)
+
+
+def kinds(path: Place) -> dict[str, str]:
+    """The keys of the object that a file holds, as far as it can be read, and the mark each value begins with."""
+    scanner = _Scanner("", keep=False)
+    with suppress(BrokenError):
+        for _ in scanner.entries(pieces(path)):
+            pass
+    return scanner.kinds
+
+
+class _Scanner:
+    """Follows brackets and strings through a document; keeps no more than the entry it is in."""
+
+    def __init__(self, key: str, keep: bool = True) -> None:
+        self.kinds: dict[str, str] = {}
+        self._wanted = key
+        self._level = (2 if key else 1) if keep else 0
+        self._buffer, self._start, self._at = "", -1, 0
+        self._line, self._counted = 1, 0
+        self._stack: list[str] = []
+        self._began, self._comma = False, False
+        self._key, self._name = "", ""
+
+    def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, str]]:
+        """Each entry of the list with the line it begins in.
+
+        Raises:
+            BrokenError: after the last whole entry.
+        """
+        for text in texts:
+            self._buffer += text
+            for match in _TOKEN.finditer(self._buffer, self._at):
+                if match[0] == '"':
+                    break  # a string that ends in a later piece
+                yield from self._take(match[0], match.start(), match.end())
+                self._at = match.end()
+            self._forget()
+        if self._stack or not self._began or self._buffer[self._at :].strip():
+            raise BrokenError("the document is not complete", self._here(len(self._buffer)))
+
+    def _take(self, token: str, at: int, end: int) -> Iterator[tuple[int, str]]:
+        if not self._stack:
+            self._begin(token, at)
+            self._start = end if self._listed() else -1
+        elif token in _OPENS:
+            self._note(token)
+            self._stack.append(token)
+            self._start = end if self._listed() else self._start
+        elif token in _CLOSES or token == ",":
+            yield from self._ended(token, at)
+            self._start = end if token == "," and self._listed() else self._start
+        elif token == ":":
+            self._key = self._name if len(self._stack) == 1 else self._key
+        else:
+            self._note('"')
+            self._name = token[1:-1]
+
+    def _begin(self, token: str, at: int) -> None:
+        if self._began or token not in _OPENS or self._buffer[:at].strip():
+            raise BrokenError("text beside the list or object", self._here(at))
+        self._began = True
+        self._stack.append(token)
+
+    def _note(self, kind: str) -> None:
+        if self._key and len(self._stack) == 1:
+            self.kinds.setdefault(self._key, kind)
+
+    def _listed(self) -> bool:
+        """Whether what follows is an entry of the list that is wanted."""
+        stack = self._stack
+        if len(stack) != self._level or stack[-1] != "[":
+            return False
+        return self._level == 1 or (stack[0] == "{" and self._key == self._wanted)
+
+    def _ended(self, token: str, at: int) -> Iterator[tuple[int, str]]:
+        """A comma or bracket, which may end an entry."""
+        if self._listed() and self._start >= 0:
+            text = self._buffer[self._start : at]
+            # `[]` has no entry; elsewhere nothing at all is one, and no JSON.
+            if self._comma or token == "," or text.strip():
+                lead = len(text) - len(text.lstrip())
+                yield self._here(self._start + lead), text.strip()
+            self._comma = token == ","
+            self._start = -1
+        if token == "," and len(self._stack) == 1:
+            self._key = ""
+        if token != "," and _PAIR[token] != self._stack.pop():
+            raise BrokenError(f"`{token}` closes what it did not open", self._here(at))
+
+    def _here(self, at: int) -> int:
+        self._line += self._buffer.count("\n", self._counted, at)
+        self._counted = max(at, self._counted)
+        return self._line
+
+    def _forget(self) -> None:
+        """Keep only the entry that is being read."""
+        keep = self._start if self._start >= 0 else self._at
+        self._here(keep)
+        self._buffer, self._at = self._buffer[keep:], self._at - keep
+        self._start, self._counted = min(self._start, 0), self._counted - keep
+        if len(self._buffer) > LONGEST_ENTRY:
+            message = f"an entry of more than {LONGEST_ENTRY:,} characters"
+            raise BrokenError(message, self._line, Code.FILE_TOO_LARGE)
