@@ -51,6 +51,19 @@ HomesEach = Annotated[
     typer.Option("--homes-each", metavar="N", min=0, help="Sample each program in N homes drawn for it; 0 for all."),
 ]
 
+EngineName = Annotated[
+    str, typer.Option("--engine", metavar="NAME", help="What runs the partitions: local (processes here) or dask.")
+]
+Scheduler = Annotated[
+    str, typer.Option("--scheduler", metavar="ADDRESS", help="With --engine dask: use the cluster that is there.")
+]
+TimeLimit = Annotated[
+    float,
+    typer.Option("--time-limit", metavar="SECONDS", min=0, help="What one record may take in a stage; 0 for any time."),
+]
+LogJson = Annotated[bool, typer.Option("--log-json", help="Progress as lines of JSON on stderr.")]
+Force = Annotated[bool, typer.Option("--force", help="Build even where the disk looks too small for it.")]
+
 _OUT = Path("data_out")
 _CODES = 4
 _ALL = "all"
@@ -71,6 +84,11 @@ def build(
     variants: Variants = 3,
     target: Target = 0,
     pictures: Pictures = 3,
+    engine: EngineName = "local",
+    scheduler: Scheduler = "",
+    time_limit: TimeLimit = 60.0,
+    force: Force = False,
+    log_json: LogJson = False,
     strict: output.Strict = False,
     as_json: output.Json = False,
 ) -> None:
@@ -79,15 +97,17 @@ def build(
     What a source is, is told by its content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, program
     text, steps in words, JSON Lines, sketches, scene graphs, a dataset; packed or not. What did not change since the
     last build is not done again, and a build that was stopped goes on where it was. Ends with what became of every
-    record.
+    record. Folders may be URLs (s3://bucket/folder): see `pip install 'hearth[remote]'`.
 
     \b
     Examples:
       python cli.py build --out data_out
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
+      python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
     more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures}
-    options = _options(seed, limit, home, homes, kb, salt, **more)
+    spread = {"engine": engine, "scheduler": scheduler, "time_limit": time_limit, "force": force, "log_json": log_json}
+    options = _options(seed, limit, home, homes, kb, salt, **more, **spread)
     _run(sources, out, workers, only, options, strict, as_json)
 
 
@@ -271,10 +291,11 @@ def _built(sources: list[Path] | None, out: Path, workers: int, only: str | None
     import os
 
     from hearth.pipelines.build import build as run
-    from hearth.pipelines.progress import for_terminal
+    from hearth.pipelines.progress import JsonLines, for_terminal
 
     paths = [str(path) for path in sources or ()]
-    return run(paths, str(out), workers=workers or os.cpu_count() or 1, only=only, progress=for_terminal(), **options)
+    progress = JsonLines() if options.pop("log_json", False) else for_terminal()
+    return run(paths, str(out), workers=workers or os.cpu_count() or 1, only=only, progress=progress, **options)
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:

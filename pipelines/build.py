@@ -11,6 +11,7 @@ from typing import Any
 import pyarrow.parquet as pq
 
 from hearth.pipelines.engines import engine as make_engine
+from hearth.pipelines.estimates import foretold
 from hearth.pipelines.lock import locked
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.parts import Counts
@@ -18,6 +19,7 @@ from hearth.pipelines.progress import Progress
 from hearth.pipelines.run import REJECTS, run_stage
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stages import STAGES, stage
+from hearth.pipelines.stores import fetched, working
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
@@ -68,6 +70,7 @@ def build(
     workers: int = 1,
     engine: str = "local",
     scheduler: str = "",
+    force: bool = False,
     only: str | None = None,
     progress: Progress | None = None,
     **options: Any,
@@ -76,10 +79,11 @@ def build(
 
     Args:
         sources: files and folders, in any mix of forms; the embedded corpus when there are none.
-        out: gets one folder a stage; the dataset is its `publish`.
+        out: gets one folder a stage; the dataset is its `publish`. May be a URL that fsspec knows.
         workers: processes; any number gives the same bytes.
         engine: what runs them, one of `engines.ENGINES`; any gives the same bytes.
         scheduler: address of a running cluster's scheduler, for the dask engine.
+        force: build even where the disk looks too small for it.
         only: the one stage to run, on what the earlier ones wrote.
         progress: told how it goes.
         options: the other fields of `Settings` (seed, limit, homes, ...).
@@ -87,17 +91,22 @@ def build(
     Raises:
         HearthError: a source can't be read, or nothing in any could be used.
     """
-    settings = Settings(tuple(sources) or corpus(), out, **options)
-    names = [only] if only else list(STAGES)
+    paths = tuple(str(fetched(source)) for source in sources) or corpus()
     fresh: list[str] = []
-    with locked(Path(out)), make_engine(engine, workers, scheduler) as pool:
-        for name in names:
-            result = run_stage(stage(name), settings, pool, progress)
-            if result.fresh:
-                fresh.append(name)
-            if name == "ingest":
-                _check_something(result.manifest)
-    return funnel(settings, tuple(fresh))
+    with working(out) as (folder, url, revision):
+        settings = Settings(paths, folder, store=url, revision=revision, **options)
+        with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
+            for name in [only] if only else list(STAGES):
+                result = run_stage(stage(name), settings, pool, progress)
+                if name == "validate" and not only:
+                    said = foretold(result.manifest.counts.through, settings, pool.count, force=force)
+                    if said and progress:
+                        progress.note(said)
+                if result.fresh:
+                    fresh.append(name)
+                if name == "ingest":
+                    _check_something(result.manifest)
+        return funnel(settings, tuple(fresh))
 
 
 def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:

@@ -39,14 +39,15 @@ class Dataset:
 
     @classmethod
     def open(cls, path: str | Path) -> Dataset:
-        """Open a dataset, or the dataset of a build's folder.
+        """Open a dataset, or the dataset of a build's folder; of a URL that fsspec knows, a local copy of it.
 
         Raises:
             HearthError: the path is no dataset, one that is not complete, or one that a newer version wrote.
         """
         from hearth.pipelines.files import read_json
+        from hearth.pipelines.stores import fetched
 
-        folder = Path(path)
+        folder = fetched(path)
         if not (folder / NAME).exists() and (folder / "publish" / NAME).exists():
             folder = folder / "publish"
         content = read_json(folder / NAME)

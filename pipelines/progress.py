@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
+from collections.abc import Callable
 from typing import Protocol, TextIO
 
 from hearth.pipelines.parts import Counts
@@ -11,6 +13,9 @@ from hearth.pipelines.parts import Counts
 
 class Progress(Protocol):
     """Is told how a build goes."""
+
+    def note(self, text: str) -> None:
+        """Something that people should know before it begins."""
 
     def start(self, stage: str, total: int | None) -> None:
         """A stage begins; `total` records, if that is known."""
@@ -24,6 +29,9 @@ class Progress(Protocol):
 
 class Quiet:
     """Says nothing."""
+
+    def note(self, text: str) -> None:
+        """Nothing."""
 
     def start(self, stage: str, total: int | None) -> None:
         """Nothing."""
@@ -41,9 +49,59 @@ class Lines(Quiet):
     def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = stream or sys.stderr
 
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._stream.write(f"{text}\n")
+        self._stream.flush()
+
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
         """Say what became of the stage's records."""
         self._stream.write(line(stage, counts, seconds, fresh) + "\n")
+        self._stream.flush()
+
+
+class JsonLines:
+    """A line of JSON for what happens, at most one a second while a stage runs: for logs of long builds.
+
+    Each has `time` (seconds since 1970), `event` (start, progress, end, note) and `stage`.
+    """
+
+    def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = time.time) -> None:
+        self._stream = stream or sys.stderr
+        self._clock = clock
+        self._stage, self._total = "", None
+        self._done = self._rejects = 0
+        self._began = self._said = 0.0
+
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._say("note", text=text)
+
+    def start(self, stage: str, total: int | None) -> None:
+        """Say that a stage begins."""
+        self._stage, self._total, self._done, self._rejects = stage, total, 0, 0
+        self._began = self._said = self._clock()
+        self._say("start", total=total)
+
+    def seen(self, records: int, rejects: int) -> None:
+        """Say how far it is, if a second has gone by."""
+        self._done += records
+        self._rejects += rejects
+        now = self._clock()
+        if now - self._said >= 1.0:
+            self._said = now
+            rate = self._done / max(now - self._began, 1e-3)
+            left = None if self._total is None else round(max(0, self._total - self._done) / max(rate, 1e-9), 1)
+            self._say("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
+
+    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
+        """Say what became of the stage's records."""
+        self._stage = stage
+        self._say("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
+
+    def _say(self, event: str, **facts: object) -> None:
+        line = {"time": round(self._clock(), 3), "event": event, "stage": self._stage, **facts}
+        self._stream.write(json.dumps(line) + "\n")
         self._stream.flush()
 
 
@@ -69,6 +127,10 @@ class Bars:
         )
         self._done = self._rejects = 0
         self._began = 0.0
+
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._console.print(text, highlight=False, markup=False)
 
     def start(self, stage: str, total: int | None) -> None:
         """Show a bar."""

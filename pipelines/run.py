@@ -21,6 +21,7 @@ from hearth.pipelines.progress import Progress, Quiet
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import source_digests
 from hearth.pipelines.stage import Job, Partition, Stage
+from hearth.pipelines.stores import store
 from hearth.pipelines.workers import Workers
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -70,6 +71,9 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
         return Result(known, fresh=False)
     began = time.monotonic()
     _clear(folder)
+    elsewhere = store(settings.store) if settings.store else None
+    if elsewhere:
+        elsewhere.begin(stage.name)
     progress.start(stage.name, _total(stage, settings))
     if stage.begin:
         stage.begin(job)
@@ -87,6 +91,8 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
         rejects_path(folder, number).unlink(missing_ok=True)
     seconds = time.monotonic() - began
     write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
+    if elsewhere:
+        elsewhere.end(stage.name)
     progress.end(stage.name, counts, seconds, fresh=True)
     return Result(manifest, fresh=True)
 

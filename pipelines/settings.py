@@ -28,6 +28,8 @@ class Settings:
         pictures: how many executions to film.
         time_limit: seconds that a record may take in a stage; 0 for any time. Those that take longer are tried again by
             the next build.
+        store: URL of what `out` is a local copy of (see `stores`), or "".
+        revision: which state of the store.
     """
 
     sources: tuple[str, ...] = ()
@@ -45,6 +47,8 @@ class Settings:
     tries: int = 20
     pictures: int = 3
     time_limit: float = 60.0
+    store: str = ""
+    revision: str = ""
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
         """The named options, as they stand in a manifest."""

@@ -9,12 +9,15 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from hearth.pipelines.engines import Done, Seen
-from hearth.pipelines.parts import Counts
+from hearth.pipelines.manifest import read_manifest
+from hearth.pipelines.parts import Counts, part_path, rejects_path
 from hearth.pipelines.stage import Job, Partition, run_partition
+from hearth.pipelines.stores import store
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -57,7 +60,7 @@ class Workers:
         first = list(itertools.islice(partitions, 2))
         rest = itertools.chain(first, partitions)
         if self.count == 1 or len(first) < 2:
-            yield from ((partition, run_partition(job, partition, seen)) for partition in rest)
+            yield from ((partition, _run(job, partition, seen)) for partition in rest)
         else:
             yield from self._pooled(job, rest, seen)
 
@@ -129,7 +132,30 @@ def run_here(job: Job, partition: Partition) -> Counts:
         _collect_seldom()
     if _job is None or (_job.key, _job.settings) != (job.key, job.settings):
         _job = job
-    return run_partition(_job, partition, _count)
+    return _run(_job, partition, _count)
+
+
+def _run(job: Job, partition: Partition, seen: Seen) -> Counts:
+    """Run a partition; its input comes from a store and its parts go there, where the build is in one."""
+    if not job.settings.store:
+        return run_partition(job, partition, seen)
+    elsewhere = store(job.settings.store)
+    elsewhere.attend(job.settings.revision)
+    for path in _needed(job, partition):
+        elsewhere.fetch(path)
+    counts = run_partition(job, partition, seen)
+    rejects = rejects_path(job.folder, partition.number)
+    parts = [part_path(job.folder, table, partition.number) for table in job.stage.tables]
+    elsewhere.push([*([rejects] if rejects.exists() else []), *parts])
+    return counts
+
+
+def _needed(job: Job, partition: Partition) -> list[Path]:
+    """The parts that a partition is made from: its own, or all where a stage has partitions of its own kind."""
+    if job.stage.partitions is None:
+        return [Path(partition.payload)]
+    manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]
+    return [found.folder / file for found in manifests if found for part in found.parts for file in part["files"]]
 
 
 def _count(records: int, rejects: int) -> None:

@@ -1,0 +1,73 @@
+"""A build into a real S3-compatible server on the loopback, by a pool and by a dask cluster; verified, queried."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+pytestmark = pytest.mark.tools
+moto = pytest.importorskip("moto.server")
+s3fs = pytest.importorskip("s3fs")
+
+
+@pytest.fixture(scope="module")
+def server():
+    """moto's server, in a thread, on a port of its own."""
+    running = moto.ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
+    running.start()
+    host, port = running.get_host_and_port()
+    yield f"http://{host}:{port}"
+    running.stop()
+
+
+@pytest.fixture
+def run(server, tmp_path, request):
+    """Run the command line against the server, as somebody who has only this much set up."""
+    here = {"AWS_ACCESS_KEY_ID": "x", "AWS_SECRET_ACCESS_KEY": "x", "AWS_DEFAULT_REGION": "us-east-1"}
+    (tmp_path / "work").mkdir()
+    environment = {**os.environ, **here, "AWS_ENDPOINT_URL": server, "TMPDIR": str(tmp_path / "work")}
+    cli = request.config.rootpath / "cli.py"
+
+    def command(*words: str, status: int = 0) -> str:
+        asked = [sys.executable, str(cli), *map(str, words)]
+        done = subprocess.run(asked, env=environment, capture_output=True, text=True, timeout=900, check=False)
+        assert done.returncode == status, done.stderr
+        return done.stdout + done.stderr
+
+    return command
+
+
+@pytest.fixture
+def bucket(server):
+    filesystem = s3fs.S3FileSystem(key="x", secret="x", endpoint_url=server, skip_instance_cache=True)
+    filesystem.mkdir("homes")
+    yield filesystem
+    filesystem.rm("homes", recursive=True)
+
+
+@pytest.mark.parametrize("engine", ["local", "dask"])
+def test_built_verified_and_queried(run, bucket, made, engine):
+    if engine == "dask":
+        pytest.importorskip("distributed")
+    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0")
+    bucket.put(str(made.settings.sources[1]), "homes/in/evening.txt")
+    sources = [made.settings.sources[0], "s3://homes/in/evening.txt", made.settings.sources[2]]
+    run("build", *sources, "--out", "s3://homes/evening", *homes, "--workers", "2", "--engine", engine)
+    files = ("publish/programs/part-00000.parquet", "publish/manifest.json", "sample/part-00002.parquet")
+    for name in files:
+        assert bucket.cat(f"homes/evening/{name}") == (made.out / name).read_bytes(), name
+    assert not bucket.exists("homes/evening/.lock")
+    assert "all as it says" in run("verify", "s3://homes/evening")
+    assert str(len(made.rows("publish/programs"))) in run(
+        "query", "s3://homes/evening", "SELECT count(*) AS programs FROM programs"
+    )
+    bucket.pipe_file("homes/evening/publish/programs/part-00000.parquet", b"damaged")
+    assert "programs/part-00000.parquet" in run("verify", "s3://homes/evening", status=1)
+
+
+def test_a_bucket_that_is_not_there_is_said(run, made):
+    told = run("build", made.settings.sources[1], "--out", "s3://nowhere/x", status=1)
+    assert "s3://nowhere/x" in told and "Traceback" not in told
