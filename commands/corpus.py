@@ -196,6 +196,8 @@ def fuzz(
 ) -> None:
     """Give every reader mutated input; the status is 1 if any of it made a traceback or vanished.
 
+    One line a reader: files, files of which nothing could be read, the records of the others, and what became of them.
+
     \b
     Example:
       python cli.py corpus fuzz --seconds 60 --seed 7
@@ -207,13 +209,18 @@ def fuzz(
     if as_json:
         output.emit(report)
     else:
-        counts = (report.records, report.rows, report.rejects, report.refused_whole)
-        columns = ("cases", "records", "rows", "rejects", "files refused whole", "crashes")
-        _say("", columns, [(report.cases, *counts, len(report.crashes))])
+        columns = ("reader", "files", "refused whole", "records", "accepted", "rejected", "silently lost",
+                   "tracebacks", "longest (ms)")  # fmt: skip
+        rows = [
+            (one.reader, one.inputs, one.refused_whole, one.records, one.accepted, one.rejected, one.silent,
+             one.tracebacks, round(1000 * one.longest, 1))
+            for one in report.table()
+        ]  # fmt: skip
+        _say("What became of mutated input", columns, rows)
         _say("Why refused", ("code", "times"), [*report.codes.most_common()])
         for crash in report.crashes[:20]:
             print(crash)
-    output.status(len(report.crashes), strict=True)
+    output.status(sum(not one.adds_up or one.tracebacks for one in report.table()), strict=True)
 
 
 @app.command()

@@ -18,12 +18,14 @@ from typing import Any
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import corpus, validate
 from hearth.pipelines.ingest import READERS, items
+from hearth.pipelines.readers.recognise import recognise
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.sources import labelled
 from hearth.schemas.errors import HearthError
 from hearth.schemas.rng import rng
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"
+_GOOD = "Sleep\nGo to bed, it is late.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n[Sleep]\n"
 _GRAPH = {
     "nodes": [{"id": 1, "class_name": "bed", "category": "Furniture", "properties": ["LIEABLE"], "states": ["CLEAN"]}],
     "edges": [{"from_id": 1, "relation_type": "ON", "to_id": 1}],
@@ -44,12 +46,19 @@ def _release() -> bytes:
     graphs = json.dumps({"init_graph": _GRAPH, "final_graph": _GRAPH})
     return _zip(
         {
-            f"{_ROOT}/withoutconds/b/f_1.txt": _PROGRAM,
+            f"{_ROOT}/withoutconds/b/f_1.txt": "T\n\n\n[Walk] <bed> (1)\n",
             f"{_ROOT}/initstate/b/f_1.json": '[{"is_off": ["television", "1"]}]',
             f"{_ROOT}/executable_programs/h_graph/b/f_1.txt": "T\n\n\n[WALK] <bed> (1.1)\n",
             f"{_ROOT}/init_and_final_graphs/h_graph/b/f_1.json": graphs,
         }
     )
+
+
+def _zstd(data: bytes) -> bytes:
+    import pyarrow as pa
+
+    packed: bytes = pa.Codec("zstd").compress(data, asbytes=True)
+    return packed
 
 
 _STAGE_1 = (
@@ -61,12 +70,47 @@ _STAGE_2 = (
     'Answer.program\nP1,W1,Approved,H1,Cook,Cook.,kitchen*1,"stove*1, pot*2","[Walk] <stove> (1)\n[Find] <pot> (1)"\n'
 )
 
+DATASET = "dataset.parquet"
+"""The programs of a published dataset; `placed` makes the folder around them."""
+
+
+def _programs() -> bytes:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    from hearth.pipelines.readers.published import COLUMNS
+
+    steps = [{"agent": 0, "action": "Sleep", "objects": [], "joins": False, "modifiers": [], "line": 1}]
+    told = {
+        "program_id": "p",
+        "origin": "text",
+        "description_id": "d",
+        "title": "T",
+        "description": "D",
+        "steps": steps,
+    }
+    out = io.BytesIO()
+    pq.write_table(pa.Table.from_pylist([dict.fromkeys(COLUMNS) | told]), out)
+    return out.getvalue()
+
+
+def placed(folder: Path, name: str, data: bytes) -> Path:
+    """Write a case; the path of the source that it is."""
+    path = folder / name
+    if name == DATASET:
+        path = folder / "dataset" / "programs" / "part.parquet"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        (folder / "dataset" / "manifest.json").write_text('{"stage": "publish"}')
+    path.write_bytes(data)
+    return folder / "dataset" if name == DATASET else path
+
+
 SEEDS: dict[str, Callable[[], bytes]] = {
-    "text.txt": (_PROGRAM * 2).encode,
+    "text.txt": f"{_PROGRAM}\n{_GOOD}\n{_GOOD}".encode,
     "descriptions.csv": _STAGE_1.encode,
     "programs.csv": _STAGE_2.encode,
     "release.zip": _release,
-    "plain.zip": lambda: _zip({"a.txt": _PROGRAM, "b.csv": _STAGE_1, "c.json": json.dumps(_GRAPH)}),
+    "plain.zip": lambda: _zip({"a.txt": _GOOD, "b.csv": _STAGE_1, "c.json": json.dumps(_GRAPH)}),
     "steps.txt": lambda: b"Task: Sleep\n1. Walk to the bed\n2. Lie on it\n3. Sleep\n",
     "steps.json": lambda: json.dumps(["Task: Sleep\nStep 1: Walk to bed\nStep 2: Sleep"] * 2).encode(),
     "records.jsonl": lambda: (
@@ -75,7 +119,10 @@ SEEDS: dict[str, Callable[[], bytes]] = {
     "records.json": lambda: json.dumps([{"title": "T", "steps": [{"action": "Sleep", "objects": []}]}]).encode(),
     "sketches.json": lambda: json.dumps({"answer": [[0, 1]], "represent": [1], "input": [_SKETCH]}).encode(),
     "scene.json": lambda: json.dumps(_GRAPH).encode(),
-    "packed.txt.gz": lambda: gzip.compress(_PROGRAM.encode(), mtime=0),
+    "packed.txt.gz": lambda: gzip.compress(_GOOD.encode(), mtime=0),
+    "packed.txt.zst": lambda: _zstd(_GOOD.encode()),
+    DATASET: _programs,
+    "wide.txt": lambda: b"\xff\xfe" + _GOOD.encode("utf-16-le"),
 }
 """A small good input for each reader, by file name."""
 
@@ -87,25 +134,76 @@ _NASTY = (
 )  # fmt: skip
 
 
+_GENTLE = 0.5
+
+
+@dataclass(slots=True)
+class Row:
+    """What became of one reader's input. Always `records = accepted + rejected`, and `silent` is 0.
+
+    Attributes:
+        reader: the reader; `none` where a file was recognised as nothing.
+        inputs: files.
+        refused_whole: files of which nothing could be read, and that said so.
+        records: found in the others.
+        accepted: those that gave a valid program, or else a row.
+        rejected: those that gave only rejects.
+        silent: those of which nothing came: none, or something is wrong.
+        tracebacks: exceptions other than a `HearthError`.
+        longest: seconds for one file.
+    """
+
+    reader: str
+    inputs: int = 0
+    refused_whole: int = 0
+    records: int = 0
+    accepted: int = 0
+    rejected: int = 0
+    silent: int = 0
+    tracebacks: int = 0
+    longest: float = 0.0
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether nothing vanished."""
+        return self.silent == 0 and self.records == self.accepted + self.rejected
+
+
 @dataclass(slots=True)
 class Report:
     """What came of it. `crashes` name the input and the case's number, from which `case` makes it again."""
 
     cases: int = 0
-    records: int = 0
-    rows: int = 0
-    rejects: int = 0
-    refused_whole: int = 0
+    readers: dict[str, Row] = field(default_factory=dict)
     codes: Counter[str] = field(default_factory=Counter)
     crashes: list[str] = field(default_factory=list)
 
+    @property
+    def records(self) -> int:
+        """Found in all files."""
+        return sum(row.records for row in self.readers.values())
+
+    @property
+    def longest(self) -> float:
+        """Seconds for the slowest file."""
+        return max((row.longest for row in self.readers.values()), default=0.0)
+
+    def row(self, reader: str) -> Row:
+        """The row of a reader."""
+        return self.readers.setdefault(reader, Row(reader))
+
+    def table(self) -> list[Row]:
+        """The rows by name."""
+        return [self.readers[name] for name in sorted(self.readers)]
+
 
 def mutated(data: bytes, chance: Random) -> bytes:
-    """The data with one to six things done to it."""
+    """The data with one thing done to it, or up to six; little, so that much of it still reads, or a lot."""
     found = bytearray(data)
-    for _ in range(chance.randint(1, 6)):
+    gentle = chance.random() < _GENTLE
+    for _ in range(1 if gentle else chance.randint(1, 6)):
         at = chance.randrange(len(found) + 1)
-        span = chance.randint(1, max(1, len(found) // 4))
+        span = chance.randint(1, 3 if gentle else max(1, len(found) // 4))
         match chance.randrange(6):
             case 0:
                 found[at:at] = chance.choice(_NASTY)
@@ -136,36 +234,43 @@ def fuzz(known: Knowledge, seconds: float, seed: int, most: int | None = None) -
     with TemporaryDirectory() as folder:
         while time.monotonic() < end and (most is None or report.cases < most):
             name, data = case(seed, report.cases)
-            path = Path(folder) / name
-            path.write_bytes(data)
-            try:
-                _attempt(path, known, report)
-            except Exception as error:
-                report.crashes.append(f"case {report.cases} ({name}): {type(error).__name__}: {error}"[:300])
+            path = placed(Path(folder), name, data)
+            began = time.process_time()
+            row = _attempt(path, known, report)
+            row.inputs += 1
+            row.longest = max(row.longest, time.process_time() - began)
             report.cases += 1
     return report
 
 
-def _attempt(path: Path, known: Knowledge, report: Report) -> None:
+def _attempt(path: Path, known: Knowledge, report: Report) -> Row:
+    """Read and check one file; the row of the reader that it was for."""
+    reader = "none"
     try:
+        readers = {entry.reader for entry in recognise(path, path.name)} - {""}
+        reader = next(iter(sorted(readers)), "none")
         found = list(items(labelled([str(path)])))
+        if not found:
+            raise AssertionError("a file gave neither a record nor a reject")
+        for _, item in found:
+            _count(list(_outputs(READERS[item.reader](item, "salt"), known)), report.row(reader), report.codes)
     except HearthError as error:
-        report.refused_whole += 1
+        report.row(reader).refused_whole += 1
         report.codes.update(str(fault.code) for fault in error.diagnostics[:1])
-        return
-    if not found:
-        raise AssertionError("a file gave neither a record nor a reject")
-    for _, item in found:
-        report.records += 1
-        outputs = list(_outputs(READERS[item.reader](item, "salt"), known))
-        if not outputs:
-            raise AssertionError(f"nothing came of {item.record_id}")
-        for output in outputs:
-            if isinstance(output, Reject):
-                report.rejects += 1
-                report.codes[output.code] += 1
-            else:
-                report.rows += 1
+    except Exception as error:
+        report.row(reader).tracebacks += 1
+        report.crashes.append(f"case {report.cases} ({path.name}): {type(error).__name__}: {error}"[:300])
+    return report.row(reader)
+
+
+def _count(outputs: list[Any], row: Row, codes: Counter[str]) -> None:
+    """A record is accepted where any row came of it, and rejected where only rejects did."""
+    row.records += 1
+    rejects = [output for output in outputs if isinstance(output, Reject)]
+    codes.update(reject.code for reject in rejects)
+    row.accepted += len(outputs) > len(rejects)
+    row.rejected += 0 < len(outputs) == len(rejects)
+    row.silent += not outputs
 
 
 def _outputs(read: Any, known: Knowledge) -> Iterator[Any]:

@@ -11,14 +11,15 @@ from typing import Any
 
 from hearth.pipelines.files import read_json
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.item import Item
+from hearth.pipelines.readers.item import DamagedError, Item
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import program_of
+from hearth.schemas.failures import Code
 from hearth.schemas.syntax import print_lines
 
 NAME = "published"
 
-_COLUMNS = [
+COLUMNS = [
     "program_id", "origin", "description_id", "parent_id", "title", "description", "steps", "rooms", "props",
     "worker", "platform",
 ]  # fmt: skip
@@ -34,7 +35,7 @@ def names_it(path: Path) -> bool:
 def scan(path: Path, place: str) -> Iterator[Item]:
     """One item for each original program, then one for each description without any."""
     scenes = {row["description_id"]: row["scene"] for row in _rows(path, "descriptions", ["description_id", "scene"])}
-    for row in _rows(path, "programs", _COLUMNS):
+    for row in _rows(path, "programs", COLUMNS):
         if row["parent_id"] is None:
             row["scene"] = scenes.get(row["description_id"])
             yield Item(row["program_id"], NAME, f"{place}/programs", row)
@@ -46,11 +47,19 @@ def scan(path: Path, place: str) -> Iterator[Item]:
 
 
 def _rows(path: Path, table: str, columns: list[str] | None) -> Iterator[dict[str, Any]]:
+    import pyarrow as pa
     import pyarrow.parquet as pq
 
     for file in sorted((path / table).glob("*.parquet")):
-        for batch in pq.ParquetFile(file).iter_batches(_ROWS, columns=columns):
-            yield from batch.to_pylist()
+        try:
+            with pq.ParquetFile(file) as source:
+                for batch in source.iter_batches(_ROWS, columns=columns):
+                    yield from batch.to_pylist()
+        except (pa.ArrowException, OSError, ValueError) as error:
+            name = f"{table}/{file.name}"
+            message = f"not to be read as a table of a dataset: {error}"
+            suggestion = "`verify` says whether a dataset is whole; copy it again"
+            raise DamagedError.of(Code.DAMAGED_FILE, message, file=name, suggestion=suggestion) from error
 
 
 def read(item: Item) -> dict[str, Any] | Reject:
