@@ -13,6 +13,7 @@ from hearth.rendering.kernels import (
     NORMAL_U,
     NORMAL_V,
     ONE,
+    TINY,
     TWO,
     ZERO,
     Floats,
@@ -32,8 +33,8 @@ FAR = np.float32(60.0)
 REACH = np.float32(7.0)
 """Metres beyond which lamps are not looked at."""
 
-FAINT = np.float32(6e-3)
-"""Light below which nobody looks for its shadow."""
+FAINT = np.float32(0.012)
+"""Light below which nobody looks for its shadow or its mirror image."""
 
 NEAR = np.float32(0.7)
 """Metres within which something darkens the ambient light of a corner."""
@@ -174,11 +175,11 @@ def aim_at_light(
 
     `noise`, (M, 2), aims all over the light; (0, 2) at its middle.
     """
-    count, soft = 0, len(noise) > 0
+    count, soft, least = 0, len(noise) > 0, FAINT / max(light[L_COLOR], TINY)
     lx, ly, lz = light[L_PLACE], light[L_PLACE + 1], light[L_PLACE + 2]
     sx, sy, sz = light[L_SPAN], light[L_SPAN + 1], light[L_SPAN + 2]
     for k in range(len(points)):
-        if power[k] <= FAINT:
+        if power[k] <= least:
             continue
         x, y, z = points[k, 0], points[k, 1], points[k, 2]
         wx, wy, wz = lx - x, ly - y, lz - z
@@ -251,6 +252,23 @@ def aim_again(
         if met:
             out[count, 0], out[count, 1], out[count, 2] = x, y, z
             out[count, 3], out[count, 4], out[count, 5] = dx, dy, dz
+            index[count] = k
+            count += 1
+    return count
+
+
+@kernel
+def meeting(rays: Floats, done: Any, boxes: Floats, index: Ints) -> int:
+    """Fill in which of (N, 6) rays, but for those that are done, meet one of (B, 6) boxes; gives how many."""
+    count = 0
+    for k in range(len(rays)):
+        met = False
+        for b in range(0 if done[k] else len(boxes)):
+            near, far = slab(boxes[b, 0], boxes[b, 3], rays[k, 0], rays[k, 3], ZERO, ONE)
+            near, far = slab(boxes[b, 1], boxes[b, 4], rays[k, 1], rays[k, 4], near, far)
+            near, far = slab(boxes[b, 2], boxes[b, 5], rays[k, 2], rays[k, 5], near, far)
+            met = met or near <= far
+        if met:
             index[count] = k
             count += 1
     return count

@@ -17,6 +17,7 @@ from hearth.rendering.kernels import (
     SHINE,
     SOLID,
     TEXTURE,
+    TINY,
     TWO,
     UV,
     UV_U,
@@ -81,10 +82,11 @@ def add_glints(
     place: Floats, color: Floats, gloss: Floats,
 ) -> None:  # fmt: skip
     """Add the mirror image of a light on polished surfaces; too faint ones are not worked out."""
+    least = FAINT / max(color[0], TINY)
     for j in range(len(index)):
         k = index[j]
         shine = rows[k, SHINE]
-        if power[k] <= FAINT or seen[k, column] == 0 or shine <= np.float32(0.05):
+        if power[k] <= least or seen[k, column] == 0 or shine <= np.float32(0.05):
             continue
         wx, wy, wz = place[0] - points[k, 0], place[1] - points[k, 1], place[2] - points[k, 2]
         norm = ONE / root(dot3(wx, wy, wz, wx, wy, wz))

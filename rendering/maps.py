@@ -152,3 +152,44 @@ def smoothed(
                     count += 1
             for k in range(len(columns)):
                 out[i, columns[k]] = np.uint8(total[k] // max(count, 1))
+
+
+@kernel
+def borrowed(
+    pixels: Ints, flats: Floats, points: Floats, width: int, height: int, around: Floats, places: Floats, seen: Any,
+    out: Any, index: Ints,
+) -> int:  # fmt: skip
+    """Fill in what some points see of the lights: what the pixel on the same surface sees that is nearest to each.
+
+    Args:
+        pixels: (M,) in which the points are.
+        flats, points: (M, 3) of them.
+        width, height: of the picture.
+        around, places, seen: flat normals, points and what is seen of all pixels.
+        out: (M, K) filled.
+        index: filled with the points for which there is no such pixel.
+
+    Returns:
+        How many those are.
+    """
+    count = 0
+    for k in range(len(pixels)):
+        row, column = pixels[k] // width, pixels[k] % width
+        fx, fy, fz = flats[k, 0], flats[k, 1], flats[k, 2]
+        best, least = -1, np.float32(1e9)
+        for r in range(max(row - 1, 0), min(row + 2, height)):
+            for c in range(max(column - 1, 0), min(column + 2, width)):
+                j = r * width + c
+                if dot3(fx, fy, fz, around[j, 0], around[j, 1], around[j, 2]) < np.float32(0.9):
+                    continue
+                x, y, z = places[j, 0] - points[k, 0], places[j, 1] - points[k, 1], places[j, 2] - points[k, 2]
+                far = dot3(x, y, z, x, y, z)
+                if abs(dot3(fx, fy, fz, x, y, z)) <= np.float32(0.02) and far < least:
+                    best, least = j, far
+        if best >= 0:
+            for n in range(seen.shape[1]):
+                out[k, n] = seen[best, n]
+        elif fx != ZERO or fy != ZERO or fz != ZERO:
+            index[count] = k
+            count += 1
+    return count

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from hearth.rendering import aiming
 from hearth.rendering import lamplight as loops
 from hearth.rendering.aiming import OPEN
-from hearth.rendering.geometry import Geometry
+from hearth.rendering.geometry import Geometry, Part
 from hearth.rendering.kernels import COLUMNS, gather_rows
 from hearth.rendering.lights import Daylight, Light
-from hearth.rendering.rays import Caster, Hits
+from hearth.rendering.rays import Hits
 from hearth.rendering.textures import decode, texels
 from hearth.rendering.threads import each
 
@@ -176,31 +176,36 @@ def expose(spots: Spots, geometry: Geometry, setting: Setting, noise: Floats = N
     if setting.day[aiming.D_UP]:
         aiming.facing_sun(spots.normals, spots.flats, setting.day, power)
         found = aiming.aim_at_sun(points, power, setting.day, noise, out, index)
-        blocked = _blocked([part.caster for part in parts], out[:found], 0.999)
+        blocked = _blocked(parts, out[:found], 0.999)
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
             aiming.reach(points, spots.normals, light, power)
             found = aiming.aim_at_light(points, spots.flats, power, light, noise, out, index)
-            blocked = _blocked([part.shadows for part in parts], out[:found], 0.97)
+            blocked = _blocked(parts, out[:found], 0.97, lamps=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
             lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
     for number in range(AROUND if setting.fine else 0):
         found = aiming.aim_around(points, spots.flats, noise, number, np.float32(number / AROUND), out, index)
-        blocked = _blocked([part.caster for part in parts], out[:found], 0.999)
+        blocked = _blocked(parts, out[:found], 0.999)
         aiming.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
     return Plate(spots.pixels, points, near, seen, lit)
 
 
-AROUND = 2
+AROUND = 1
 """Rays a fine point casts over its hemisphere."""
 
 
-def _blocked(casters: Sequence[Caster], rays: Floats, far: float) -> NDArray[np.bool_]:
-    found = casters[0].occluded(rays, far)
-    for caster in casters[1:]:
-        found |= caster.occluded(rays, far)
+def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = False) -> NDArray[np.bool_]:
+    """(N,) whether rays meet something; `lamps`: but for lamps."""
+    stays = parts[0]
+    found = (stays.shadows if lamps else stays.caster).occluded(rays, far)
+    for moves in parts[1:]:
+        index = np.empty(len(rays), np.int32)
+        index = index[: aiming.meeting(rays, found, moves.boxes, index)]
+        if len(index):
+            found[index] = (moves.shadows if lamps else moves.caster).occluded(rays[index], far)
     return found
 
 
