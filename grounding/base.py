@@ -9,6 +9,7 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.bits import indices
@@ -16,6 +17,9 @@ from hearth.simulation.edit import extended
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import states_of
 from hearth.simulation.world import World
+
+WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
+"""Categories of what is wherever it is."""
 
 
 class Spots(NamedTuple):
@@ -31,6 +35,10 @@ class Kind(NamedTuple):
     category: str
     properties: tuple[str, ...]
     states: tuple[str, ...]
+
+
+Homeless = tuple[Code, str, str]
+"""A failure's code, what was expected, and what there is."""
 
 
 class Base:
@@ -55,6 +63,12 @@ class Base:
         self._kinds: dict[str, Kind] = {}
         self._named: dict[str, tuple[int, ...]] = {}
         self._serving: dict[str, tuple[int, ...]] = {}
+        self._homeless: dict[str, Homeless | None] = {}
+
+    @cached_property
+    def seats(self) -> int:
+        """What one sits or lies on."""
+        return self.home.properties["SITTABLE"] | self.home.properties["LIEABLE"]
 
     def rooms(self, name: str) -> tuple[int, ...]:
         """Indices of the rooms that serve as the named one; of all rooms where none does."""
@@ -90,6 +104,26 @@ class Base:
             category = thing.category if thing else "placable_objects"
             found = self._kinds[name] = Kind(category, properties, self.knowledge.default_states(name))
         return found
+
+    def homeless(self, name: str) -> Homeless | None:
+        """Why the home can't hold a thing of a class, whatever is sampled: the code, what is expected, and what is."""
+        if name not in self._homeless:
+            self._homeless[name] = self._why_homeless(name)
+        return self._homeless[name]
+
+    def _why_homeless(self, name: str) -> Homeless | None:
+        knowledge, home = self.knowledge, self.home
+        if knowledge.is_room(name):
+            if self.serving(name):
+                return None
+            rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
+            return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
+        known = knowledge.object_class(name)
+        if known is None or known.category in WITHOUT_PLACE or known.rooms or self.instances(name):
+            return None
+        if knowledge.placements(name):
+            return None
+        return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
     def spots(self, name: str) -> Spots:
         """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""

@@ -9,7 +9,7 @@ from hearth.grounding.conditions import Key
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
 from hearth.simulation.bits import indices
-from hearth.simulation.edit import extended
+from hearth.simulation.edit import Loose, extended
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import states_of
 
@@ -26,6 +26,7 @@ class Draft:
         binding: the program's objects.
         room: room's node id by node id, for what is not where the base has it.
         where: (relation, node id) a node stands ON or INSIDE, for what was placed here.
+        loose: the random things, which come last.
     """
 
     def __init__(self, base: Base, rng: Random) -> None:
@@ -41,10 +42,11 @@ class Draft:
         self.new: dict[int, Node] = {}
         self.taken: set[int] = set()
         self.load: dict[int, int] = {}
+        self.loose: list[Loose] = []
 
     def home(self) -> Home:
         """The home with everything that was drafted."""
-        return extended(self.base.home, self.nodes, self.added, self.removed, self.states)
+        return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.loose)
 
     def room_of(self, node_id: int) -> int:
         """Id of the room a node is in, or -1."""

@@ -5,14 +5,19 @@ from __future__ import annotations
 from bisect import bisect_right
 
 from hearth.grounding.draft import Draft
+from hearth.schemas.graph import Node
 from hearth.schemas.vocabulary import FIRST_FILLED_ID, OPPOSITE
+from hearth.simulation.edit import Loose
+
+TURNED = 0.25
+"""How likely each of a thing's pairs of states is turned over."""
 
 
 def fill(draft: Draft, least: int, most: int, some: int) -> None:
     """Add random loose things where they belong.
 
     Args:
-        draft: to add to.
+        draft: to add to; nothing else may be drafted after.
         least, most: nodes the environment should have; the number is drawn from between.
         some: things added all the same to a home that has as many already.
     """
@@ -20,31 +25,35 @@ def fill(draft: Draft, least: int, most: int, some: int) -> None:
     choices, weights = base.fillers
     if not weights:
         return
-    rng = draft.rng
+    random = draft.rng.random
     present = len(base.home) + len(draft.nodes)
-    wanted = max(rng.randint(least, most) - present, rng.randint(1, some))
+    wanted = max(draft.rng.randint(least, most) - present, draft.rng.randint(1, some) if some else 0)
     total = weights[-1]
     home = base.home
+    ids, rooms, bears, contents, kinds = home.ids, base.room, home.bears, home.contents, base.kind
+    taken, seats = draft.taken, base.seats
+    node_id = FIRST_FILLED_ID + len(draft.nodes)
     for _ in range(wanted):
-        name, i, relation = choices[bisect_right(weights, rng.random() * total)]
-        place = home.ids[i]
-        if place in draft.taken or _is_full(draft, i, place):
+        name, i, relation = choices[bisect_right(weights, random() * total)]
+        if ids[i] in taken or (seats >> i & 1 and _is_full(draft, i, ids[i])):
             continue
-        room = base.room[i]
-        node_id = draft.add(name, home.ids[room] if room >= 0 else -1, FIRST_FILLED_ID)
-        draft.put(node_id, relation, place)
-        _random_states(draft, node_id)
+        category, properties, states = kinds(name)
+        for state in states:
+            if random() < TURNED:
+                states = _turned(states, state)
+        near = 1 << i | (bears[i] if relation == "ON" else contents[i])
+        draft.loose.append(Loose(Node(node_id, name, category, properties, states), relation, i, rooms[i], near))
+        node_id += 1
+        if seats >> i & 1:
+            draft.load[ids[i]] = draft.load.get(ids[i], 0) + 1
+
+
+def _turned(states: tuple[str, ...], state: str) -> tuple[str, ...]:
+    """In the opposite of one of the states."""
+    other = OPPOSITE[state]
+    return (*(name for name in states if name not in (state, other)), other)
 
 
 def _is_full(draft: Draft, i: int, place: int) -> bool:
-    home = draft.base.home
-    if not (home.properties["SITTABLE"] | home.properties["LIEABLE"]) >> i & 1:
-        return False
-    return draft.crowd(place) + 1 >= home.limit(i)
-
-
-def _random_states(draft: Draft, node_id: int) -> None:
-    """Any of its pairs of states, turned over one time in four."""
-    for state in draft.new[node_id].states:
-        if draft.rng.random() < 0.25:
-            draft.set_state(node_id, OPPOSITE[state])
+    """Whether a seat or bed has but one place left, which is for who sits there."""
+    return draft.crowd(place) + 1 >= draft.base.home.limit(i)

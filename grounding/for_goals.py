@@ -9,7 +9,7 @@ from hearth.grounding.conditions import Preconditions
 from hearth.grounding.draft import Draft
 from hearth.grounding.filling import fill
 from hearth.grounding.placing import put_where_it_belongs
-from hearth.grounding.sampling import TRIES, USUAL, Environment, Size, settle_character
+from hearth.grounding.sampling import TRIES, USUAL, Environment, Size, of_draft, settle_character
 from hearth.grounding.soundness import unsound
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal, Predicate
@@ -103,10 +103,7 @@ def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size
         _undo(draft, predicate, number)
     settle_character(draft, _NO_PROGRAM, _NOTHING)
     fill(draft, size.least, size.most, size.some)
-    return Environment(
-        base.home, seed, World.start(draft.home()), _NO_PROGRAM, _NOTHING, tuple(draft.nodes), tuple(draft.added),
-        tuple(draft.removed), tuple(sorted(draft.states.items())),
-    )  # fmt: skip
+    return of_draft(draft, seed, _NO_PROGRAM, _NOTHING)
 
 
 def _provide(draft: Draft, name: str, number: int) -> None:

@@ -60,6 +60,18 @@ class Wishes:
         return tuple(order)
 
 
+_LAST: list[tuple[Program, Preconditions, Wishes]] = []
+
+
+def wishes_of(program: Program, conditions: Preconditions, knowledge: Knowledge) -> Wishes:
+    """The wishes, kept for the next draw: one program is sampled in many homes in turn."""
+    if _LAST and _LAST[0][0] is program and _LAST[0][1] is conditions:
+        return _LAST[0][2]
+    wishes = Wishes(program, conditions, knowledge)
+    _LAST[:] = [(program, conditions, wishes)]
+    return wishes
+
+
 def _follower(condition: Condition) -> Key:
     """Which of the two objects is placed by the other: a seat leads what it faces."""
     return condition.objects[1] if condition.name == "facing" else condition.objects[0]

@@ -11,7 +11,7 @@ from hearth.grounding.demands import Moment, conditions_for
 from hearth.grounding.draft import Draft
 from hearth.grounding.filling import fill
 from hearth.grounding.fulfilling import fulfil
-from hearth.grounding.placing import Wishes, bind
+from hearth.grounding.placing import bind, wishes_of
 from hearth.grounding.preconditions import infer
 from hearth.grounding.soundness import unsound
 from hearth.schemas.failures import Code, Failure
@@ -19,13 +19,11 @@ from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.simulation.bits import indices
+from hearth.simulation.edit import Loose
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
-
-WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
-"""Categories of what is wherever it is."""
 
 TRIES = 12
 """Environments drawn for one program before it is given up."""
@@ -41,7 +39,8 @@ class Environment:
         world: the start.
         program: the program, bound to the world's nodes.
         conditions: what was asked for, the conditions found while sampling included.
-        nodes, added, removed, states: what differs from the base; states are those of the nodes named, all of them.
+        nodes, drafted, removed, states: what differs from the base; states are those of the nodes named, all of them.
+        loose: the random things among the nodes, and where they are.
     """
 
     base: Home
@@ -50,9 +49,32 @@ class Environment:
     program: Program
     conditions: Preconditions
     nodes: tuple[Node, ...]
-    added: tuple[Edge, ...]
+    drafted: tuple[Edge, ...]
     removed: tuple[Edge, ...]
     states: tuple[tuple[int, tuple[str, ...]], ...]
+    loose: tuple[Loose, ...] = ()
+
+    @property
+    def added(self) -> tuple[Edge, ...]:
+        """The edges that the base does not have."""
+        ids = self.base.ids
+        return (*self.drafted, *(edge for one in self.loose for edge in one.edges(ids)))
+
+
+def of_draft(draft: Draft, seed: int, program: Program, conditions: Preconditions) -> Environment:
+    """What a draft has become."""
+    return Environment(
+        draft.base.home,
+        seed,
+        World.start(draft.home()),
+        program,
+        conditions,
+        (*draft.nodes, *[one.node for one in draft.loose]),
+        tuple(draft.added),
+        tuple(draft.removed),
+        tuple(sorted(draft.states.items())),
+        tuple(draft.loose),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,26 +141,11 @@ def unplaceable(program: Program, base: Base) -> Failure | None:
     for tick, steps in enumerate(program.ticks()):
         for step in steps:
             for ref in step.objects:
-                found = _homeless(ref.name, base)
+                found = base.homeless(ref.name)
                 if found is not None:
                     code, expected, actual = found
                     return Failure(code, tick, step.agent, step.action, (), (ref.name,), expected, actual)
     return None
-
-
-def _homeless(name: str, base: Base) -> tuple[Code, str, str] | None:
-    knowledge, home = base.knowledge, base.home
-    if knowledge.is_room(name):
-        if base.serving(name):
-            return None
-        rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
-        return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"
-    known = knowledge.object_class(name)
-    if known is None or known.category in WITHOUT_PLACE or known.rooms or base.instances(name):
-        return None
-    if knowledge.placements(name):
-        return None
-    return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
 
 def _nodes(program: Program) -> dict[Key, int]:
@@ -156,21 +163,11 @@ def draw(
     """One environment in which the conditions hold; whether the program runs in it remains to be seen."""
     generator = rng(seed, "sample", base.home.name, record_id, attempt)
     draft = Draft(base, generator)
-    bind(draft, Wishes(program, conditions, base.knowledge))
+    bind(draft, wishes_of(program, conditions, base.knowledge))
     fulfil(draft, conditions)
     settle_character(draft, program, conditions)
     fill(draft, size.least, size.most, size.some)
-    return Environment(
-        base.home,
-        seed,
-        World.start(draft.home()),
-        program.bound(draft.binding),
-        conditions,
-        tuple(draft.nodes),
-        tuple(draft.added),
-        tuple(draft.removed),
-        tuple(sorted(draft.states.items())),
-    )
+    return of_draft(draft, seed, program.bound(draft.binding), conditions)
 
 
 def settle_character(draft: Draft, program: Program, conditions: Preconditions) -> None:

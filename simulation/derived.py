@@ -5,10 +5,11 @@ Rows are shared by copying lists of references, so that what is not touched cost
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from operator import attrgetter
 from types import MappingProxyType
+from typing import NamedTuple
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -17,6 +18,33 @@ from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation.bits import indices
 from hearth.simulation.building import CHARACTER_PROPERTIES, agent_row
 from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home
+
+
+class Loose(NamedTuple):
+    """A new thing put somewhere, in short: what many things are added by.
+
+    Attributes:
+        node: the thing.
+        relation: ON or INSIDE the place.
+        place, room: indices of where it is; a room of -1 is none.
+        near: the nodes it is CLOSE to.
+    """
+
+    node: Node
+    relation: str
+    place: int
+    room: int
+    near: int
+
+    def edges(self, ids: Sequence[int]) -> Iterator[Edge]:
+        """The same as edges, CLOSE one way round."""
+        me = self.node.id
+        if self.room >= 0:
+            yield Edge(me, "INSIDE", ids[self.room])
+        yield Edge(me, self.relation, ids[self.place])
+        for j in indices(self.near):
+            yield Edge(me, "CLOSE", ids[j])
+
 
 _NO_STATES: Mapping[int, Iterable[str]] = MappingProxyType({})
 
@@ -27,6 +55,7 @@ def extended(
     edges: Sequence[Edge] = (),
     removed_edges: Sequence[Edge] = (),
     states: Mapping[int, Iterable[str]] = _NO_STATES,
+    loose: Sequence[Loose] = (),
 ) -> Home:
     """A home with more nodes, more and fewer edges, and other states; the given home stays as it is.
 
@@ -38,6 +67,7 @@ def extended(
         edges: new ones; either end may be a new node. CLOSE is symmetric: one direction is enough.
         removed_edges: taken away before `edges` are added; one that is not there is no error.
         states: node id -> the simulated states it is in, instead of those it had; new nodes bring their own.
+        loose: more new nodes, their ids above all others; fast where there are many.
 
     Raises:
         HearthError: BAD_GRAPH, when an id is used twice or an edge or state names a node that there is not.
@@ -46,13 +76,18 @@ def extended(
         if len(nodes) > 1:
             nodes = sorted(nodes, key=attrgetter("id"))
         if home.ids and nodes[0].id <= home.ids[-1]:
-            return _rebuilt(home, nodes, edges, removed_edges, states)
+            more = [edge for one in loose for edge in one.edges(home.ids)]
+            whole = _rebuilt(home, nodes, edges, removed_edges, states)
+            return extended(whole, [one.node for one in loose], more) if loose else whole
     new = home.copy()
     try:
-        _append(new, nodes)
+        _append(new, [*nodes, *[one.node for one in loose]] if loose else nodes)
         touched = -1 << len(home)
-        touched |= _each(new, removed_edges, _clear) | _each(new, edges, _put)
-        _restate(new, states)
+        touched |= _each(new, removed_edges, put=False) | _each(new, edges, put=True)
+        if loose:
+            touched |= _lay(new, len(home) + len(nodes), loose)
+        if states:
+            _restate(new, states)
     except KeyError as error:
         raise HearthError.of(Code.BAD_GRAPH, f"no node has the id {error.args[0]}") from None
     new.derive(home, touched & new.everything)
@@ -126,53 +161,81 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
     home.classes += [node.class_name for node in nodes]
     for rows in home.rows:
         rows.extend([0] * len(nodes))
-    kinds: dict[tuple[str, str, tuple[str, ...], tuple[str, ...]], int] = {}
+    kinds: dict[tuple[str, str, int, tuple[str, ...]], tuple[Node, int]] = {}
     bit = 1 << first
     for node in nodes:
-        kind = (node.class_name, node.category, node.properties, node.states)
-        kinds[kind] = kinds.get(kind, 0) | bit
+        # Properties of one kind are one tuple nearly always; where they are not, the kind is entered twice.
+        kind = (node.class_name, node.category, id(node.properties), node.states)
+        known = kinds.get(kind)
+        kinds[kind] = (node, bit) if known is None else (node, known[1] | bit)
         bit <<= 1
-    for (name, category, properties, states), mask in kinds.items():
+    states = list(home.states)
+    for node, mask in kinds.values():
+        name = node.class_name
         home.by_class[name] = home.by_class.get(name, 0) | mask
         if name == CHARACTER_CLASS:
             home.agents = (*home.agents, *indices(mask))
             home.agent_rows += [(0,) * 9] * mask.bit_count()
-        elif category == ROOM_CATEGORY:
+        elif node.category == ROOM_CATEGORY:
             home.rooms |= mask
-        for prop in properties:
+        for prop in node.properties:
             if name != CHARACTER_CLASS or prop in CHARACTER_PROPERTIES:
                 home.properties[prop] = home.properties.get(prop, 0) | mask
-        if states:
-            home.states = _entered(home.states, mask, states)
+        _enter(states, mask, node.states)
+    home.states = tuple(states)
 
 
-def _entered(states: tuple[int, ...], bit: int, names: Iterable[str]) -> tuple[int, ...]:
+def _enter(states: list[int], bit: int, names: Iterable[str]) -> None:
     """Of two states that exclude each other the one said first holds."""
-    new = list(states)
     for name in names:
         number = STATE_ID.get(name)
-        if number is not None and not new[number ^ 1] & bit:
-            new[number] |= bit
-    return tuple(new)
+        if number is not None and not states[number ^ 1] & bit:
+            states[number] |= bit
+
+
+def _lay(home: Home, first: int, loose: Sequence[Loose]) -> int:
+    """Enter the rows of things that are appended from index `first`; the nodes whose rows changed."""
+    close, on, bears, inside, contents = home.close, home.on, home.bears, home.inside, home.contents
+    touched = 0
+    bit = 1 << first
+    for i, (_, relation, place, room, near) in enumerate(loose, first):
+        if relation == "ON":
+            on[i] = 1 << place
+            bears[place] |= bit
+        else:
+            inside[i] = 1 << place
+            contents[place] |= bit
+        if room >= 0:
+            inside[i] |= 1 << room
+            contents[room] |= bit
+            touched |= 1 << room
+        close[i] = near
+        touched |= near
+        rest = near
+        while rest:
+            lowest = rest & -rest
+            close[lowest.bit_length() - 1] |= bit
+            rest ^= lowest
+        bit <<= 1
+    return touched
 
 
 def _restate(home: Home, states: Mapping[int, Iterable[str]]) -> None:
+    found = list(home.states)
+    restated = 0
     for node_id, names in states.items():
         bit = 1 << home.index[node_id]
-        home.restated |= bit
-        home.states = _entered(tuple([row & ~bit for row in home.states]), bit, names)
+        restated |= bit
+        for number, row in enumerate(found):
+            if row & bit:
+                found[number] = row ^ bit
+        _enter(found, bit, names)
+    home.restated |= restated
+    home.states = tuple(found)
 
 
-def _put(row: int, bit: int) -> int:
-    return row | bit
-
-
-def _clear(row: int, bit: int) -> int:
-    return row & ~bit
-
-
-def _each(home: Home, edges: Iterable[Edge], change: Callable[[int, int], int]) -> int:
-    """Change both rows of every edge; the nodes whose rows changed."""
+def _each(home: Home, edges: Iterable[Edge], put: bool) -> int:
+    """Put or clear both rows of every edge; the nodes whose rows changed."""
     index = home.index
     characters = home.characters
     tables = home.tables
@@ -182,12 +245,24 @@ def _each(home: Home, edges: Iterable[Edge], change: Callable[[int, int], int]) 
         a, b = 1 << i, 1 << j
         touched |= a | b
         if relation not in tables or (a | b) & characters:
-            _each_agent(home, (i, relation, j), change)
+            _each_agent(home, (i, relation, j), _put if put else _clear)
             continue
         forward, backward = tables[relation]
-        forward[i] = change(forward[i], b)
-        backward[j] = change(backward[j], a)
+        if put:
+            forward[i] |= b
+            backward[j] |= a
+        else:
+            forward[i] &= ~b
+            backward[j] &= ~a
     return touched
+
+
+def _put(row: int, bit: int) -> int:
+    return row | bit
+
+
+def _clear(row: int, bit: int) -> int:
+    return row & ~bit
 
 
 def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, int], int]) -> None:

@@ -17,11 +17,11 @@ from hearth.simulation import moved as kinds
 from hearth.simulation.agent import Agent
 from hearth.simulation.building import agent_row
 from hearth.simulation.change import Change
-from hearth.simulation.derived import added_nodes, extended, without
+from hearth.simulation.derived import Loose, added_nodes, extended, without
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
-__all__ = ["added_nodes", "apply", "edit", "extended", "free_id"]
+__all__ = ["Loose", "added_nodes", "apply", "edit", "extended", "free_id"]
 
 _NO_PLACES: Mapping[int, tuple[str, int]] = MappingProxyType({})
 

@@ -188,12 +188,11 @@ class Home:
     @cached_property
     def furniture(self) -> int:
         """All nodes of the category Furniture."""
+        if self.base is not None:
+            base = self.base[0]
+            new = (i for i in range(len(base), len(self)) if self.nodes[i].category == "Furniture")
+            return base.furniture & ~self.absent | mask_of(new)
         return mask_of(i for i in range(len(self)) if self.node(i).category == "Furniture")
-
-    @cached_property
-    def near(self) -> Rows:
-        """For each node, what makes who is CLOSE to it close to the node too: its CLOSE row and what it is ON."""
-        return [a | b for a, b in zip(self.close, self.on, strict=True)]
 
     @cached_property
     def around(self) -> Rows:

@@ -68,7 +68,7 @@ def is_close(world: World, agent: Agent, i: int) -> bool:
         return True
     moved = world.moved
     if moved is NOTHING:
-        if mine & world.home.near[i]:
+        if mine & (world.home.close[i] | world.home.on[i]):
             return True
     elif mine & (close(world, i) | on(world, i)):
         return True

@@ -72,7 +72,6 @@ def test_an_extended_home_is_the_home_of_the_extended_graph():
     for name in ("ids", "classes", "by_class", "properties", "rooms", "states", "agents", "agent_rows", "index"):
         assert getattr(new, name) == getattr(fresh, name), name
     assert new.rows == fresh.rows
-    assert new.near == fresh.near
     assert [new.able(a) for a in ("Grab", "Open", "Walk")] == [fresh.able(a) for a in ("Grab", "Open", "Walk")]
     assert World.start(home).graph() == before
     assert added_nodes(home, new) == ADDED
