@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from hearth.rendering.camera import Camera, point_of
 from hearth.rendering.figure import Figure, figure_mesh
 from hearth.rendering.maps import extents
-from hearth.rendering.modalities import Shot
 from hearth.rendering.models import draw
+from hearth.rendering.shot import Shot
 from hearth.rendering.things import Thing
 
 Point = tuple[float, float, float]
@@ -146,28 +146,34 @@ def camera_of(camera: Camera) -> dict[str, Any]:
 
 def described(shot: Shot) -> dict[str, Any]:
     """Camera, boxes and joints of a picture as plain values, ready for JSON; metres and pixels, rounded to 1e-4."""
-    return {
-        "camera": camera_of(shot.camera),
-        "objects": [
-            {
-                "node": one.node,
-                "class_name": one.class_name,
-                "pixels": one.pixels,
-                "box_2d": list(one.box),
-                "box_3d": {"center": _rounded(one.center), "size": _rounded(one.size), "yaw": round(one.yaw, 4)},
-            }
-            for one in seen(shot)
-        ],
-        "people": [
-            {
-                "node": one.node,
-                "joints_3d": {name: _rounded(at) for name, at in one.joints.items()},
-                "joints_2d": {name: _rounded(at[:2]) for name, at in one.pixels.items()},
-                "visible": list(one.visible),
-            }
-            for one in skeletons(shot)
-        ],
-    }
+    return {"camera": camera_of(shot.camera), "objects": boxes(shot), "people": poses(shot)}
+
+
+def boxes(shot: Shot) -> list[dict[str, Any]]:
+    """2D and 3D boxes of what has a pixel, as plain values."""
+    return [
+        {
+            "node": one.node,
+            "class_name": one.class_name,
+            "pixels": one.pixels,
+            "box_2d": list(one.box),
+            "box_3d": {"center": _rounded(one.center), "size": _rounded(one.size), "yaw": round(one.yaw, 4)},
+        }
+        for one in seen(shot)
+    ]
+
+
+def poses(shot: Shot) -> list[dict[str, Any]]:
+    """Joints of everyone in the world and in the picture, as plain values."""
+    return [
+        {
+            "node": one.node,
+            "joints_3d": {name: _rounded(at) for name, at in one.joints.items()},
+            "joints_2d": {name: _rounded(at[:2]) for name, at in one.pixels.items()},
+            "visible": list(one.visible),
+        }
+        for one in skeletons(shot)
+    ]
 
 
 def _rounded(values: Any) -> Any:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering import maps, shading
-from hearth.rendering.modalities import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.rays import Hits
 from hearth.rendering.shading import Setting
+from hearth.rendering.shot import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.threads import each
 
 Floats = NDArray[np.floating[Any]]

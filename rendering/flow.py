@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hearth.rendering.camera import Camera
 from hearth.rendering.maps import HORIZON, motion
 from hearth.rendering.meshes.mesh import rotation
-from hearth.rendering.modalities import Shot, shoot
 from hearth.rendering.scene import Scene
+from hearth.rendering.shot import Shot, shoot
 from hearth.rendering.things import Thing, placed
 
 Floats = NDArray[np.floating[Any]]
@@ -32,7 +32,8 @@ def flow(shot: Shot, after: Shot) -> Floats:
     out = np.empty((len(shot.rays), 2), np.float32)
     size = (shot.camera.width, shot.camera.height)
     shifts, first = _shifts(shot, after), shot.geometry.first
-    motion(shot.rays, *shot.hits, shifts, first, _frame(after.camera), *size, ids, later, far, out)
+    distance, triangle, u, v = shot.hits
+    motion(shot.rays, distance, triangle, u, v, shifts, first, _frame(after.camera), *size, ids, later, far, out)
     return shot.image(out)
 
 

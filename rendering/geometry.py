@@ -64,8 +64,11 @@ class Part:
         mesh = self.mesh
         solid = np.array([thing.laid for thing in self.things], np.float32)
         rows = np.empty((len(mesh), COLUMNS), np.float32)
-        arrays = (np.ascontiguousarray(a, np.float32) for a in (mesh.corners, mesh.normals, mesh.uvs, mesh.surface))
-        triangle_rows(*arrays, np.ascontiguousarray(mesh.textures), solid[self.owner] if len(mesh) else solid, rows)
+        corners, normals, uvs, surface = (
+            np.ascontiguousarray(a, np.float32) for a in (mesh.corners, mesh.normals, mesh.uvs, mesh.surface)
+        )
+        textures = np.ascontiguousarray(mesh.textures)
+        triangle_rows(corners, normals, uvs, surface, textures, solid[self.owner] if len(mesh) else solid, rows)
         return rows
 
     @cached_property
@@ -139,8 +142,21 @@ class Geometry:
         """The first hit of each of (N, 6) rays."""
         hits = self.still.caster.cast(rays)
         everywhere = np.arange(len(rays), dtype=np.int32)
-        nearer(everywhere, *self.moving.caster.raw(rays), self.first, *hits, np.empty_like(everywhere))
+        self.overlay(everywhere, rays, hits)
         return hits
+
+    def overlay(self, pixels: NDArray[np.int32], rays: Floats, hits: Hits) -> NDArray[np.int32]:
+        """Write what moves over the hits of all pixels where it is nearer; gives the pixels where it is.
+
+        Args:
+            pixels: (M,) whose rays these are.
+            rays: (M, 6).
+            hits: of all pixels, on what stays.
+        """
+        found, numbers, uvs = self.moving.caster.raw(rays)
+        won = np.empty(len(pixels), np.int32)
+        distance, triangle, u, v = hits
+        return won[: nearer(pixels, found, numbers, uvs, self.first, distance, triangle, u, v, won)]
 
     def owner(self, triangle: Numbers) -> NDArray[np.int32]:
         """(N,) index into `things` of N triangles; -1 for none."""

@@ -29,7 +29,8 @@ from hearth.rendering.kernels import (
     kernel,
     root,
 )
-from hearth.rendering.textures import LEVELS, OFFSETS, SIDE, SLOTS
+from hearth.rendering.textures import LEVELS, OFFSETS, SLOTS
+from hearth.rendering.weave import SIDE
 
 GROUND = np.float32(0.55)
 """How bright the plain ground is that a view from above shows around a home."""

@@ -1,67 +1,27 @@
-"""Pictures of a scene: colour, depth, who is where, normals (thesis 2.4, 4.4). `render` is the primitive."""
+"""Pictures of a scene: colour, depth, who is where, normals, flow, boxes, poses (thesis 2.4, 4.4). `render` is the
+primitive.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering import maps, shading
+from hearth.rendering.annotations import boxes, camera_of, poses
 from hearth.rendering.camera import Camera
-from hearth.rendering.geometry import Geometry
-from hearth.rendering.kernels import nearer, taken
-from hearth.rendering.lights import from_above
-from hearth.rendering.rays import Hits
+from hearth.rendering.fine import fine
+from hearth.rendering.flow import flow_of
 from hearth.rendering.scene import Scene
-from hearth.rendering.shading import Setting
+from hearth.rendering.shot import Image, Shot, draft, everywhere, shoot
 from hearth.rendering.threads import each
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
-Image = NDArray[Any]
-Floats = NDArray[np.floating[Any]]
-
 QUALITIES = ("draft", "fine")
-
-
-@dataclass(frozen=True, eq=False)
-class Shot:
-    """One cast of a camera's rays, shared by all modalities.
-
-    Attributes:
-        scene, camera, geometry: what, from where.
-        rays: (H*W, 6); moved down to the cut for views from above.
-        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; empty without a cut.
-        hits: what they hit.
-        class_ids: class -> number.
-    """
-
-    scene: Scene
-    camera: Camera
-    geometry: Geometry
-    rays: Floats
-    skipped: Floats
-    hits: Hits
-    class_ids: Mapping[str, int]
-
-    @cached_property
-    def owner(self) -> NDArray[np.int32]:
-        """(H*W,) index of the thing that is seen, -1 for none."""
-        return self.geometry.owner(self.hits.triangle)
-
-    @cached_property
-    def distance(self) -> Floats:
-        """(H*W,) along the camera's axis, metres; infinite for none."""
-        far: Floats = self.hits.distance + self.skipped if len(self.skipped) else self.hits.distance
-        return far
-
-    def image(self, values: NDArray[Any]) -> Image:
-        """(H*W, ...) values as (H, W, ...)."""
-        return values.reshape(self.camera.height, self.camera.width, *values.shape[1:])
 
 
 def render(
@@ -71,7 +31,8 @@ def render(
     *,
     quality: str = "draft",
     class_ids: Mapping[str, int] | None = None,
-) -> dict[str, Image]:
+    after: Scene | None = None,
+) -> dict[str, Any]:
     """Take pictures of a scene.
 
     Args:
@@ -80,12 +41,14 @@ def render(
         modalities: names of `MODALITIES`.
         quality: `draft` (one ray a pixel, hard shadows) or `fine` (smooth edges, soft shadows, ambient occlusion).
         class_ids: class -> number, for `class_ids`; the scene's classes from 1 on, sorted, where none are given.
+        after: the next moment, for `flow`; where none is given, nothing moves.
 
     Returns:
-        For each modality an array of (height, width) or (height, width, 3): `rgb` uint8; `depth` uint16 millimetres
+        For each modality an array of (height, width) or (height, width, n): `rgb` uint8; `depth` uint16 millimetres
         along the camera's axis, 0 for nothing; `instance_ids` uint16 node ids (int32 if one needs it), 0 for nothing;
-        `class_ids` uint16;
-        `normals` float32 unit vectors of the world, 0 for nothing.
+        `class_ids` uint16; `normals` float32 unit vectors of the world, 0 for nothing; `flow` float32 pixels right
+        and down, NaN for what is not seen in the next picture. `camera`, `boxes` (2D and 3D, of every object) and
+        `poses` (2D and 3D joints of everyone) are plain values, as `annotations` has them.
 
     Raises:
         HearthError: an unknown modality or quality, or no open3d.
@@ -95,116 +58,16 @@ def render(
     if unknown:
         known = ", ".join((*MODALITIES, *QUALITIES))
         raise HearthError.of(Code.NOT_RENDERED, f"unknown modality or quality: {', '.join(unknown)}", suggestion=known)
-    return pictures_of(shoot(scene, camera, class_ids=class_ids), wanted, quality)
+    return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)
 
 
-def pictures_of(shot: Shot, modalities: Iterable[str], quality: str = "draft") -> dict[str, Image]:
+def pictures_of(shot: Shot, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:
     """The pictures of a shot by modality, as `render` gives them."""
     return {name: MODALITIES[name](shot, quality) for name in modalities}
 
 
-def shoot(
-    scene: Scene, camera: Camera, offset: tuple[float, float] = (0.5, 0.5), class_ids: Mapping[str, int] | None = None
-) -> Shot:
-    """Cast a camera's rays, through `offset` in each pixel."""
-    rays, skipped = camera_rays(camera, offset)
-    geometry = scene.geometry if camera.cut is None else scene.opened
-    hits = Hits.none(len(rays))
-    cast_at(geometry, rays, everywhere(len(rays)), hits)
-    overlay(geometry, camera, rays, hits)
-    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {})
-
-
-def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:
-    """Fill in what some pixels' rays hit of the part that stays."""
-    prepare(geometry)
-
-    def work(chunk: NDArray[np.int32]) -> None:
-        part = slice(int(chunk[0]), int(chunk[-1]) + 1)
-        for values, found in zip(hits, geometry.still.caster.cast(rays[part]), strict=True):
-            values[part] = found
-
-    each(work, shading.chunks(pixels))
-
-
-def prepare(geometry: Geometry) -> None:
-    """Build what threads share, before they do."""
-    for part in (geometry.still, geometry.moving):
-        _ = part.caster, part.shadows, part.rows
-
-
-def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDArray[np.int32]:
-    """Cast the rays that can meet moving things at them; gives the pixels that show one."""
-    moving = geometry.moving
-    if not len(moving.mesh):
-        return everywhere(0)
-    covered = np.zeros(camera.height * camera.width, np.bool_)
-    for box in moving.boxes:
-        left, top, right, bottom = camera.extent(box)
-        covered.reshape(camera.height, camera.width)[top:bottom, left:right] = True
-    pixels = np.flatnonzero(covered).astype(np.int32)
-
-    def work(chunk: NDArray[np.int32]) -> NDArray[np.int32]:
-        some = np.empty((len(chunk), 6), np.float32)
-        taken(rays, chunk, some)
-        won = np.empty(len(chunk), np.int32)
-        return won[: nearer(chunk, *moving.caster.raw(some), geometry.first, *hits, won)]
-
-    found = each(work, shading.chunks(pixels))
-    return np.concatenate(found) if found else everywhere(0)
-
-
-@lru_cache(maxsize=8)
-def everywhere(size: int) -> NDArray[np.int32]:
-    """All pixels. Not to be written to."""
-    return np.arange(size, dtype=np.int32)
-
-
-NO_CUT: Floats = np.zeros(0, np.float32)
-
-
-@lru_cache(maxsize=6)
-def camera_rays(camera: Camera, offset: tuple[float, float]) -> tuple[Floats, Floats]:
-    """(N, 6) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
-    rays = camera.rays(offset)
-    if camera.cut is None:
-        return rays, NO_CUT
-    skipped = np.maximum((rays[:, 1] - camera.cut) / np.maximum(-rays[:, 4], 1e-6), 0).astype(np.float32)
-    rays[:, :3] += rays[:, 3:] * skipped[:, None]
-    return rays, skipped
-
-
 def _rgb(shot: Shot, quality: str) -> Image:
-    if quality == "fine":
-        from hearth.rendering.fine import fine
-
-        return shot.image(fine(shot))
-    return shot.image(draft(shot))
-
-
-def draft(shot: Shot) -> NDArray[np.uint8]:
-    """(H*W, 3) colours with one ray a pixel and hard shadows."""
-    out = np.empty((len(shot.rays), 3), np.uint8)
-    shading.whole(
-        shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting_of(shot), out
-    )
-    return out
-
-
-def setting_of(shot: Shot, *, fine: bool = False, share: float = 1.0) -> Setting:
-    """The light of a shot; `share` of a pixel is what one ray stands for."""
-    above = shot.camera.cut is not None
-    day = from_above(shot.scene.day) if above else shot.scene.day
-    return Setting.of(shot.scene.lights, day, plain=above, angle=pixel_angle(shot) * share, fine=fine)
-
-
-def pixel_angle(shot: Shot) -> float:
-    """Radians a pixel spans, as distances along the rays have it."""
-    angle = 1 / float(shot.camera.intrinsics[0, 0])
-    if shot.camera.cut is None:
-        return angle
-    # Distances count from the cut, and textures must shrink with the distance from the eye.
-    return angle * (1 + float(np.median(shot.skipped)) / max((shot.camera.cut - shot.camera.target[1]) / 2, 0.1))
+    return shot.image(fine(shot) if quality == "fine" else draft(shot))
 
 
 def _depth(shot: Shot, quality: str) -> Image:
@@ -243,11 +106,22 @@ def _normals(shot: Shot, quality: str) -> Image:
     return shot.image(out)
 
 
-MODALITIES: dict[str, Callable[[Shot, str], Image]] = {
+def _flow(shot: Shot, quality: str) -> Image:
+    return flow_of(shot.after or shot.scene, shot)
+
+
+MODALITIES: dict[str, Callable[[Shot, str], Any]] = {
     "rgb": _rgb,
     "depth": _depth,
     "instance_ids": _instances,
     "class_ids": _classes,
     "normals": _normals,
+    "flow": _flow,
+    "camera": lambda shot, quality: camera_of(shot.camera),
+    "boxes": lambda shot, quality: boxes(shot),
+    "poses": lambda shot, quality: poses(shot),
 }
-"""What a picture can show. To add one: a function of a shot, and a row here."""
+"""What a picture can show or tell. To add one: a function of a shot, and a row here."""
+
+PICTURES = ("rgb", "depth", "instance_ids", "class_ids", "normals", "flow")
+"""Modalities that are pictures; the others are plain values."""

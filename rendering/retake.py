@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from hearth.rendering import shading
 from hearth.rendering.camera import Camera
 from hearth.rendering.geometry import Geometry
-from hearth.rendering.modalities import Shot, camera_rays, cast_at, everywhere, overlay, prepare, setting_of
 from hearth.rendering.modalities import pictures_of as others
 from hearth.rendering.rays import Hits
 from hearth.rendering.scene import Scene
 from hearth.rendering.shading import Plate, Setting
+from hearth.rendering.shot import Shot, camera_rays, cast_at, everywhere, overlay, prepare, setting_of
 from hearth.rendering.threads import each
 
 Ints = NDArray[np.int32]

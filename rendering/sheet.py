@@ -50,7 +50,8 @@ def portrait(model: Model, size: Size, side: int = TILE, quality: str = "fine") 
     )
     light = Light((-2.0 * radius, 3 * radius, 2.2 * radius), (0.3, 0.3, 0.32), (0.3, 0.3, 0.3))
     scene = Scene((ground, Thing(1, model.recipe, model)), (light,), STUDIO)
-    return render(scene, camera, ("rgb",), quality=quality)["rgb"]
+    picture: NDArray[np.uint8] = render(scene, camera, ("rgb",), quality=quality)["rgb"]
+    return picture
 
 
 def sheet(columns: int = 14, side: int = TILE, quality: str = "fine") -> NDArray[np.uint8]:

@@ -13,9 +13,9 @@ from hearth.rendering.camera import look_at
 from hearth.rendering.figure import BODIES, Figure
 from hearth.rendering.flow import flow, flow_of
 from hearth.rendering.meshes.look import Look
-from hearth.rendering.modalities import shoot
 from hearth.rendering.models import Model
 from hearth.rendering.scene import Scene
+from hearth.rendering.shot import shoot
 from hearth.rendering.skeleton import Stance
 from hearth.rendering.things import Thing
 
