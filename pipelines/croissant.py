@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from hearth.pipelines.files import file_digest, write_json
 from hearth.schemas.tables import TABLES
-from hearth.version import VERSION
+from hearth.version import RELEASED, VERSION
 
 NAME = "croissant.json"
 SUMMARY = (
@@ -78,7 +78,7 @@ def describe(folder: Path) -> dict[str, Any]:
         "url": "https://hearth.invalid/",
         "citeAs": "Hearth: household activities as programs that run",
         "version": VERSION,
-        "datePublished": "2026-11-21",
+        "datePublished": RELEASED,
         "distribution": [file for table in TABLES for file in (_file_set(table), *_parts(folder, table))],
         "recordSet": [_records(table) for table in TABLES],
     }

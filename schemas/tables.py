@@ -255,7 +255,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
         _column("program_id", TEXT, "stable id of the program"),
         _column("activity_id", TEXT, "the activity it carries out"),
         *_of(CASE, "description_id", "parent_id", "origin", "source", "place", "title", "description"),
-        _column("split", TEXT, "train or test, by activity, so that siblings stay together"),
+        _column("split", TEXT, "train or test, by activity; `splits` leaves out of train what nearly equals a test"),
         *_of(CASE, "steps", "rooms", "props", "worker", "platform", "warnings"),
     ),
     "homes": _published(
