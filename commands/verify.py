@@ -11,8 +11,10 @@ from hearth.commands import output
 
 Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
 
+Workers = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")]
 
-def verify(dataset: Folder, as_json: output.Json = False) -> None:
+
+def verify(dataset: Folder, workers: Workers = 0, as_json: output.Json = False) -> None:
     """Check a dataset: hashes, columns, counts, references, and every execution run again from what is on disk.
 
     Exit status 1 where anything is wrong, each fault with its file.
@@ -21,9 +23,11 @@ def verify(dataset: Folder, as_json: output.Json = False) -> None:
     Example:
       python cli.py verify data_out
     """
+    import os
+
     from hearth.pipelines.verify import verify as checked
 
-    found = checked(dataset)
+    found = checked(dataset, workers or os.cpu_count() or 1)
     if as_json:
         told = {"files": found.files, "rows": found.rows, "executions": found.executions}
         output.emit({**told, "faults": [output.diagnostic_json(fault) for fault in found.faults]})

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import sys
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +17,9 @@ from hearth.schemas.failures import Code
 from hearth.simulation.home import Home
 
 BATCH = 256
+SHARE = 1_000
+"""Executions that a process runs again at a time."""
+
 SHOWN = 20
 """Faults of one kind that are told singly; what more there is, is counted."""
 
@@ -72,8 +79,8 @@ class Verdict:
     faults: tuple[Diagnostic, ...]
 
 
-def verify(path: str | Path) -> Verdict:
-    """Check a dataset from nothing but its folder.
+def verify(path: str | Path, workers: int = 1) -> Verdict:
+    """Check a dataset from nothing but its folder; what is found is the same for any number of workers.
 
     Files first: where one is missing or other than the manifest says, or has other columns, nothing further is asked
     of the dataset, for its answers would mean nothing.
@@ -81,16 +88,17 @@ def verify(path: str | Path) -> Verdict:
     Raises:
         HearthError: the path is no dataset, or one that a newer version wrote.
     """
+    opened.cache_clear()
     dataset = Dataset.open(path)
     files = len(dataset.manifest["files"])
     faults = tuple(_files(dataset)) or tuple(_schemas(dataset))
     if faults:
         return Verdict(files, 0, 0, faults)
     rows = sum(_count(dataset, table) for table in _tables())
-    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset)]
+    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong))
-    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset)))
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers)))
 
 
 def _tables() -> tuple[str, ...]:
@@ -139,6 +147,14 @@ def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
                 ]
                 message = f"other columns than the table's: {', '.join(odd) or 'in another order'}"
                 yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=_AGAIN)
+
+
+def _split(dataset: Dataset) -> Iterator[Diagnostic]:
+    """`programs.split` is the activity's; `splits` may leave a program out, but never deal it to the other side."""
+    query = """SELECT DISTINCT program_id FROM splits s JOIN programs p USING (program_id)
+        WHERE s.split = 'activities' AND s.part <> 'none' AND NOT starts_with(s.part, p.split) ORDER BY 1"""
+    values = [row[0] for row in dataset.rows(query)[1]]
+    yield from _told(dataset, Code.BAD_TABLE, "splits", values, "{value} is dealt otherwise than `programs` says")
 
 
 def _count(dataset: Dataset, table: str) -> int:
@@ -205,33 +221,75 @@ class StoredHomes:
 
 CASES = """
     SELECT e.execution_id, e.home, e.rules, e.bindings, e.ticks, e.failure, p.title, p.description, p.steps,
-        {'added_nodes': v.added_nodes, 'removed_nodes': v.removed_nodes, 'added': v.added, 'removed': v.removed,
-         'set_states': v.set_states, 'cleared_states': v.cleared_states} AS environment
-    FROM executions e JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
-    ORDER BY e.home, e.execution_id
+        {{'added_nodes': v.added_nodes, 'removed_nodes': v.removed_nodes, 'added': v.added, 'removed': v.removed,
+         'set_states': v.set_states, 'cleared_states': v.cleared_states}} AS environment
+    FROM (SELECT * FROM executions{within}) e JOIN environments v USING (environment_id)
+        JOIN programs p ON p.program_id = e.program_id
+    ORDER BY e.execution_id
 """
 
 
-def cases(dataset: Dataset) -> Iterator[dict[str, Any]]:
-    """Every execution with its program and environment, as far as running it needs them."""
+def cases(dataset: Dataset, low: str = "", high: str | None = None) -> Iterator[dict[str, Any]]:
+    """Executions with their programs and environments, as far as running them needs it.
+
+    Args:
+        dataset: where they are.
+        low, high: the ids of the first and the last of them; all without.
+    """
+    within = "" if high is None else " WHERE execution_id BETWEEN $low AND $high"
+    asked = None if high is None else {"low": low, "high": high}
     # A cursor of its own: a connection has one open result, and homes are read meanwhile.
     with dataset.connection.cursor() as cursor:
-        for batch in cursor.sql(CASES).to_arrow_reader(BATCH):
+        for batch in cursor.sql(CASES.format(within=within), params=asked).to_arrow_reader(BATCH):
             yield from batch.to_pylist()
 
 
-def _replays(dataset: Dataset) -> Iterator[Diagnostic]:
+def _replays(dataset: Dataset, workers: int) -> Iterator[Diagnostic]:
+    place, wrong = str(dataset.folder / "executions"), 0
+    for found in _replayed(dataset, workers):
+        for execution_id, difference in found:
+            wrong += 1
+            if wrong <= SHOWN:
+                yield Diagnostic(Code.REPLAY_DIFFERS, f"{execution_id}: {difference}", place)
+    if wrong > SHOWN:
+        yield Diagnostic(Code.REPLAY_DIFFERS, f"and {wrong - SHOWN:,} more like it", place)
+
+
+Wrong = list[tuple[str, str]]
+"""Executions that run otherwise than their rows say, and how."""
+
+
+def _replayed(dataset: Dataset, workers: int) -> Iterator[Wrong]:
+    _, rows = dataset.rows("SELECT execution_id FROM executions ORDER BY 1")
+    names = [name for (name,) in rows]
+    shares = [names[start : start + SHARE] for start in range(0, len(names), SHARE)]
+    jobs = [(str(dataset.folder), share[0], share[-1]) for share in shares]
+    if workers < 2 or len(jobs) < 2:
+        yield from map(_replay, jobs)
+        return
+    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
+        yield from pool.map(_replay, jobs)
+
+
+def _replay(job: tuple[str, str, str]) -> Wrong:
     from hearth.pipelines.cases import difference_on_replay
 
-    homes, wrong = StoredHomes(dataset), 0
-    for case in cases(dataset):
+    folder, low, high = job
+    dataset, homes = opened(folder)
+    wrong: Wrong = []
+    for case in cases(dataset, low, high):
         try:
             difference = difference_on_replay(case, homes)
         except (HearthError, KeyError, ValueError, TypeError) as error:
             difference = f"it cannot be run: {type(error).__name__} {error}"
-        wrong += bool(difference)
-        if difference and wrong <= SHOWN:
-            place = str(dataset.folder / "executions")
-            yield Diagnostic(Code.REPLAY_DIFFERS, f"{case['execution_id']}: {difference}", place)
-    if wrong > SHOWN:
-        yield Diagnostic(Code.REPLAY_DIFFERS, f"and {wrong - SHOWN:,} more like it", str(dataset.folder / "executions"))
+        if difference:
+            wrong.append((case["execution_id"], difference))
+    return wrong
+
+
+@lru_cache(maxsize=1)
+def opened(folder: str) -> tuple[Dataset, StoredHomes]:
+    """A dataset and its homes, once a process and run of shares."""
+    dataset = Dataset.open(folder)
+    return dataset, StoredHomes(dataset)
