@@ -5,15 +5,16 @@ edges of the things it moved, those that ended included. CLOSE and FACING, which
 no goals.
 
 Left out of a problem are things that cannot matter to it. What remains: the character and what it holds, what the goal
-names, what these are INSIDE, up to their rooms, and what is ON a seat or bed among them. A plan of the pruned problem
-is one of the whole home, too: what was left out could only take up a hand, hide something or occupy a seat, and all
-that does so is kept.
+names, what these are INSIDE, up to their rooms, what is ON a seat or bed among them, and every door that is closed or
+is to be. A plan of the pruned problem is one of the whole home, too: what was left out could only take up a hand, hide
+something, stop a walk or occupy a seat, and all that does so is kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 
 from hearth.exports.planning_domain import (
@@ -31,7 +32,8 @@ from hearth.pipelines.verify import StoredHomes
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation import rows
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, mask_of
+from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
 WANTED = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
@@ -115,9 +117,11 @@ def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge
 def _objects(world: World, nodes: set[int]) -> list[int]:
     home = world.home
     kept = 0
-    waiting = home.characters
-    for node in nodes:
-        waiting |= 1 << home.index[node]
+    named = mask_of(home.index[node] for node in nodes)
+    doors = _closable(world, named)
+    waiting = home.characters | named | doors
+    for door in indices(doors):
+        waiting |= home.between[door]
     for agent in world.agents:
         waiting |= agent.right | agent.left
     seats = home.properties["SITTABLE"] | home.properties["LIEABLE"]
@@ -131,6 +135,12 @@ def _objects(world: World, nodes: set[int]) -> list[int]:
             found |= rows.bearing(world, i) if seats >> i & 1 else 0
         waiting = found & ~kept
     return sorted(home.ids[i] for i in indices(kept))
+
+
+def _closable(world: World, named: int) -> int:
+    """The doors that are closed at some time: those that are at the start, and those that the goal is about."""
+    home = world.home
+    return home.doors & (named | world.states[STATE_ID["CLOSED"]])
 
 
 def problem(task: Task) -> str:
@@ -180,17 +190,52 @@ def _edge(edge: Edge, names: dict[int, str]) -> str:
 def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
     world = task.world
     home = world.home
-    mask = sum(1 << home.index[node] for node in task.objects)
+    mask = mask_of(home.index[node] for node in task.objects)
     known = set(unary_predicates(home.knowledge))
     for node, name in names.items():
         yield from (f"({kind} {name})" for kind in _kinds(world, home.index[node], known))
     for edge in sorted(world.edges(mask)):
         yield _edge(edge, names)
+    yield from _blocked(task, names)
     for node, name in names.items():
         i = home.index[node]
         room = rows.room_of(world, i)
         if room >= 0 and room != i and not rows.containers(world, i) >> room & 1:
             yield f"(inside {name} {names[home.ids[room]]})"
+
+
+def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
+    """Which of the problem's doors, when closed, part which of its rooms, be it together with others of them."""
+    home = task.world.home
+    there = mask_of(home.index[node] for node in task.objects)
+    doors = list(indices(home.doors & there))
+    rooms = list(indices(home.rooms & there))
+    found: set[tuple[int, int, int]] = set()
+    for number in range(1, min(len(doors), _TOGETHER) + 1):
+        for closed in combinations(doors, number):
+            for room in rooms:
+                parted = _reached(home, room, 0) & ~_reached(home, room, mask_of(closed))
+                found.update((door, room, other) for door in closed for other in rooms if parted >> other & 1
+                             and _reached(home, room, mask_of(closed) & ~(1 << door)) >> other & 1)  # fmt: skip
+    for door, room, other in sorted(found):
+        yield f"(blocks {names[home.ids[door]]} {names[home.ids[room]]} {names[home.ids[other]]})"
+
+
+_TOGETHER = 3
+"""How many doors are closed together at most to see what they part."""
+
+
+def _reached(home: Home, room: int, closed: int) -> int:
+    """The rooms that can be walked to from a room with some doors closed."""
+    reached, open_doors = 1 << room, home.doors & ~closed
+    while True:
+        more = reached
+        for door in indices(open_doors):
+            if home.between[door] & reached:
+                more |= home.between[door]
+        if more == reached:
+            return reached
+        reached = more
 
 
 def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:

@@ -14,7 +14,7 @@ from itertools import islice
 from typing import Any
 
 from hearth.exports.pddl import Task, object_names, problem, tasks
-from hearth.exports.planning_domain import OMITTED, planning_domain
+from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.kb import knowledge as kb
 from hearth.pipelines.dataset import Dataset
@@ -140,7 +140,7 @@ def solve(task: Task) -> Outcome:
 def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
     """A plan of unified-planning as steps bound to nodes."""
     nodes = {name: node for node, name in object_names(task).items()}
-    actions = {name.lower(): name for name in kb.default().actions}
+    actions = {name.lower(): name for name in kb.default().actions} | {TO_DOOR.lower(): "Walk"}
     home = task.world.home
     steps = []
     for each in plan.actions:

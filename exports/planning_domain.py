@@ -2,8 +2,12 @@
 
 `hearth.kb.pddl` writes derived predicates as axioms, which few planners take. Here they are written out where they are
 used, and the character is an object of type `agent`. Every thing of a problem has an INSIDE edge to its room from the
-start; all actions keep it so, and a room is found without following containers. Left out are checks that depend on an
-option (closed doors, Watch of what is off), two actions (`OMITTED`) and the place that Grab remembers for one of them.
+start; all actions keep it so, and a room is found without following containers. Left out are two actions (`OMITTED`),
+the place that Grab remembers for one of them, and that what is watched must be on, which is an option.
+
+Closed doors stop a walk as in the engine (`Rules.doors`): a problem says by `blocks` which doors part which rooms. To a
+door that is closed between the character and the door's own room it walks on its own side; that is an action of its own
+here, `WalkToDoor`.
 """
 
 from __future__ import annotations
@@ -30,6 +34,11 @@ OMITTED = frozenset({"Find", "PutObjBack"})
 """What they do depends on things that problems leave out: what else is near, and where a thing stood. Walk, PutBack and
 PutIn do the same."""
 
+TO_DOOR = "WalkToDoor"
+"""A Walk in our words."""
+
+WALKS = ("Walk", "Run")
+
 LIMITS = {"seat_limit": "seat-limit", "bed_limit": "bed-limit"}
 
 _BY_PROPERTY = {"property": property_predicate, "class": class_predicate, "class_contains": named_predicate}
@@ -49,6 +58,7 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
     wanted = executed & {*actions} or executed
     writer = _Writer(knowledge, loose)
     written = [line for name in sorted(wanted) for line in writer.action(knowledge.actions[name])]
+    written += writer.to_door(knowledge.actions["Walk"]) if "Walk" in wanted else []
     lines = [
         "(define (domain hearth)",
         "  (:requirements :adl)",
@@ -56,6 +66,7 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
         "  (:predicates",
         *(f"    ({name} ?x - object)" for name in unary_predicates(knowledge)),
         *(f"    ({name} ?x - object ?y - object)" for name in binary_predicates()),
+        "    (blocks ?d - object ?r - object ?q - object)",
         "  )",
         *written,
         ")",
@@ -114,23 +125,40 @@ class _Writer:
     def __init__(self, knowledge: Knowledge, loose: bool) -> None:
         self._knowledge = knowledge
         self._loose = loose
+        self._on_own_side = False
         self._numbers = count()
 
     def action(self, action: Action) -> Iterator[str]:
         """One action, the acting character first."""
+        stopped = [f"(not {self._stopped()})"] if action.name in WALKS else []
+        yield from self._written(action, action.name, stopped)
+
+    def to_door(self, walk: Action) -> list[str]:
+        """A walk to a door whose own room is behind a closed one, or itself: it ends in the room where it began."""
+        self._on_own_side = True
+        lines = list(self._written(walk, TO_DOOR, [self._stopped()]))
+        self._on_own_side = False
+        return lines
+
+    def _written(self, action: Action, name: str, more: list[str]) -> Iterator[str]:
         self._numbers = count(1)
         self._needs = dict(zip("os", action.needs, strict=False))
         names = {name: f"?{name}" for name in ("a", *"os"[: action.arity])}
         objects = "".join(f" ?{name} - object" for name in "os"[: action.arity])
         before = [self.formula(check.formula, names) for check in action.preconditions if not check.option]
-        yield f"  (:action {action.name}"
+        yield f"  (:action {name}"
         yield f"    :parameters (?a - agent{objects})"
-        yield f"    :precondition {_both(before)}"
+        yield f"    :precondition {_both([*before, *more])}"
         yield "    :effect (and"
         for effect in action.effects:
             for change in self._changes(effect):
                 yield f"      {self._effect(change, names)}"
         yield "    ))"
+
+    def _stopped(self) -> str:
+        """A closed door parts the character from the object's room."""
+        where = "(and (is-closed ?d) (blocks ?d ?r ?q) (inside ?a ?r) (or (= ?o ?q) (inside ?o ?q)))"
+        return f"(exists (?d - object ?r - object ?q - object) {where})"
 
     def formula(self, formula: Formula, names: Names) -> str:
         """A formula, derived predicates written out."""
@@ -182,6 +210,8 @@ class _Writer:
     def _found(self, term: Term, names: Names, variable: str) -> str:
         """The condition under which a variable is the thing that a function finds."""
         thing = names[term.name]
+        if self._on_own_side and term.name == "o":
+            return f"(and (between {thing} {variable}) (inside ?a {variable}))"
         return f"(and (is-room {variable}) (or (= {thing} {variable}) (inside {thing} {variable})))"
 
     def _need(self, need: Requirement, subject: str) -> str:
