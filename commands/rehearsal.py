@@ -13,9 +13,6 @@ if TYPE_CHECKING:
     from hearth.pipelines.surroundings import Homes
     from hearth.schemas.failures import Failure
 
-AROUND = 10
-"""Environments may have so many nodes more or less than were asked for."""
-
 
 def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
          as_json: bool) -> None:  # fmt: skip
@@ -29,7 +26,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
 
     homes = Homes(Settings(**settings))
     programs = islice(scripts(map(str, sources), homes.knowledge), limit)
-    wanted = Size() if size is None else Size(size - AROUND, size + AROUND)
+    wanted = Size() if size is None else Size.about(size)
     found = rehearse(programs, homes, homes.names(), settings["seed"], wanted)
     if as_json:
         told = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}

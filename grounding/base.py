@@ -8,6 +8,7 @@ from itertools import accumulate
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
+from hearth.grounding.thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
@@ -51,11 +52,16 @@ class Base:
         start: the home as a world.
         character: id of the character's node.
         room: index of each node's room, or -1.
+        whole: the home that this is a thinned version of; else the home itself.
+        gone: ids of the nodes that it lacks for that.
     """
 
-    def __init__(self, home: Home) -> None:
+    def __init__(self, home: Home, whole: Home | None = None, gone: tuple[int, ...] = ()) -> None:
         self.knowledge: Knowledge = home.knowledge
         self.home = _at_rest(home)
+        self.whole = whole or self.home
+        self.gone = gone
+        self._thinned: dict[int, Base] = {}
         self.start = World.start(self.home)
         self.character = self.home.ids[self.home.agents[0]]
         self.room = [_room(self.home, i) for i in range(len(self.home))]
@@ -64,6 +70,16 @@ class Base:
         self._named: dict[str, tuple[int, ...]] = {}
         self._serving: dict[str, tuple[int, ...]] = {}
         self._homeless: dict[str, Homeless | None] = {}
+
+    def thinned(self, most: int) -> Base:
+        """The home with at most so many nodes, if that can be: without small loose things that it has many of."""
+        if len(self.home) <= most:
+            return self
+        found = self._thinned.get(most)
+        if found is None:
+            gone = superfluous(self.home, most)
+            found = self._thinned[most] = Base(without(self.home, gone), self.home, gone)
+        return found
 
     @cached_property
     def seats(self) -> int:

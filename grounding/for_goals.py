@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from hearth.grounding.base import Base, prepared
+from hearth.grounding.base import Base
 from hearth.grounding.conditions import Preconditions
 from hearth.grounding.draft import Draft
 from hearth.grounding.filling import fill
@@ -47,7 +47,7 @@ def sample_for_goal(
     Raises:
         HearthError: UNKNOWN_OBJECT or SYNTAX: a predicate names nothing that there is.
     """
-    base = prepared(home)
+    base = size.base(home)
     for predicate, wanted in goal:
         if wanted > MOST:
             return _failure(Code.NO_PLACE, predicate, f"at most {MOST}", str(wanted))

@@ -31,9 +31,20 @@ def _at_reach(draft: Draft, condition: Condition) -> None:
     """Close to the other, and to what the other stands on or in."""
     one, other = (_node(draft, key) for key in condition.objects)
     draft.close(one, other)
+    if other in draft.new and not draft.places(other):
+        _set_down(draft, other)
     for place in draft.places(other):
         if place != one:
             draft.close(one, place)
+
+
+def _set_down(draft: Draft, node_id: int) -> None:
+    """Put something on a piece of furniture of its room: who takes it away stays near what was near it."""
+    home, room = draft.base.home, draft.room_of(node_id)
+    surfaces = home.properties["SURFACES"] & home.furniture & ~draft.base.seats
+    good = [i for i in indices(surfaces) if draft.room_of(home.ids[i]) == room]
+    if good:
+        draft.put(node_id, "ON", home.ids[draft.rng.choice(good)])
 
 
 def _facing(draft: Draft, condition: Condition) -> None:

@@ -35,6 +35,7 @@ class Environment:
 
     Attributes:
         base: the home in its default state, which the differences are from.
+        gone: ids of the nodes of it that were left out, for a smaller environment.
         seed: the run's seed.
         world: the start.
         program: the program, bound to the world's nodes.
@@ -53,18 +54,19 @@ class Environment:
     removed: tuple[Edge, ...]
     states: tuple[tuple[int, tuple[str, ...]], ...]
     loose: tuple[Loose, ...] = ()
+    gone: tuple[int, ...] = ()
 
     @property
     def added(self) -> tuple[Edge, ...]:
         """The edges that the base does not have."""
-        ids = self.base.ids
+        ids = self.world.home.ids
         return (*self.drafted, *(edge for one in self.loose for edge in one.edges(ids)))
 
 
 def of_draft(draft: Draft, seed: int, program: Program, conditions: Preconditions) -> Environment:
     """What a draft has become."""
     return Environment(
-        draft.base.home,
+        draft.base.whole,
         seed,
         World.start(draft.home()),
         program,
@@ -74,18 +76,37 @@ def of_draft(draft: Draft, seed: int, program: Program, conditions: Precondition
         tuple(draft.removed),
         tuple(sorted(draft.states.items())),
         tuple(draft.loose),
+        draft.base.gone,
     )
 
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How many nodes an environment should have, and how many random ones are added to a home that is larger."""
+    """How many nodes an environment should have.
+
+    Attributes:
+        least, most: the number is drawn from between.
+        some: how many random ones are added at most to a home that is larger.
+        thin: whether a larger home goes without some of what it has, instead.
+    """
 
     least: int = 280
     most: int = 300
     some: int = 12
+    thin: bool = False
+
+    @classmethod
+    def about(cls, nodes: int) -> Size:
+        """So many nodes, ten more or less; larger homes are thinned."""
+        return cls(nodes - AROUND, nodes + AROUND, 0, thin=True)
+
+    def base(self, home: Home) -> Base:
+        """A home made ready for environments of this size, with room for what a program names."""
+        base = prepared(home)
+        return base.thinned(self.least - ROOM_FOR_MORE) if self.thin else base
 
 
+AROUND, ROOM_FOR_MORE = 10, 10
 USUAL = Size()
 
 
@@ -113,7 +134,7 @@ def sample(
     Returns:
         The environment and the program's execution in it, or the failure of the last one drawn.
     """
-    base = prepared(home)
+    base = size.base(home)
     found = infer(program, base.knowledge, rules) if conditions is None else conditions
     if isinstance(found, Failure):
         return found

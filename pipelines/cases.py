@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, Protocol
 
 from hearth.grounding.sampling import Environment
+from hearth.grounding.thinning import without
 from hearth.pipelines.rows import (
     binding_rows,
     bindings_of,
@@ -20,7 +22,7 @@ from hearth.pipelines.rows import (
     tick_rows,
 )
 from hearth.pipelines.surroundings import RULES
-from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.change import Change
 from hearth.simulation.edit import extended
@@ -48,7 +50,8 @@ def environment_of(environment: Environment, edges: frozenset[Edge]) -> Row:
     removed = set(_both_ways(environment.removed)) - added
     came, went = _restated(home, states)
     change = Change(tuple(sorted(added - edges)), tuple(sorted(removed & edges)), came, went)
-    return {"added_nodes": [node_row(node) for node in nodes], "removed_nodes": [], **change_row(change)}
+    gone = list(environment.gone)
+    return {"added_nodes": [node_row(node) for node in nodes], "removed_nodes": gone, **change_row(change)}
 
 
 def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:
@@ -100,6 +103,10 @@ def _still(node: Node) -> Node:
     return replace(node, states=tuple(name for name in node.states if name not in STATE_ID))
 
 
+_without = lru_cache(maxsize=32)(without)
+"""Many environments of one home go without the same."""
+
+
 def home_of(environment: Mapping[str, Any], base: Home) -> Home:
     """The home that a row of `tables.ENVIRONMENT` describes."""
     nodes = [node_of(row) for row in environment["added_nodes"]]
@@ -112,15 +119,8 @@ def home_of(environment: Mapping[str, Any], base: Home) -> Home:
             found = states.setdefault(node, set(states_of(base.index[node], base.states)))
             (found.add if came else found.discard)(row["state"])
     if environment["removed_nodes"]:
-        base = _without(base, frozenset(environment["removed_nodes"]))
+        base = _without(base, tuple(environment["removed_nodes"]))
     return extended(base, nodes, added, removed, {node: sorted(found) for node, found in states.items()})
-
-
-def _without(home: Home, gone: frozenset[int]) -> Home:
-    graph = World.start(home).graph()
-    nodes = tuple(node for node in graph.nodes if node.id not in gone)
-    edges = tuple(edge for edge in graph.edges if edge.source not in gone and edge.target not in gone)
-    return Home.from_graph(EnvironmentGraph(nodes, edges), home.name, home.knowledge)
 
 
 class Source(Protocol):

@@ -137,7 +137,7 @@ def rehearse(
     stored = _Stored()
     for name in names:
         # What is found out once for a home is no part of the time.
-        _ = prepared(homes.home(name)).fillers, homes.edges(name)
+        _ = size.base(homes.home(name)).fillers, homes.edges(name)
     # Homes stay: the garbage collector need not look at them again and again (half of the time).
     with Workers():
         for script in programs:
