@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from hearth.pipelines.described import Described
 from hearth.pipelines.duplicates import Copies, pasted
 from hearth.pipelines.files import value_digest
 from hearth.pipelines.parts import Row
@@ -57,14 +58,16 @@ def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
     """Every record of the sources with its source's label; copies of one that was there before are refused."""
     repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in recognise(source.path, source.label)]
-    copies = Copies(pasted(item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry)))
+    described = Described()
+    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry))
+    copies = Copies(pasted(described.noted(batches)))
     for label, entry in found:
         if entry.refusal:
             yield label, refused(entry.inside, entry.refusal)
             continue
         checked = repeated.first(_scanned(entry), entry.reader, entry.inside)
         if entry.reader == crowd.NAME:
-            checked = map(copies.checked, checked)
+            checked = map(described.checked, map(copies.checked, checked))
         yield from ((label, item) for item in checked)
 
 
@@ -143,7 +146,10 @@ STAGE = Stage(
     uses=(
         "pipelines/ingest.py",
         "pipelines/readers",
+        "pipelines/described.py",
         "pipelines/duplicates.py",
+        "pipelines/off_topic.yaml",
+        "pipelines/topics.py",
         "pipelines/repeated.py",
         "pipelines/tally.py",
         "pipelines/spoken.py",

@@ -7,38 +7,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from hearth.kb.knowledge import Knowledge
+from hearth.pipelines import topics
+from hearth.pipelines.findings import Finding
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import print_object, print_step
-
-
-class Finding(NamedTuple):
-    """Something that looks wrong with a step (-1: with the whole program), and what would mend it.
-
-    Attributes:
-        code: the kind.
-        step: number of the step, from 0.
-        message: the fault.
-        remedy: what to do, in words.
-        before: steps to write before it.
-        remove: whether the step should go.
-        found: the offending words.
-        object: the object at fault, for underlining.
-    """
-
-    code: Code
-    step: int
-    message: str
-    remedy: str = ""
-    before: tuple[Step, ...] = ()
-    remove: bool = False
-    found: str = ""
-    object: ObjectRef | None = None
-
 
 _SETS: dict[str, tuple[str, str]] = {
     "SwitchOn": ("power", "on"),
@@ -70,6 +47,55 @@ def contradictions(program: Program) -> Iterator[Finding]:
                 remedy = "leave the second one out"
                 yield Finding(Code.CONTRADICTION, number, message, remedy, (), True, step.action)
             made[key] = value
+
+
+_GOALS = {
+    "SwitchOn": ("ON", "is_on"),
+    "SwitchOff": ("OFF", "is_off"),
+    "Open": ("OPEN", "open"),
+    "Close": ("CLOSED", "closed"),
+    "PlugIn": ("PLUGGED_IN", "plugged"),
+    "PlugOut": ("PLUGGED_OUT", "unplugged"),
+}
+"""The state that an action is for, in graphs and as a condition that comes with a program."""
+
+Row = Mapping[str, Any]
+
+
+def already(program: Program, groundings: Iterable[Row], conditions: Iterable[Row]) -> Iterator[Finding]:
+    """Goals that are true at the start, where a program came with its start: in a home's graph, or as conditions.
+
+    Args:
+        program: in canonical names.
+        groundings: with `home`, `bindings` and the `start` graph, which may be None.
+        conditions: with `name` and `objects`.
+    """
+    told = [(ref["name"], ref["instance"], one["name"]) for one in conditions for ref in one["objects"][:1]]
+    starts = [("by its own conditions", frozenset(told))]
+    starts += [(f"in {one['home']}", _held(one)) for one in groundings if one["start"]]
+    seen: set[tuple[tuple[str, int], str]] = set()
+    for number, step in enumerate(program.steps):
+        if step.action not in _GOALS or not step.objects:
+            continue
+        ref, aspect = step.objects[0], _SETS[step.action][0]
+        if (ref.key, aspect) in seen:
+            continue
+        seen.add((ref.key, aspect))
+        state, condition = _GOALS[step.action]
+        where = [name for name, held in starts if {(*ref.key, state), (*ref.key, condition)} & held]
+        if where:
+            message = f"{print_object(ref)} is {state} at the start already, {', '.join(where[:3])}"
+            yield Finding(Code.NO_EFFECT, number, message, "leave the step out", (), True, step.action)
+
+
+def _held(grounding: Row) -> frozenset[tuple[str, int, str]]:
+    """What is true of a program's objects in the graph that a grounding begins with."""
+    states = {node["id"]: node["states"] for node in grounding["start"]["nodes"]}
+    return frozenset(
+        (bound["name"], bound["instance"], state)
+        for bound in grounding["bindings"]
+        for state in states.get(bound["node"]) or ()
+    )
 
 
 def from_afar(program: Program, known: Knowledge) -> Iterator[Finding]:
@@ -106,40 +132,34 @@ def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
         return True
     if {"BODY_PART", "CLOTHES"} & set(thing.properties) or (things and "GRABBABLE" in thing.properties):
         return True
+    if thing.category == "Lamps" and reached:
+        return True  # it is switched by the door of the room, or from the bed
     destinations = {place.destination for place in known.placements(ref.name)}
-    return any(name in destinations or _holds(known, ref.name, name) for name in things)
+    return any(name in destinations or _holds(known, ref.name, name) or _go(known, ref.name, name) for name in things)
 
 
 def _holds(known: Knowledge, name: str, other: str) -> bool:
     return any(place.destination == name for place in known.placements(other))
 
 
+_CLOSELY = 4
+
+
+def _go(known: Knowledge, one: str, other: str) -> bool:
+    """Whether two things hardly go without each other, as a faucet and a bathtub."""
+    return any(
+        {row.name, row.other} == {one, other} and row.weight >= _CLOSELY
+        for row in known.associations
+        if row.relation == "goes_with"
+    )
+
+
 def without_effect(program: Program) -> Iterator[Finding]:
-    """A program that only walks about and looks."""
-    if program.steps and all(step.action in _PASSING for step in program.steps):
-        yield Finding(Code.NO_EFFECT, -1, "this program does nothing but go and look", "write what is done there")
-
-
-def off_topic(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """A text that mentions none of the objects that the program uses, nor what any of them is a kind of."""
-    words = set(_stems(f"{program.title} {program.description}"))
-    used = {ref.name for step in program.steps for ref in step.objects if not known.is_room(ref.name)}
-    if not words or not used or not program.description:
+    """A program that only walks about and looks, where that is not what its title is about."""
+    if not program.steps or any(step.action not in _PASSING for step in program.steps):
         return
-    if not any(_mentioned(name, words, known) for name in sorted(used)):
-        shown = ", ".join(sorted(used)[:3])
-        yield Finding(Code.OFF_TOPIC, -1, f"the text mentions none of the objects used ({shown})", found=shown)
-
-
-def _mentioned(name: str, words: set[str], known: Knowledge) -> bool:
-    names = (*known.same_class(name), *known.ancestors(name)[:2])
-    return any(not words.isdisjoint(_stems(each.replace("_", " "))) for each in names)
-
-
-def _stems(text: str) -> Iterator[str]:
-    """Words without their plural or common verb endings, so that `dishes` meets `dish` and `reading` meets `read`."""
-    for word in re.findall(r"[a-z]+", text.lower()):
-        yield re.sub(r"(?:ing|es|s|ed)$", "", word) if len(word) > 4 else word.rstrip("s")
+    if {topics.stem(step.action.lower()) for step in program.steps}.isdisjoint(topics.stems(program.title)):
+        yield Finding(Code.NO_EFFECT, -1, "this program does nothing but go and look", "write what is done there")
 
 
 def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[Finding]:
@@ -202,4 +222,4 @@ def findings(program: Program, known: Knowledge) -> Iterable[Finding]:
     """What a program alone shows, contradictions aside."""
     yield from from_afar(program, known)
     yield from without_effect(program)
-    yield from off_topic(program, known)
+    yield from topics.off_topic(program, known)

@@ -20,6 +20,8 @@ class Expanded(NamedTuple):
 
     text: str
     lines: tuple[int, ...]
+    replaced: tuple[tuple[int, str], ...] = ()
+    """The lines of blocks that were replaced, with their text."""
 
     def original(self, line: int) -> int:
         """The line that a line of the expanded text came from."""
@@ -44,13 +46,16 @@ def expand(text: str, before: int) -> Expanded:
     known = blocks()
     kept: list[str] = []
     numbers: list[int] = []
+    replaced: list[tuple[int, str]] = []
     for number, line in enumerate(text.split("\n"), before + 1):
         match = _SPECIAL.fullmatch(line) if "special" in line.lower() else None
         steps = known.get(_normal(match[1])) if match else None
+        if match and steps:
+            replaced.append((number, match[1]))
         for piece in steps or (line,):
             kept.append(piece)
             numbers.append(number)
-    return Expanded("\n".join(kept), tuple(numbers))
+    return Expanded("\n".join(kept), tuple(numbers), tuple(replaced))
 
 
 def _normal(text: str) -> str:

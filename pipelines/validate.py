@@ -39,7 +39,8 @@ def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject
     told = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    found = [*lint.findings(told, known), *lint.undeclared(told, record, known)]
+    start = lint.already(program, groundings, record["conditions"] or ())
+    found = [*lint.findings(told, known), *lint.undeclared(told, record, known), *start]
     warnings = (*warnings, *(lint.diagnostic(each, told, record["place"]) for each in found))
     row = {
         **{name: record[name] for name in _KEPT},
@@ -74,7 +75,16 @@ def checked(
         faults = tuple(lint.diagnostic(each, program, place, source) for each in lint.contradictions(program))
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
-    return replace(program, lines=lines), faults, () if faults else tuple(_warnings(program, known, lines, place))
+    program = replace(program, lines=lines)
+    if faults:
+        return program, faults, ()
+    return program, (), (*_replaced(expanded, place), *_warnings(program, known, lines, place))
+
+
+def _replaced(expanded: special.Expanded, place: str) -> Iterator[Diagnostic]:
+    for line, text in expanded.replaced:
+        message = "a special block, replaced by the steps that the special-blocks file gives for it"
+        yield Diagnostic(Code.SPECIAL_BLOCK, message, place, line, found=text[:200])
 
 
 def checked_words(
@@ -152,7 +162,9 @@ STAGE = Stage(
         "kb",
         "data_raw/crowd/special_blocks.yaml",
         "pipelines/validate.py",
+        "pipelines/findings.py",
         "pipelines/lint.py",
+        "pipelines/topics.py",
         "pipelines/special.py",
         "pipelines/spoken.py",
         "pipelines/rows.py",

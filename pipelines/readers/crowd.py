@@ -13,6 +13,7 @@ from typing import Any
 
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, Place, fault_of, lines, refused
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.topics import no_activity
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import normal_name
@@ -186,6 +187,11 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]
         message = f"text decoded with the wrong encoding: `{garbled}`"
         told = {"file": item.place, "found": garbled, "suggestion": "download the batch again, as UTF-8"}
         return Reject.of(Code.NOT_TEXT, message, line=item.line, **told)
+    other = no_activity(f"{cells['Answer.title']}. {cells['Answer.description']}")
+    if other:
+        kind, told = other
+        message = f"{kind}, not an activity: {', '.join(f'`{phrase}`' for phrase in told[:3])}"
+        return Reject.of(Code.OFF_TOPIC, message, file=item.place, line=item.line, found=told[0])
     return {
         **_common(item, cells, salt),
         "kind": "description",

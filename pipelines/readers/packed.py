@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import stat
 import zipfile
 from contextlib import suppress
 from dataclasses import dataclass
@@ -73,6 +74,11 @@ def archive(path: Path) -> zipfile.ZipFile:
     return _archive(str(path), path.stat().st_mtime_ns)
 
 
+def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+    """What an archive holds, folders left out; `is_dir` itself breaks at a name that is empty."""
+    return [info for info in found.infolist() if not info.filename.endswith("/")]
+
+
 def leaves(name: str) -> bool:
     """Whether a member's name points outside the archive."""
     path = PurePosixPath(name.replace("\\", "/"))
@@ -84,6 +90,11 @@ def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
     if leaves(info.filename):
         message = f"`{info.filename[:100]}` leaves the archive"
         return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack it anew")
+    if not info.filename:
+        return Reject.of(Code.BAD_ARCHIVE, "a file without a name", file=place, suggestion="pack it anew")
+    if stat.S_ISLNK(info.external_attr >> 16):
+        message = "a link, which could point anywhere: never followed"
+        return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack the file")
     if info.flag_bits & 1:
         return Reject.of(Code.BAD_ARCHIVE, "it is encrypted", file=place, suggestion="pack it without a password")
     if bomb(info.file_size, info.compress_size):

@@ -11,7 +11,7 @@ from typing import Any
 
 from hearth.pipelines.files import read_json
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.item import DamagedError, Item
+from hearth.pipelines.readers.item import DamagedError, Item, refused
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import program_of
 from hearth.schemas.failures import Code
@@ -35,15 +35,20 @@ def names_it(path: Path) -> bool:
 def scan(path: Path, place: str) -> Iterator[Item]:
     """One item for each original program, then one for each description without any."""
     scenes = {row["description_id"]: row["scene"] for row in _rows(path, "descriptions", ["description_id", "scene"])}
+    empty = True
     for row in _rows(path, "programs", COLUMNS):
         if row["parent_id"] is None:
+            empty = False
             row["scene"] = scenes.get(row["description_id"])
             yield Item(row["program_id"], NAME, f"{place}/programs", row)
     for row in _rows(path, "descriptions", None):
         if not row["programs"]:
+            empty = False
             told = {key: row[key] for key in ("title", "description", "scene", "origin", "worker", "platform")}
             value = {**told, "description_id": row["description_id"]}
             yield Item(row["description_id"], NAME, f"{place}/descriptions", value)
+    if empty:
+        yield refused(place, Reject.of(Code.EMPTY, "a dataset without programs or descriptions", file=place))
 
 
 def _rows(path: Path, table: str, columns: list[str] | None) -> Iterator[dict[str, Any]]:
@@ -65,12 +70,14 @@ def _rows(path: Path, table: str, columns: list[str] | None) -> Iterator[dict[st
 def read(item: Item) -> dict[str, Any] | Reject:
     """The record of a row."""
     value = item.value
-    if "steps" in value:
-        program = program_of({**value, "steps": value["steps"]})
-        value = {**value, "text": "".join(f"{line}\n" for line in print_lines(program))}
-        del value["steps"]
-    row = ours.read(Item(item.record_id, ours.NAME, item.place, value))
-    if isinstance(row, dict):
-        return {**row, "origin": item.value["origin"]}
-    assert isinstance(row, Reject)
-    return row
+    try:
+        origin = str(value["origin"])
+        if "steps" in value:
+            program = program_of(value)
+            value = {**value, "text": "".join(f"{line}\n" for line in print_lines(program))}
+            del value["steps"]
+        row = ours.read(Item(item.record_id, ours.NAME, item.place, value))
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        message = f"no row of a dataset: {type(error).__name__} {error}"
+        return Reject.of(Code.DAMAGED_FILE, message, file=item.place, found=item.record_id, suggestion="copy it again")
+    return {**row, "origin": origin} if isinstance(row, dict) else row  # type: ignore[return-value]

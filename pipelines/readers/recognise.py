@@ -13,7 +13,7 @@ from hearth.pipelines.readers import crowd, ours, published, release, scenes, sk
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, DamagedError, Place, lines, opened, size_of
-from hearth.pipelines.readers.packed import GZIP, ZSTD, Member, refusal_of
+from hearth.pipelines.readers.packed import GZIP, ZSTD, Member, members, refusal_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -190,7 +190,7 @@ DOCUMENT = "records document"
 def _archive(path: Path, place: str) -> Iterator[Recognised]:
     try:
         with zipfile.ZipFile(path) as archive:
-            infos = [info for info in archive.infolist() if not info.is_dir()]
+            infos = members(archive)
     except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError) as error:
         message = f"a damaged or truncated archive: {error}"
         reject = Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion="download it again")

@@ -12,7 +12,7 @@ import orjson
 
 from hearth.pipelines.files import file_digest, walk
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
-from hearth.pipelines.readers.packed import archive, leaves
+from hearth.pipelines.readers.packed import archive, leaves, members, refusal_of
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -106,9 +106,8 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
         for file in walk(path):
             yield file.relative_to(path).as_posix(), file_digest(file)[:16]
     else:
-        for info in archive(path).infolist():
-            if not info.is_dir():
-                yield info.filename, f"{info.CRC:08x}"
+        for info in members(archive(path)):
+            yield info.filename, f"{info.CRC:08x}"
 
 
 def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
@@ -119,6 +118,9 @@ def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
         if path.is_dir():
             return (path / name).read_bytes()
         info = archive(path).getinfo(name)
+        refusal = refusal_of(info, place)
+        if refusal:
+            return refusal.diagnostics[0]
         if info.file_size > LARGEST_FILE:
             message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"
             return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")

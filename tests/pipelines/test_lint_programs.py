@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.kb import grammar
-from hearth.pipelines import lint
+from hearth.pipelines import lint, topics
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program, print_step
 
@@ -46,7 +46,46 @@ def test_a_program_that_does_nothing():
 )
 def test_words_about_other_things(knowledge, description, is_off):
     given = program("[Walk] <television> (1)\n[SwitchOn] <television> (1)\n", "Relax", description)
-    assert bool(list(lint.off_topic(given, knowledge))) == is_off
+    assert bool(list(topics.off_topic(given, knowledge))) == is_off
+
+
+@pytest.mark.parametrize(
+    ("steps", "title", "description", "is_off"),
+    [
+        ("[Wash] <plate> (1)", "Kitchen", "Do the plates.", False),  # a plural
+        ("[Touch] <chessboard> (1)", "Play", "A game of chess.", False),  # a part of the word
+        ("[SwitchOn] <laptop> (1)", "Work", "Sit at the computer.", False),  # of the same kind
+        ("[Grab] <milk> (1)", "Tidy", "Look into the fridge.", False),  # where it is kept
+        ("[SwitchOn] <laptop> (1)", "Iron", "Iron the shirts.", True),
+    ],
+)
+def test_words_that_tell_of_a_thing_without_naming_it(knowledge, steps, title, description, is_off):
+    given = grammar.check(program(steps + "\n", title, description), knowledge)[0]
+    assert bool(list(topics.off_topic(given, knowledge))) == is_off
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("Order now and get 15% off! Visit our store.", "advertising"),
+        ("Very good HIT, thanks!", "words to whoever gave the task"),
+        ("Order a pizza by phone and thank the man who brings it.", None),
+        ("I do my homework. The task is easy. Then I visit my friend's web site.", None),
+        ("Save the leftovers in the fridge, click the light off.", None),
+    ],
+)
+def test_texts_that_are_no_activity(text, kind):
+    found = topics.no_activity(text)
+    assert (found[0] if found else None) == kind
+
+
+def test_going_is_an_effect_where_the_title_says_so():
+    assert not list(lint.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles")))
+
+
+def test_lamps_and_what_hardly_goes_without_are_within_reach(knowledge):
+    for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
+        assert not list(lint.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
 
 
 def test_what_was_declared(knowledge):
