@@ -34,6 +34,19 @@ Cameras = Annotated[
 Fps = Annotated[float, typer.Option("--fps", metavar="N", min=5, max=30, help="Pictures a second of the video.")]
 
 
+Vary = Annotated[
+    bool, typer.Option("--vary", help="Of the video: light, places, speed and cameras by the seed, too, and told.")
+]
+Names = Annotated[
+    str,
+    typer.Option(
+        "--modalities",
+        metavar="NAMES",
+        help="Of snapshots: rgb, depth, instance_ids, class_ids, normals, flow, camera, boxes, poses, graph.",
+    ),
+]
+
+
 @app.command()
 def program(
     file: File,
@@ -47,6 +60,8 @@ def program(
     width: Width = 320,
     fps: Fps = 15.0,
     fine: Fine = False,
+    vary: Vary = False,
+    modalities: Names = "rgb,instance_ids",
     as_json: output.Json = False,
 ) -> None:
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
@@ -61,13 +76,11 @@ def program(
     execution = _execution(file, home, homes, seed)
     graph = catalog.load_graph(home, homes)
     out.mkdir(parents=True, exist_ok=True)
-    size = (width, width * 3 // 4)
-    title = f"{execution.program.title}, in {home}"
+    taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
     if mode == "video":
-        names = [name.strip() for name in cameras.split(",") if name.strip()]
-        told = _videos(execution, graph, out, names, Taken(size, seed, hour, title), fps)
+        told = _videos(execution, graph, out, _split(cameras), taken, fps)
     else:
-        told = _snapshots(execution, graph, out, "fine" if fine else "draft", Taken(size, seed, hour, title))
+        told = _snapshots(execution, graph, out, "fine" if fine else "draft", taken, _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
         output.emit({"program": execution.program.title, "home": home, "failure": failure, **told})
@@ -82,24 +95,35 @@ def program(
 
 
 class Taken(NamedTuple):
-    """How pictures are taken: width and height, seed, hour of the day, title of the contact sheet."""
+    """How pictures are taken: width and height, seed, hour, title of the contact sheet, and whether to vary."""
 
     size: tuple[int, int]
     seed: int
     hour: float
     title: str
+    vary: bool = False
 
 
-def _snapshots(execution: Execution, graph: EnvironmentGraph, out: Path, quality: str, taken: Taken) -> dict[str, Any]:
+def _split(names: str) -> list[str]:
+    return [name.strip() for name in names.split(",") if name.strip()]
+
+
+def _snapshots(
+    execution: Execution, graph: EnvironmentGraph, out: Path, quality: str, taken: Taken, modalities: list[str]
+) -> dict[str, Any]:
     from hearth.rendering.contact import caption
     from hearth.rendering.snapshots import TOP, snapshots
 
-    frames, files = [], []
-    for shot in snapshots(execution, graph, size=taken.size, quality=quality, seed=taken.seed, hour=taken.hour):
-        files += _write(out, shot)
+    frames, files, seen = [], [], []
+    how = {"size": taken.size, "quality": quality, "seed": taken.seed, "hour": taken.hour}
+    for shot in snapshots(execution, graph, modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
+        files += _write(out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
-    return {"pictures": len(files), "files": files, "sheet": _sheet(out, frames, taken.title)}
+            seen.append(shot.seen)
+    visible = [share for share in seen[1:] if share is not None]
+    found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
+    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(out, frames, taken.title)}
 
 
 def _videos(
@@ -110,16 +134,27 @@ def _videos(
     from hearth.rendering.contact import caption
     from hearth.rendering.player import page
     from hearth.rendering.snapshots import play
+    from hearth.rendering.variation import drawn
     from hearth.rendering.video import record
 
-    staged = play(execution, graph, seed=taken.seed, hour=taken.hour)
+    variation = drawn(taken.seed, taken.title) if taken.vary else None
+    staged = play(execution, graph, seed=taken.seed, hour=taken.hour, variation=variation)
     videos, frames, pages = [], [], []
     for name in names:
         done = record(staged, graph, out, name, size=taken.size, fps=fps)
         files = [path.name for path in done.files]
         (out / f"{name}.html").write_text(page(taken.title, files, done.steps), encoding="utf-8")
         pages.append(str(out / f"{name}.html"))
-        videos.append({"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps})
+        videos.append(
+            {
+                "camera": name,
+                "files": files,
+                "fps": fps,
+                "frames": done.frames,
+                "steps": done.steps,
+                "variation": staged.variation.told(),
+            }
+        )
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.moments]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
@@ -169,13 +204,17 @@ def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Executio
     return trial.execution
 
 
-def _write(out: Path, shot: Snapshot) -> list[str]:
+def _write(out: Path, shot: Snapshot, modalities: list[str]) -> list[str]:
+    import orjson
+
+    from hearth.rendering.modalities import PICTURES
     from hearth.rendering.png import encode
     from hearth.rendering.snapshots import TOP
 
     view = TOP if shot.camera.name == TOP else "auto"
     names = []
-    for modality, picture in shot.pictures.items():
-        names.append(f"{shot.tick:03d}.{view}.{modality}.png")
-        (out / names[-1]).write_bytes(encode(picture))
+    for modality in modalities:
+        value, drawn = shot.pictures[modality], modality in PICTURES
+        names.append(f"{shot.tick:03d}.{view}.{modality}.{'png' if drawn else 'json'}")
+        (out / names[-1]).write_bytes(encode(value) if drawn else orjson.dumps(value, option=orjson.OPT_INDENT_2))
     return names

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import cos, radians, sin
+from random import Random
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +70,15 @@ class Ground:
             return None
         cost = np.linalg.norm(mine - mine.mean(axis=0), axis=1) + _crowding(mine, taken)
         x, z = mine[int(cost.argmin())]
+        return float(x), float(z)
+
+    def any_in(self, room: int, numbers: Random, taken: Iterable[Spot] = ()) -> Spot | None:
+        """A free place of a room by chance, not where others are."""
+        mine = self.centers[self.rooms == room]
+        mine = mine[_crowding(mine, taken) == 0]
+        if not len(mine):
+            return None
+        x, z = mine[numbers.randrange(len(mine))]
         return float(x), float(z)
 
     def spot_for(

@@ -53,12 +53,21 @@ def render(
     Raises:
         HearthError: an unknown modality or quality, or no open3d.
     """
-    wanted = list(modalities)
+    wanted = check_modalities(list(modalities), quality)
+    return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)
+
+
+def check_modalities(wanted: list[str], quality: str) -> list[str]:
+    """The same names.
+
+    Raises:
+        HearthError: an unknown modality or quality.
+    """
     unknown = [name for name in wanted if name not in MODALITIES] + [q for q in (quality,) if q not in QUALITIES]
     if unknown:
         known = ", ".join((*MODALITIES, *QUALITIES))
         raise HearthError.of(Code.NOT_RENDERED, f"unknown modality or quality: {', '.join(unknown)}", suggestion=known)
-    return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)
+    return wanted
 
 
 def pictures_of(shot: Shot, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:

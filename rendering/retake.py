@@ -81,6 +81,11 @@ class Take:
     ground: Ground
     others: tuple[Ground, ...] = ()
 
+    @property
+    def picture(self) -> NDArray[np.uint8]:
+        """(H, W, 3) the colours."""
+        return self.shot.image(self.rgb)
+
 
 KEPT = 3
 """Grounds that are kept: lights are switched on and off again."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from numpy.typing import NDArray
+import numpy as np
 
 from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.acting import Actor, carried, cast, moved, posed
@@ -14,16 +14,18 @@ from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.geometry import Still
 from hearth.rendering.ground import Ground
 from hearth.rendering.history import graphs
-from hearth.rendering.modalities import render
+from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.places import Places
-from hearth.rendering.retake import Take, pictures_of, take
+from hearth.rendering.retake import Take, take
 from hearth.rendering.scene import Scene
+from hearth.rendering.shot import Shot, shoot
 from hearth.rendering.staging import Stage, stage
 from hearth.rendering.things import Thing
+from hearth.rendering.variation import PLAIN, Variation, scattered
 from hearth.rendering.viewpoints import best_view, home_box, room_views
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.engine import Execution
@@ -59,14 +61,14 @@ class Snapshot:
         tick, steps: as of the moment.
         camera: it was taken with.
         pictures: modality -> array, as `modalities.render` gives them.
-        seen: share of the objects the steps name, and the character, that are visible (None without instance ids).
+        seen: share of the objects the steps name, and the character, that are visible.
     """
 
     tick: int
     steps: tuple[Step, ...]
     camera: Camera
-    pictures: Mapping[str, NDArray[Any]]
-    seen: float | None = None
+    pictures: Mapping[str, Any]
+    seen: float = 1.0
 
 
 def moments(
@@ -100,11 +102,13 @@ class Play:
         prepared: the home, for making further scenes of it.
         moments: at the start and after each tick.
         still: the things that never change; every moment's scene shares them.
+        variation: what was drawn by chance.
     """
 
     prepared: Stage
     moments: tuple[Moment, ...]
     still: Still
+    variation: Variation = PLAIN
 
 
 def play(
@@ -114,14 +118,17 @@ def play(
     seed: int = 0,
     hour: float = 10.0,
     knowledge: Knowledge | None = None,
+    variation: Variation | None = None,
 ) -> Play:
-    """All moments of an execution at once; see `moments`."""
+    """All moments of an execution at once; see `moments`. A `variation` comes in place of seed and hour."""
     check_geometry(home)
-    prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
-    found = list(_played(execution, home, prepared, seed))
+    how = variation or replace(PLAIN, seed=seed, hour=hour)
+    placed = scattered(home, how)
+    prepared = stage(placed, seed=how.seed, hour=how.hour, knowledge=knowledge or default())
+    found = list(_played(execution, placed, prepared, how))
     still = Still(_still([moment.scene for moment in found]))
     kept = frozenset(still.things)
-    return Play(prepared, tuple(_parted(moment, still, kept) for moment in found), still)
+    return Play(prepared, tuple(_parted(moment, still, kept) for moment in found), still, how)
 
 
 def _parted(moment: Moment, still: Still, kept: frozenset[Thing]) -> Moment:
@@ -149,7 +156,7 @@ def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
     return tuple(thing for thing in scenes[0].things if thing in common)
 
 
-def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed: int) -> Iterator[Moment]:
+def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, how: Variation) -> Iterator[Moment]:
     """The moments of an execution, their scenes made of moving things only."""
     ground = Ground.of(prepared.rooms.values(), home.nodes)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
@@ -158,11 +165,23 @@ def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, seed:
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
             places = places.settled(graph)
-            actors = cast(graph, ground, places, seed)
+            actors = cast(graph, ground, places, how.seed)
+            actors = _wandered(actors, ground, how) if how.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
         else:
             actors, places = advanced(actors, places, graph, ground, steps)
         yield Moment(tick, steps, scene_at(prepared, places, actors), actors, places)
+
+
+def _wandered(actors: tuple[Actor, ...], ground: Ground, how: Variation) -> tuple[Actor, ...]:
+    """Everyone who stands, anywhere on the free floor of the same room, looking anywhere."""
+    found: list[Actor] = []
+    for actor in actors:
+        taken = [other.spot for other in (*found, *actors[len(found) + 1 :])]
+        numbers = how.random("start", actor.node.id)
+        spot = ground.any_in(actor.room, numbers, taken) if actor.stance.posture == "standing" else None
+        found.append(replace(actor, spot=spot, yaw=numbers.uniform(-180, 180)) if spot else actor)
+    return tuple(found)
 
 
 def advanced(
@@ -207,20 +226,22 @@ def snapshots(
         execution, home, seed, hour, knowledge: as of `moments`.
         cameras: cameras that stay; `top` is a bird's eye over the home, `auto` the camera of the character's room
             that sees best what the step names.
-        modalities, quality: as of `modalities.render`.
+        modalities, quality: as of `modalities.render`; `flow` leads to the next tick, and `graph` is the scene graph.
         size: width and height for `top` and `auto`.
 
     Raises:
         HearthError: the home has no geometry, open3d is missing, or a modality is unknown.
     """
     check_geometry(home)
-    wanted = tuple(modalities)
+    wanted = tuple(dict.fromkeys(modalities))
+    drawn = check_modalities([name for name in wanted if name != "graph"], quality)
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
     above = top_view(home_box(home), TOP, *size)
     last: dict[Camera | str, Camera] = {}
     takes: dict[Camera | str, Take] = {}
-    for moment in moments(execution, home, seed=seed, hour=hour, knowledge=knowledge):
+    found = play(execution, home, seed=seed, hour=hour, knowledge=knowledge).moments
+    for moment, later in zip(found, (*found[1:], found[-1]), strict=True):
         named = tuple(ref.node for step in moment.steps for ref in step.objects if ref.node and ref.node not in rooms)
         for choice in cameras:
             camera = choice if isinstance(choice, Camera) else above
@@ -228,16 +249,21 @@ def snapshots(
                 actor = moment.actors[0]
                 camera = best_view(moment.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
             last[choice] = camera
-            if quality == "draft" and "rgb" in wanted:
+            if quality == "draft":
                 takes[choice] = take(moment.scene, camera, takes.get(choice))
-                pictures = pictures_of(takes[choice], wanted)
+                shot, known = replace(takes[choice].shot, after=later.scene), {"rgb": takes[choice].picture}
             else:
-                pictures = render(moment.scene, camera, wanted, quality=quality)
-            seen = _seen(pictures["instance_ids"], named) if "instance_ids" in pictures else None
-            yield Snapshot(moment.tick, moment.steps, camera, pictures, seen)
+                shot, known = shoot(moment.scene, camera, after=later.scene), {}
+            pictures = known | pictures_of(shot, [name for name in drawn if name not in known], quality)
+            if "graph" in wanted:
+                pictures["graph"] = to_release(moment.places.graph)
+            told = {name: pictures[name] for name in wanted}
+            yield Snapshot(moment.tick, moment.steps, camera, told, _seen(shot, named))
 
 
-def _seen(ids: NDArray[Any], named: tuple[int, ...]) -> float:
+def _seen(shot: Shot, named: tuple[int, ...]) -> float:
     """Share of the nodes that have a pixel."""
-    found = [bool((ids == node_id).any()) for node_id in dict.fromkeys(named)]
+    numbers = np.flatnonzero(np.bincount(shot.owner + 1, minlength=1)[1:])
+    ids = {shot.geometry.things[number].id for number in numbers.tolist()}
+    found = [node_id in ids for node_id in dict.fromkeys(named)]
     return sum(found) / len(found) if found else 1.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import cos, radians, sin
 from pathlib import Path
@@ -17,10 +17,12 @@ from hearth.rendering.motion import Frame, Span, frames, spans
 from hearth.rendering.quiet import quiet
 from hearth.rendering.retake import Take, take
 from hearth.rendering.snapshots import AUTO, TOP, Play
+from hearth.rendering.variation import PLAIN, Variation
 from hearth.rendering.viewpoints import best_view, home_box, kept_inside, room_views
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph
+from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 Image = NDArray[Any]
@@ -66,11 +68,16 @@ class Writer:
 
 
 class Shown(NamedTuple):
-    """One picture of a film: its moment, the camera that took it and (H, W, 3) colours."""
+    """One picture of a film: its moment, the camera that took it, and the picture."""
 
     frame: Frame
     camera: Camera
-    rgb: Image
+    take: Take
+
+    @property
+    def rgb(self) -> Image:
+        """(H, W, 3) colours."""
+        return self.take.picture
 
 
 def film(
@@ -80,7 +87,6 @@ def film(
     *,
     size: tuple[int, int] = (640, 480),
     fps: float = 15.0,
-    speed: float = 1.0,
 ) -> Iterator[Shown]:
     """The pictures of a video.
 
@@ -90,17 +96,17 @@ def film(
         view: one of `VIEWS`, or the name of a room's camera.
         size: width and height.
         fps: pictures a second.
-        speed: 2 has everyone move twice as fast.
 
     Raises:
         HearthError: there is no such camera.
     """
-    director = Director(home, view, size, {span.tick: span for span in spans(staged, speed)})
+    speed = staged.variation.speed
+    director = Director(home, view, size, staged.variation)
     last: Take | None = None
     for frame in frames(staged, fps, speed):
         camera = director.camera(frame)
         last = take(frame.scene, camera, last)
-        yield Shown(frame, camera, last.shot.image(last.rgb))
+        yield Shown(frame, camera, last)
 
 
 class Director:
@@ -110,9 +116,12 @@ class Director:
     two over the actor's shoulders, the one that sees best what the step names.
     """
 
-    def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], known: Mapping[int, Span]) -> None:
-        self.size, self.view, self.spans = size, view, known
-        self.views = room_views(home, *size)
+    def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], variation: Variation = PLAIN) -> None:
+        self.size, self.view = size, view
+        self.views = {
+            room: tuple(variation.moved(camera) for camera in cameras)
+            for room, cameras in room_views(home, *size).items()
+        }
         self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
         fixed = {camera.name: camera for cameras in self.views.values() for camera in cameras}
         fixed[TOP] = top_view(home_box(home), TOP, *size)
@@ -213,13 +222,16 @@ class Recorded(NamedTuple):
     Attributes:
         files: the videos.
         frames: how many pictures each has.
-        steps: as `times` gives them, each with the cameras that show it.
+        steps: as `times` gives them, each with the cameras that show it, and the share of the objects it names
+            that are visible in some picture.
+        track: the tick and the camera of each picture.
         moments: the last picture of each tick, for a contact sheet.
     """
 
     files: tuple[Path, ...]
     frames: int
     steps: list[dict[str, Any]]
+    track: list[tuple[int, Camera]]
     moments: list[tuple[Image, Span]]
 
 
@@ -231,35 +243,53 @@ def record(
     *,
     size: tuple[int, int] = (640, 480),
     fps: float = 15.0,
-    speed: float = 1.0,
     suffixes: Sequence[str] = (".webm", ".mp4"),
 ) -> Recorded:
     """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4`.
 
     Args:
-        staged, home, view, size, fps, speed: as of `film`.
+        staged, home, view, size, fps: as of `film`.
         out: a folder that is there.
         suffixes: of `CODECS`.
 
     Raises:
         HearthError: no such camera, or a file can't be written; what was complete stays.
     """
-    known = {span.tick: span for span in spans(staged, speed)}
-    steps = times(list(known.values()))
-    for step in steps:
-        step["cameras"] = []
+    known = {span.tick: span for span in spans(staged, staged.variation.speed)}
+    steps = [{**told, "cameras": [], "visible": 0.0} for told in times(list(known.values()))]
+    wanted = {tick: named_in(staged, span.steps) for tick, span in known.items()}
+    seen: dict[int, set[int]] = {tick: set() for tick in known}
     writers = [Writer(out / f"{view}{suffix}", *size, fps) for suffix in suffixes]
     last: dict[int, Image] = {}
-    count = 0
-    for shown in film(staged, home, view, size=size, fps=fps, speed=speed):
+    track: list[tuple[int, Camera]] = []
+    for shown in film(staged, home, view, size=size, fps=fps):
         for writer in writers:
             writer.add(shown.rgb)
-        last[shown.frame.tick] = shown.rgb
-        cameras = steps[shown.frame.tick]["cameras"]
-        if shown.camera.name not in cameras:
-            cameras.append(shown.camera.name)
-        count += 1
+        tick, name = shown.frame.tick, shown.camera.name
+        last[tick] = shown.rgb
+        seen[tick] |= _newly_seen(shown, wanted[tick] - seen[tick])
+        track.append((tick, shown.camera))
+        if name not in steps[tick]["cameras"]:
+            steps[tick]["cameras"].append(name)
     for writer in writers:
         writer.close()
+    for step, tick in zip(steps, known, strict=True):
+        step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else 1.0
     moments = [(picture, known[tick]) for tick, picture in last.items()]
-    return Recorded(tuple(writer.path for writer in writers), count, steps, moments)
+    return Recorded(tuple(writer.path for writer in writers), len(track), steps, track, moments)
+
+
+def named_in(staged: Play, steps: Sequence[Step]) -> frozenset[int]:
+    """The things that steps name; rooms are none."""
+    return frozenset(
+        ref.node for step in steps for ref in step.objects if ref.node and ref.node not in staged.prepared.rooms
+    )
+
+
+def _newly_seen(shown: Shown, wanted: frozenset[int]) -> frozenset[int]:
+    """The nodes among those wanted that a frame shows."""
+    if not wanted:
+        return wanted
+    shot = shown.take.shot
+    numbers = np.flatnonzero(np.bincount(shot.owner + 1)[1:])
+    return wanted & {shot.geometry.things[number].id for number in numbers.tolist()}
