@@ -32,13 +32,20 @@ Rehearsed = Annotated[
     list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Try these programs, and write nothing.")
 ]
 NodesWanted = Annotated[
-    int | None, typer.Option("--nodes", metavar="N", min=1, help="With SOURCE: fill environments up to N nodes or so.")
+    int | None,
+    typer.Option(
+        "--nodes",
+        metavar="N",
+        min=1,
+        help="With SOURCE: environments of N nodes, 10 more or less: small homes are filled, large ones thinned.",
+    ),
 ]
 Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Salt = Annotated[
     str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
 ]
-Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Film so many programs.")]
+Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Picture so many programs.")]
+Videos = Annotated[int, typer.Option("--videos", metavar="N", min=0, help="Film so many of them in motion.")]
 Variants = Annotated[
     int,
     typer.Option("--per-program", "--variants", metavar="N", min=0, help="Perturbed environments for each execution."),
@@ -84,6 +91,7 @@ def build(
     variants: Variants = 3,
     target: Target = 0,
     pictures: Pictures = 3,
+    videos: Videos = 1,
     engine: EngineName = "local",
     scheduler: Scheduler = "",
     time_limit: TimeLimit = 60.0,
@@ -105,7 +113,7 @@ def build(
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
-    more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures}
+    more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures, "videos": videos}
     spread = {"engine": engine, "scheduler": scheduler, "time_limit": time_limit, "force": force, "log_json": log_json}
     options = _options(seed, limit, home, homes, kb, salt, **more, **spread)
     _run(sources, out, workers, only, options, strict, as_json)
@@ -164,6 +172,7 @@ def sample(
     Examples:
       python cli.py sample --out data_out --seed 7 --home maple
       python cli.py sample release.zip --homes all --homes their_homes --json
+      python cli.py sample release.zip --homes all --nodes 290
     """
     folder = next((Path(text) for text in homes or () if text != _ALL), None)
     if not sources:
@@ -218,20 +227,22 @@ def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
 
 def render(
     out: Out = _OUT,
+    seed: Seed = 0,
     pictures: Pictures = 3,
+    videos: Videos = 1,
     homes: HomesFolder = None,
     kb: Kb = None,
     workers: Jobs = 0,
     strict: output.Strict = False,
     as_json: output.Json = False,
 ) -> None:
-    """Picture a few programs while they run.
+    """Picture a few programs while they run, and film some of them.
 
     \b
     Example:
-      python cli.py render --out data_out --pictures 10
+      python cli.py render --out data_out --pictures 10 --videos 2
     """
-    options = _options(0, None, None, homes, kb, None, pictures=pictures)
+    options = _options(seed, None, None, homes, kb, None, pictures=pictures, videos=videos)
     _run(None, out, workers, "render", options, strict, as_json)
 
 

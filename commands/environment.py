@@ -1,4 +1,4 @@
-"""`environment`: what programs need, and how realistic and varied what is sampled for them is."""
+"""`environment`: what programs need, environments for them, and how realistic and varied those are."""
 
 from __future__ import annotations
 
@@ -63,6 +63,82 @@ def conditions(file: inputs.File, kb: inputs.Kb = None, as_json: output.Json = F
         for o in ours])  # fmt: skip
     print()
     output.table(("by the release's rules", "among ours"), [(t["condition"], t["why"] or "yes") for t in theirs])
+
+
+@app.command()
+def rules(source: Source, limit: Limit = None, as_json: output.Json = False) -> None:
+    """Over all programs: the conditions that the release's rules name, which are ours, and why the others are not.
+
+    `not needed`: every step runs without it. `refused`: with it, a step would fail. `missed`: ours alone.
+    `environment conditions` shows both for one program, step by step.
+
+    \b
+    Example:
+      python cli.py environment rules release.zip
+    """
+    from itertools import islice
+
+    from hearth.kb.knowledge import default
+    from hearth.pipelines.agreement import agreement
+    from hearth.pipelines.rehearsal import scripts
+
+    told = agreement(islice(scripts([str(source)], default()), limit), default())
+    if as_json:
+        output.emit(told)
+        return
+    rows = told["conditions"]
+    output.table(tuple(name.replace("_", " ") for name in rows[0]) if rows else ("condition",),
+                 [tuple(row.values()) for row in rows])  # fmt: skip
+    print(f"{told['programs']} programs, {told['impossible']} impossible")
+
+
+@app.command("sample")
+def sample_one(
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[FILE]", help="A program that is to run there; `-` reads standard input.")
+    ] = None,
+    goal: Annotated[
+        list[str] | None,
+        typer.Option("--goal", metavar="WHAT", help="What is not so yet, as in `ON(plate, kitchen_table): 3`."),
+    ] = None,
+    home: inputs.HomeName = "maple",
+    homes: inputs.Homes = None,
+    kb: inputs.Kb = None,
+    nodes: Annotated[
+        int | None, typer.Option("--nodes", metavar="N", min=1, help="About so many nodes; large homes are thinned.")
+    ] = None,
+    seed: Seed = 0,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")] = None,
+    as_json: output.Json = False,
+) -> None:
+    """Draw one environment: for a program, for a goal that can be reached and is not met, or for nothing.
+
+    A goal counts up to nine things of a class; --goal may be given several times.
+
+    \b
+    Examples:
+      python cli.py environment sample watch_tv.txt --home maple --out tv.json
+      python cli.py environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
+      python cli.py environment sample --home birch --seed 7 --out any.json
+    """
+    from hearth.commands import drawing
+    from hearth.simulation.homes import exporting
+
+    known = inputs.read_knowledge(kb)
+    place = inputs.read_home(home, None, homes, known)
+    program = None if file is None else inputs.read_program(file, known)
+    drawn = drawing.draw(program, goal or (), place, seed, nodes)
+    graph = drawn.world.graph()
+    if out is not None:
+        exporting.write_release(graph, out)
+    told = {"home": home, "seed": seed, "nodes": len(graph.nodes), "edges": len(graph.edges), "file": out, **drawn.told}
+    if as_json:
+        output.emit(told)
+        return
+    print(f"{told['nodes']:,} nodes, {told['edges']:,} edges" + (f"; {out}" if out else ""))
+    for name in ("objects", "conditions", "goal"):
+        if rows := drawn.told.get(name):
+            output.table(tuple(rows[0]), [tuple(row.values()) for row in rows])
 
 
 @app.command()

@@ -98,7 +98,7 @@ def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size
             wanted[holder] = max(wanted[holder], 1)
     for name, number in sorted(wanted.items()):
         if not base.knowledge.is_room(name):
-            _provide(draft, name, number)
+            provide(draft, name, number)
     for predicate, number in goal:
         _undo(draft, predicate, number)
     settle_character(draft, _NO_PROGRAM, _NOTHING)
@@ -106,7 +106,7 @@ def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size
     return of_draft(draft, seed, _NO_PROGRAM, _NOTHING)
 
 
-def _provide(draft: Draft, name: str, number: int) -> None:
+def provide(draft: Draft, name: str, number: int) -> None:
     """As many of a class as are wanted, the missing ones where they belong."""
     base = draft.base
     here = len(base.instances(name))

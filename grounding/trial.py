@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from hearth.grounding.base import prepared
 from hearth.grounding.binding import Binding, bind
 from hearth.grounding.sampling import Environment, sample
+from hearth.grounding.together import sample_together
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -47,7 +48,7 @@ def attempt(
 
     Returns:
         The trial, or why the program can be grounded neither way. Where the program has or names more characters than
-        the home, the others stand in random rooms, and nothing else is added.
+        the home, the others stand in random rooms.
     """
     wanted = _characters(program)
     world = with_agents(World.start(prepared(home).home if at_rest else home), wanted, seed)
@@ -57,9 +58,13 @@ def attempt(
     fixed = any(ref.node is not None for ref in program.objects())
     if fixed:
         return Trial(run(world, program, rules))
-    if not add or wanted > 1:
+    if not add:
         return found
-    sampled = sample(program, home, seed, program.title, rules=rules)
+    sampled = (
+        sample(program, home, seed, program.title, rules=rules)
+        if wanted == 1
+        else sample_together(program, home, wanted, seed, rules)
+    )
     if isinstance(sampled, Failure):
         return sampled
     environment, execution = sampled

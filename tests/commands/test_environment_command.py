@@ -79,3 +79,37 @@ def test_realism_reads_a_release_and_draws_heat_maps(real_data, tmp_path):
 def test_each_help_has_an_example():
     for command in ("conditions", "realism", "diversity", "preconditions"):
         assert f"python cli.py environment {command}" in run(command, "--help").stdout
+
+
+def test_one_environment_is_drawn_for_a_program_a_goal_or_nothing(watching, tmp_path):
+    out = tmp_path / "tv.json"
+    told = json.loads(run("sample", watching, "--nodes", 290, "--out", out, "--json").stdout)
+    nodes = {node["id"]: node["class_name"] for node in json.loads(out.read_text())["nodes"]}
+    objects = {row["object"]: row["node"] for row in told["objects"]}
+    assert 275 <= told["nodes"] == len(nodes) <= 305
+    assert "television" in nodes[objects["television (1)"]]
+    goal = json.loads(run("sample", "--goal", "ON(plate, kitchen_table): 9", "--json").stdout)["goal"]
+    assert goal[0]["wanted"] == 9 > goal[0]["met"]
+    assert json.loads(run("sample", "--seed", 7, "--json").stdout)["goal"] == []
+
+
+@pytest.mark.parametrize(
+    ("goal", "code"),
+    [("ON plate", "SYNTAX"), ("ON(plate, kitchen_table): 12", "NO_PLACE"), ("ON(plte, sofa)", "UNKNOWN_OBJECT")],
+)
+def test_goals_that_cannot_be_are_refused(goal, code):
+    done = run("sample", "--goal", goal, "--json")
+    assert done.exit_code == 1
+    assert [fault["code"] for fault in json.loads(done.stdout)["errors"]] == [code]
+
+
+def test_a_program_and_a_goal_exclude_each_other(watching):
+    assert run("sample", watching, "--goal", "CLEAN(stove)").exit_code == 1
+
+
+def test_rules_are_counted_over_a_source(watching):
+    told = json.loads(run("rules", watching.parent, "--json").stdout)
+    counts = {row["condition"]: row for row in told["conditions"]}
+    assert told["programs"] == 1 and counts["free"]["ours"] == 1
+    for row in told["conditions"]:
+        assert row["by_rules"] == row["ours"] + row["not needed"] + row["refused"]
