@@ -9,6 +9,7 @@ import orjson
 
 from hearth.exports.reading import Wanted, file_name, programs, runs, write
 from hearth.pipelines.dataset import Dataset, Run
+from hearth.pipelines.readers.packed import leaves
 from hearth.pipelines.rows import program_of
 from hearth.schemas.graph import to_release
 from hearth.schemas.program import Program
@@ -42,7 +43,7 @@ def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 def stem(program_id: str) -> str:
     """`release:batch-1/file1_1` -> `batch-1/file1_1`; `crowd:P1` -> `crowd/P1_1`."""
     origin, _, rest = program_id.partition(":")
-    if origin == "release" and "+" not in rest:
+    if origin == "release" and "+" not in rest and not leaves(rest):
         return rest
     return f"{file_name(origin)}/{file_name(rest)}_1"
 

@@ -15,10 +15,12 @@ from hearth.grounding.habits import habits
 from hearth.grounding.sampling import sample
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.repairing import repair
+from hearth.pipelines.sheets import cell_said, sheet_of
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
+from hearth.schemas.text import decode
 from hearth.simulation.home import Home
 
 
@@ -69,14 +71,12 @@ def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Compl
 
 def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:
     """A CSV to be filled in: each program once a rater, the column `rating` left empty."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow((*COLUMNS[:-1], f"rating ({HELP})"))
+    rows: list[tuple[object, ...]] = [(*COLUMNS[:-1], f"rating ({HELP})")]
     for rater in range(1, raters + 1):
         for program_id, program in programs:
             steps = "\n".join(print_lines(program))
-            writer.writerow((program_id, program.title, program.description, steps, f"rater {rater}", ""))
-    return out.getvalue()
+            rows.append((program_id, program.title, program.description, steps, f"rater {rater}", ""))
+    return sheet_of(rows)
 
 
 def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
@@ -88,7 +88,12 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
     found: dict[str, list[Completeness]] = defaultdict(list)
     faults: list[Diagnostic] = []
     for path in paths:
-        rows = csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""))
+        text = decode(path.read_bytes(), str(path))
+        if isinstance(text, Diagnostic):
+            faults.append(text)
+            continue
+        delimiter = max(",;\t", key=text.partition("\n")[0].count)
+        rows = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, restval="")
         names = rows.fieldnames or []
         column = next((name for name in names if name.startswith("rating")), None)
         if column is None or "program_id" not in names:
@@ -98,7 +103,7 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
         for row in rows:
             answer = (row[column] or "").strip()
             if answer in ("1", "2", "3"):
-                found[row["program_id"]].append(Completeness(int(answer)))
+                found[cell_said(row["program_id"])].append(Completeness(int(answer)))
             elif answer:
                 message = f"`{answer[:40]}` is no rating"
                 faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), rows.line_num, suggestion="1, 2 or 3"))

@@ -9,6 +9,7 @@ from hearth.pipelines.readers import spoken
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
+from hearth.pipelines.readers.packed import leaves
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.blocks import STEP
@@ -53,8 +54,13 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
         return refused(
             place, Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         )
-    own = value.get("program_id") or value.get("id")
-    return Item(str(own) if own else f"{NAME}:{name}", NAME, place, value, line=line)
+    own = str(value.get("program_id") or value.get("id") or "")
+    if leaves(own.partition(":")[2] or own) or not own.isprintable():
+        message = "an id that is a path out of its folder, or can't be printed"
+        suggestion = "letters, digits and `-_./:#`, without `..`"
+        return refused(place, Reject.of(Code.BAD_JSON, message, file=place, line=line, found=ascii(own)[:60],
+                                        suggestion=suggestion), line=line)  # fmt: skip
+    return Item(own or f"{NAME}:{name}", NAME, place, value, line=line)
 
 
 def read(item: Item) -> dict[str, Any] | Reject | list[dict[str, Any]]:
