@@ -30,13 +30,15 @@ def edited(
 ) -> tuple[EnvironmentGraph, tuple[int, ...]]:
     """A graph with things added, removed and moved and states set, and the ids of what was added.
 
-    What was moved has no box any more: its place follows from what it is on or in.
+    In a home with geometry, what was added or moved stands where there is room on or in its place.
 
     Raises:
         HearthError: an order that cannot be read, names what there is not, or does not fit the knowledge.
     """
     from hearth.simulation.edit import edit, free_id
     from hearth.simulation.home import Home
+    from hearth.simulation.homes.graph_measured import has_geometry
+    from hearth.simulation.homes.reposing import posed
     from hearth.simulation.world import World
 
     world = World.start(Home.from_graph(graph, name, knowledge))
@@ -54,10 +56,8 @@ def edited(
         raise HearthError(
             Diagnostic(found.code, found.message(), suggestion="another place; `kb show CLASS` names some")
         )
-    gone = set(place)
-    after = found.graph()
-    kept = tuple(replace(node, box=None, yaw=None) if node.id in gone else node for node in after.nodes)
-    return replace(after, nodes=kept, extra=graph.extra), tuple(node.id for node in nodes)
+    after = replace(found.graph(), extra=graph.extra)
+    return posed(after, place, knowledge) if has_geometry(after) else after, tuple(node.id for node in nodes)
 
 
 def _check_ids(named: Sequence[int], known: Collection[int]) -> None:

@@ -116,19 +116,19 @@ def _front(class_name: str, shaped: Form) -> float:
 def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing], kept: list[Rect]) -> Spot | None:
     """The free spot where most relations are met; of equal ones the first."""
     front = _front(crowd.parts.nodes[node].class_name, shaped)
-    every = list(_spots(room, shaped))
+    every = list(spots(room, shaped))
     openings = [hole for hole in crowd.built.openings if hole.room == room.name]
     free = Obstacles(room, solids, kept, openings).free([spot for spot, _ in every], shaped, front)
-    spots = [spot for spot, is_free in zip(every, free, strict=True) if is_free]
-    if not spots:
+    good = [spot for spot, is_free in zip(every, free, strict=True) if is_free]
+    if not good:
         return None
-    scores = _scores(crowd, room, node, [spot for spot, _ in spots], shaped.size[1])
-    order = sorted(range(len(spots)), key=lambda k: (-round(float(scores[k]) + spots[k][1], 6), k))
+    scores = _scores(crowd, room, node, [spot for spot, _ in good], shaped.size[1])
+    order = sorted(range(len(good)), key=lambda k: (-round(float(scores[k]) + good[k][1], 6), k))
     blocks = shaped.mount not in ("flat", "ceiling") and (shaped.mount != "wall" or shaped.up < HEAD)
     standing = [footprint(t.box) for t in solids if bottom(t.box) < HEAD]
     # The best must not keep a rarer spot that blocks nothing from being found: so a few of every part of the order.
     for k in dict.fromkeys((*order[:MOST_LOOKED_AT], *order[:: max(1, len(order) // MOST_LOOKED_AT)])):
-        spot = spots[k][0]
+        spot = good[k][0]
         if not blocks or passable(room, [*standing, spot[0]], kept):
             return spot
     return None
@@ -162,7 +162,8 @@ def _over(box: Box, thing: Thing) -> bool:
     return footprint(box).overlap(footprint(thing.box)) > 0.01
 
 
-def _spots(room: Room, shaped: Form) -> Iterator[tuple[Spot, float]]:
+def spots(room: Room, shaped: Form) -> Iterator[tuple[Spot, float]]:
+    """Where in a room a thing of that shape may stand or hang, along walls first, each with what that is worth."""
     inner, height = interior(room), shaped.size[1]
     if shaped.mount == "ceiling":
         yield from (((*spot, 2.6 - height), 0.0) for spot in _out_in_the_room(inner, shaped, (0.0,)))

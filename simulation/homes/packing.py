@@ -110,6 +110,35 @@ def contents(
                            "take something away, or make it larger")  # fmt: skip
 
 
+def room_for(
+    class_name: str, holder: Thing, relation: str, others: Sequence[Thing], knowledge: Knowledge
+) -> tuple[Box, float] | None:
+    """Where one more thing finds room on or in another beside what is there; None where it does not.
+
+    Args:
+        class_name: of what is to be put there.
+        holder: on or in what.
+        relation: `on` or `inside`.
+        others: what is there.
+        knowledge: for shapes.
+    """
+    holding = form(holder.class_name, knowledge)
+    if holding is None:
+        return None
+    support = _support(holder, holding, relation, knowledge, FAR if relation == "on" else 0.0)
+    for other in others:
+        level = min(support.levels, key=lambda level: abs(level.y - bottom(other.box)))
+        local = _local(support, footprint(other.box))
+        level.taken.append((other.class_name, local))
+        level.piles[local] = other.box.size[1]
+    piece = Piece(class_name)
+    try:
+        (stood,) = _stand(support, piece, [class_name], relation, knowledge)
+    except NoPlaceError:
+        return None
+    return stood.box, stood.yaw or 0.0
+
+
 def _settings(
     table: Thing, lay: Sequence[Piece], seats: Sequence[Thing], numbers: dict[str, int], knowledge: Knowledge
 ) -> Iterator[tuple[Piece, str, Rect]]:

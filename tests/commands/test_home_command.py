@@ -153,3 +153,44 @@ def test_statistics_stand_beside_each_other(tmp_path):
     assert told["theirs"]["smallest room, m2"] < told["theirs"]["room area, m2"] < told["theirs"]["largest room, m2"]
     degrees = sum(told["theirs"][f"{name} a node"] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"))
     assert degrees == pytest.approx(told["theirs"]["edges a node"], abs=0.05)
+
+
+def _nodes(path):
+    return {node["id"]: node for node in json.loads(path.read_text())["nodes"]}
+
+
+def _apart(one, other):
+    a, b = one["bounding_box"], other["bounding_box"]
+    return any(abs(p - q) >= (s + t) / 2 - 1e-6
+               for p, q, s, t in zip(a["center"], b["center"], a["size"], b["size"], strict=True))  # fmt: skip
+
+
+def test_what_is_put_somewhere_has_its_own_place_there(tmp_path):
+    before = _nodes(_copied(tmp_path))
+    ids = {node["class_name"]: node["id"] for node in before.values()}
+    table, fridge, desk, bedroom = (ids[name] for name in ("coffee_table", "fridge", "desk", "bedroom"))
+    chair, out = ids["chair"], tmp_path / "mine.json"
+    orders = ("--add", f"cup:on:{table}", "--add", f"apple:in:{fridge}", "--move", f"{chair}:in:{bedroom}")
+    assert run("edit", "maple", *orders, "--out", out).exit_code == 0
+    after = _nodes(out)
+    cup, apple = sorted(after.keys() - before.keys())
+    top, box = after[table]["bounding_box"], after[cup]["bounding_box"]
+    assert box["center"][1] - box["size"][1] / 2 >= top["center"][1] + top["size"][1] / 2 - 1e-3
+    here = [e["from_id"] for e in json.loads(out.read_text())["edges"]
+            if e["relation_type"] == "ON" and e["to_id"] == table]  # fmt: skip
+    assert cup in here and all(_apart(after[cup], after[other]) for other in here if other != cup)
+    inside = after[fridge]["bounding_box"]
+    assert all(abs(a - b) < s / 2 for a, b, s in zip(after[apple]["bounding_box"]["center"], inside["center"],
+                                                    inside["size"], strict=True))  # fmt: skip
+    room = after[bedroom]["bounding_box"]
+    stood = after[chair]["bounding_box"]["center"]
+    assert all(abs(stood[k] - room["center"][k]) < room["size"][k] / 2 for k in (0, 2))
+    assert after[desk] == before[desk]
+
+
+def test_what_finds_no_room_is_refused(tmp_path):
+    ids = {node["class_name"]: node["id"] for node in _nodes(_copied(tmp_path)).values()}
+    beds = [word for _ in range(4) for word in ("--add", f"bed:in:{ids['bedroom']}")]
+    done = run("edit", "maple", *beds, "--out", tmp_path / "x.json", "--json")
+    assert done.exit_code == 1 and not (tmp_path / "x.json").exists()
+    assert [fault["code"] for fault in json.loads(done.stdout)["errors"]] == ["NO_PLACE"]
