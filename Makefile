@@ -35,7 +35,7 @@ SHARED   := version.py $(call tree,schemas) \
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
 
-.PHONY: all full setup test test-all lint bench lock wheel clean distclean help $(STAGES)
+.PHONY: all full setup test test-tools test-all lint docs bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -76,9 +76,16 @@ $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py 
 	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) 2>/dev/null
 
 test: $(READY)  ## the tests, without the slow ones
-	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow"
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"
 
-test-all: $(READY)  ## all tests
+.venv/.tools: requirements-tools.lock | $(READY)
+	@$(PY) -m pip install -qq --no-compile --no-deps -r $<
+	@touch $@
+
+test-tools: .venv/.tools  ## tests that hold our files up to other people's tools: planners, browsers, clusters, S3
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
+
+test-all: .venv/.tools  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
 
 lint: $(READY)  ## ruff and mypy
@@ -86,17 +93,27 @@ lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff format --check .
 	@MYPYPATH=.types $(PY) -m mypy -p hearth
 
-bench: $(READY)  ## measure speed, with ratios to plain reference code
-	@for file in benchmarks/*_speed.py; do echo "$$file"; $(PY) "$$file" || exit 1; done
+bench: $(READY)  ## measure everything into benchmarks/RESULTS.md; fails where a ratio to plain code fell by a third
+	@$(PY) benchmarks/results.py
+
+docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, commands and knowledge
+	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocstrings[python]>=0.28'
+	@$(PY) -m mkdocs build -q && echo build/site/index.html
 
 lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock
 	@rm -rf build/lock && $(PYTHON) -m venv build/lock
 	@build/lock/bin/python -m pip install -q --upgrade pip
 	@build/lock/bin/python -m pip install -q -e '.[test]' setuptools
 	@build/lock/bin/python -m pip uninstall -q -y $(NOTEBOOK)
-	@{ sed '/^#/!d' requirements.lock; build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth | \
-	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/"; } > build/requirements.lock
-	@mv build/requirements.lock requirements.lock && rm -rf build/lock
+	@build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth > build/base.lock
+	@build/lock/bin/python -m pip install -q -c build/base.lock -e '.[tools]'
+	@build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth > build/tools.lock
+	@{ sed '/^#/!d' requirements.lock; \
+	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/" build/base.lock; \
+	   } > build/requirements.lock
+	@{ echo '# What `make test-tools` adds to requirements.lock. Made by `make lock`; not edited by hand.'; \
+	   comm -13 <(sort build/base.lock) <(sort build/tools.lock); } > requirements-tools.lock
+	@mv build/requirements.lock requirements.lock && rm -rf build/lock build/base.lock build/tools.lock
 
 wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist

@@ -6,7 +6,12 @@ import subprocess
 import sys
 import timeit
 
+from measuring import Figure, finish, parser, seconds, tell
+
 from hearth.kb.knowledge import Knowledge, default
+
+LOAD = 150
+"""Milliseconds that were asked for."""
 
 COLD = """
 import time
@@ -23,8 +28,8 @@ def cold_loads(times: int = 7) -> list[float]:
     return sorted(float(run.stdout) for run in runs)
 
 
-def lookups(knowledge: Knowledge, number: int = 20_000) -> dict[str, float]:
-    """Microseconds a look-up, the best of five."""
+def lookups(knowledge: Knowledge, number: int = 20_000) -> list[Figure]:
+    """Microseconds a look-up."""
     cases = {
         'action("PutBack")': lambda: knowledge.action("PutBack"),
         'action("put back")': lambda: knowledge.action("put back"),
@@ -37,11 +42,20 @@ def lookups(knowledge: Knowledge, number: int = 20_000) -> dict[str, float]:
         'affords("Grab", 0, "cup")': lambda: knowledge.affords("Grab", 0, "cup"),
         'default_states("fridge")': lambda: knowledge.default_states("fridge"),
     }
-    return {name: min(timeit.repeat(case, number=number, repeat=5)) / number * 1e6 for name, case in cases.items()}
+    return [
+        seconds(name, [taken / number for taken in timeit.repeat(case, number=number, repeat=5)], "us")
+        for name, case in cases.items()
+    ]
+
+
+def main() -> None:
+    """Measure and print."""
+    asked = parser(__doc__).parse_args()
+    found = [seconds("load the knowledge, importing included", cold_loads(), "ms", LOAD), *lookups(default())]
+    for figure in found:
+        print(tell(figure))
+    finish(found, asked.json)
 
 
 if __name__ == "__main__":
-    loads = cold_loads()
-    print(f"load, importing included: {loads[0] * 1000:.0f} ms at best, {loads[len(loads) // 2] * 1000:.0f} ms median")
-    for case, micros in lookups(default()).items():
-        print(f"{micros:6.2f} us  {case}")
+    main()

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
-import random
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -23,16 +21,14 @@ if __name__ == "__main__":
     build(sources, out, workers=int(workers), engine=engine, homes=("cabin",), homes_folder=homes, pictures=0)
 """
 
-VARYING = {"timing.json", "catalog.duckdb", ".lock"}
-"""Seconds, a database file whose bytes DuckDB does not fix, and who builds."""
 
-
-def contents(out: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(out).as_posix(): path.read_bytes()
-        for path in sorted(out.rglob("*"))
-        if path.is_file() and path.name not in VARYING
-    }
+def harness(name: str):
+    """A module of benchmarks/."""
+    path = Path(__file__).resolve().parents[2] / f"benchmarks/{name}.py"
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = "0", engine: str = "local"):
@@ -54,9 +50,7 @@ def test_for_any_number_of_workers_and_any_hash_seed(made, tmp_path, workers, ha
 
 
 def assert_same(one: Path, other: Path) -> None:
-    expected, found = contents(one), contents(other)
-    assert found.keys() == expected.keys()
-    assert [name for name in expected if found[name] != expected[name]] == []
+    assert harness("kills").differing(one, other) == []
 
 
 @pytest.mark.tools
@@ -78,15 +72,11 @@ def test_a_second_build_does_nothing(made):
     assert times() == before
 
 
-@pytest.mark.slow
-def test_killed_at_random_moments_and_taken_up_again(made, tmp_path):
-    """`kill -9` of the whole build, ten times, then one that is left alone."""
-    out = tmp_path / "killed"
-    moments = random.Random(0)
-    for _ in range(10):
-        process = started(out, made, tmp_path, workers=2)
-        time.sleep(moments.uniform(0.5, 6.0))
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    assert started(out, made, tmp_path, workers=2).wait(timeout=900) == 0
-    assert_same(made.out, out)
+@pytest.mark.parametrize("times", [2, pytest.param(10, marks=pytest.mark.slow)])
+def test_killed_at_random_moments_and_taken_up_again(made, inputs, tmp_path, times):
+    """`kill -9` of whole builds; `python benchmarks/kills.py` does it two hundred times."""
+    kills = harness("kills")
+    options = ["--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--workers", "2"]
+    done, ends, faults = kills.killed([str(inputs / "programs"), *options], tmp_path, times, seed=times)
+    assert done == times and ends >= 1
+    assert faults == []

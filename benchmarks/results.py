@@ -1,0 +1,122 @@
+"""Every figure in one place: `make bench` runs each `*_speed.py`, writes RESULTS.md and results.json, and compares.
+
+    python benchmarks/results.py [--only NAME] [--check]
+
+A ratio to plain reference code, measured in the same run, holds on any machine: one that has fallen by a third against
+the results.json that is committed fails the run (status 1). With `--check` nothing is written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+TABLE, STORED = HERE / "RESULTS.md", HERE / "results.json"
+WORST = 2 / 3
+"""What must be left of a ratio."""
+
+LIBRARIES = ("numpy", "pyarrow", "duckdb", "open3d-cpu", "opencv-python-headless", "numba", "rapidfuzz")
+Row = dict[str, Any]
+
+
+def measured(script: Path) -> list[Row]:
+    """The figures of one benchmark, run in a process of its own.
+
+    Raises:
+        SystemExit: it failed.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "figures.json")
+        status = subprocess.run([sys.executable, str(script), "--json", str(file)], check=False).returncode
+        if status or not file.exists():
+            raise SystemExit(f"{script.name} failed with status {status}")
+        return list(json.loads(file.read_text("utf-8")))
+
+
+def machine() -> str:
+    """What it was measured on."""
+    names = (line.split(":", 1)[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name"))
+    memory = next((int(line.split()[1]) for line in _lines("/proc/meminfo") if line.startswith("MemTotal")), 0)
+    processor = next(names, platform.processor() or "unknown processor")
+    return f"{os.cpu_count()} cores ({processor}), {memory / 2**20:.0f} GiB, {platform.system()} {platform.release()}"
+
+
+def _lines(path: str) -> list[str]:
+    try:
+        return Path(path).read_text("utf-8").splitlines()
+    except OSError:
+        return []
+
+
+def document(found: Mapping[str, Sequence[Row]]) -> str:
+    """RESULTS.md."""
+    libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    load = os.getloadavg()[0]
+    lines = [
+        "# Results",
+        "",
+        "Written by `make bench`; not edited by hand. Medians of several runs, with the distance of the quartiles.",
+        "",
+        f"- Machine: {machine()}; load {load:.1f}",
+        f"- Python {platform.python_version()}, {libraries}",
+    ]
+    for name, rows in found.items():
+        lines += ["", f"## {name}", "", "| figure | measured | spread | asked | to the plain reference |"]
+        lines += ["|---|---:|---:|---:|---:|", *map(_line, rows)]
+    return "\n".join(lines) + "\n"
+
+
+def _line(row: Row) -> str:
+    target = "" if row["target"] is None else f"{row['target']:,g} {row['unit']}"
+    ratio = "" if row["ratio"] is None else f"{row['ratio']:,.1f} x"
+    return f"| {row['name']} | {row['value']:,.4g} {row['unit']} | {row['spread']:.0%} | {target} | {ratio} |"
+
+
+def fallen(found: Mapping[str, Sequence[Row]], stored: Mapping[str, Sequence[Row]]) -> list[str]:
+    """Ratios that have fallen by a third or are gone."""
+    then = {(name, row["name"]): row["ratio"] for name, rows in stored.items() for row in rows if row["ratio"]}
+    now = {(name, row["name"]): row["ratio"] for name, rows in found.items() for row in rows}
+    return [
+        f"{name}: {figure}: {before:,.1f} times the plain reference before, {now.get((name, figure)) or 0:,.1f} now"
+        for (name, figure), before in then.items()
+        if name in found and (now.get((name, figure)) or 0) < WORST * before
+    ]
+
+
+def _stored() -> dict[str, list[Row]]:
+    return dict(json.loads(STORED.read_text("utf-8"))) if STORED.exists() else {}
+
+
+def main(words: Iterable[str] | None = None) -> int:
+    """Run, write, compare."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", metavar="NAME", action="append", help="this benchmark only; may be given again")
+    parser.add_argument("--check", action="store_true", help="compare only")
+    asked = parser.parse_args(list(words) if words is not None else None)
+    names = asked.only or [path.stem.removesuffix("_speed") for path in sorted(HERE.glob("*_speed.py"))]
+    found = {}
+    for name in names:
+        print(f"--- {name}", flush=True)
+        found[name] = measured(HERE / f"{name}_speed.py")
+    stored = _stored()
+    worse = fallen(found, stored)
+    if not asked.check and not worse:
+        whole = dict(sorted({**stored, **found}.items()))
+        STORED.write_text(json.dumps(whole, indent=1) + "\n", encoding="utf-8")
+        TABLE.write_text(document(whole), encoding="utf-8")
+    print(*worse, sep="\n")
+    return 1 if worse else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+"""The worked examples of docs/examples do what they say, in a folder of their own."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / "docs/examples").glob("*.md"))
+FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.DOTALL | re.MULTILINE)
+APART = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "tests", "benchmarks")
+
+pytestmark = pytest.mark.slow
+
+
+def blocks(page: Path) -> list[tuple[str, str, str]]:
+    """(language, title, text) of every fenced block."""
+    return [match.groups(default="") for match in FENCE.finditer(page.read_text("utf-8"))]
+
+
+def ran(script: str, folder: Path, checkout: Path) -> str:
+    """Run a block as its reader would, `hearth` and `python` on the path; its output."""
+    tools = folder.parent / "bin"
+    tools.mkdir(exist_ok=True)
+    for name, words in (("hearth", f'"{checkout / "cli.py"}"'), ("python", "")):
+        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
+        (tools / name).chmod(0o755)
+    environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, capture_output=True, text=True,
+        timeout=900, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, f"{script}\n{done.stdout}\n{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def test_there_are_five():
+    assert len(EXAMPLES) == 5
+
+
+@pytest.mark.parametrize("page", EXAMPLES, ids=lambda page: page.stem)
+def test_an_example_does_what_it_says(page, tmp_path):
+    folder, checkout = tmp_path / "here", ROOT
+    if "python cli.py" in page.read_text("utf-8"):
+        checkout = shutil.copytree(ROOT, folder, ignore=APART)
+    folder.mkdir(exist_ok=True)
+    said = ""
+    for language, title, text in blocks(page):
+        if title:
+            (folder / title).write_text(text, "utf-8")
+        elif language == "bash":
+            said = ran(text, folder, checkout)
+        elif language == "text":
+            lacking = [line for line in text.splitlines() if line.strip() and line.strip() not in said]
+            assert not lacking, said
