@@ -10,10 +10,11 @@ import typer
 from hearth.commands import output
 
 Dataset = Annotated[Path, typer.Argument(metavar="DATASET", help="A published dataset, or the folder of a build.")]
+Figures = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Draw the figures into this folder.")]
 _BAR = 40
 
 
-def augmented(dataset: Dataset = Path("data_out"), as_json: output.Json = False) -> None:
+def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json: output.Json = False) -> None:
     """Print table 5.1 of the thesis beside a dataset's own figures, and what augmenting has changed.
 
     Programs, lengths, nodes and edges; how long programs are before and after; which conditions their objects start in
@@ -21,11 +22,15 @@ def augmented(dataset: Dataset = Path("data_out"), as_json: output.Json = False)
 
     \b
     Example:
-      python cli.py augmented data_out
+      python cli.py augmented data_out --out figures
     """
     from hearth.pipelines.augment_figures import figures
 
     found = figures(_published(dataset))
+    if out is not None:
+        from hearth.pipelines.augment_pictures import draw
+
+        found["files"] = [str(file) for file in draw(found, out)]
     if as_json:
         output.emit(found)
         return
@@ -33,6 +38,8 @@ def augmented(dataset: Dataset = Path("data_out"), as_json: output.Json = False)
     print(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
     print(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
     print(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
+    for file in found.get("files", ()):
+        print(f"Drawn: {file}")
     before, after = found["lengths"]["executable"], found["lengths"]["augmented"]
     print("\nPrograms by length")
     output.table(("steps", "originals", "augmented"), [(name, before[name], after[name]) for name in before])

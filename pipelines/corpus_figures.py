@@ -29,7 +29,7 @@ def write(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
         "objects": _bars(objects, "Steps with each object"),
         "similarity": _matrix(alike),
     }
-    files = [file for name, figure in figures.items() for file in _saved(figure, folder / name)]
+    files = [file for name, figure in figures.items() for file in saved(figure, folder / name)]
     return [*files, *_tables(found, alike, folder)]
 
 
@@ -96,7 +96,7 @@ def _figure(width: float, height: float) -> tuple[Figure, Any]:
     return figure, figure.subplots()
 
 
-def _saved(figure: Figure, path: Path) -> list[Path]:
+def saved(figure: Figure, path: Path) -> list[Path]:
     """Write a figure twice; the same numbers give the same bytes."""
     import matplotlib as mpl
 

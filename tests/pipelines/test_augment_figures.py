@@ -43,3 +43,12 @@ def test_pairs_are_spread_over_executions_to_reach_a_target(built, inputs):
     executions = sum(row["executable"] for row in built.rows("sample"))
     told = outcome(built.out / "augment")
     assert 3 <= told["pairs_tried"] <= 3 * ALLOWANCE + executions
+
+
+def test_figures_are_drawn_the_same_each_time(made, tmp_path):
+    from hearth.pipelines.augment_pictures import draw
+
+    found = figures(made.out / "publish")
+    first, second = (draw(found, tmp_path / name) for name in ("a", "b"))
+    assert [file.name for file in first] == ["conditions.png", "conditions.svg", "lengths.png", "lengths.svg"]
+    assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
