@@ -259,7 +259,7 @@ def stats(
     from hearth.simulation.homes import catalog
     from hearth.simulation.homes.generate import generate as draw_up
     from hearth.simulation.homes.scene import scene
-    from hearth.simulation.homes.statistics import of_homes
+    from hearth.simulation.homes.statistics import beside, of_homes
 
     ours = catalog.names()
     theirs = [name for name in catalog.names(homes) if name not in ours] if homes else []
@@ -269,6 +269,9 @@ def stats(
         "theirs": of_homes(catalog.load_graph(name, homes) for name in theirs),
     }
     found = {name: figures for name, figures in groups.items() if figures}
+    for figures in found.values():
+        # Homes of other sizes are compared at the same number of nodes: by edges a node.
+        figures["density beside theirs, %"] = beside(figures, found.get("theirs"))
     if as_json:
         output.emit(found)
         return

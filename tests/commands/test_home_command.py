@@ -151,6 +151,10 @@ def test_statistics_stand_beside_each_other(tmp_path):
     assert told["generated"]["homes"] == told["generated"]["pass lint"] == 2 and told["generated"]["rooms"] == 3.5
     assert told["theirs"]["homes"] == 1 and told["theirs"]["edges a node"] > 10
     assert told["theirs"]["smallest room, m2"] < told["theirs"]["room area, m2"] < told["theirs"]["largest room, m2"]
+    assert told["ours"]["have the furniture of the thesis"] == 7 and told["ours"]["objects"] >= 350
+    assert told["ours"]["fewest rooms"] >= 4 and told["ours"]["most rooms"] <= 7
+    wanted = 100 * (told["ours"]["edges a node"] / told["theirs"]["edges a node"] - 1)
+    assert told["ours"]["density beside theirs, %"] == pytest.approx(wanted, abs=0.06)
     degrees = sum(told["theirs"][f"{name} a node"] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"))
     assert degrees == pytest.approx(told["theirs"]["edges a node"], abs=0.05)
 
