@@ -69,7 +69,7 @@ $(call manifest,augment): $(call manifest,sample) $(WORLD) $(call tree,pipelines
 	$(RUN) --seed $(SEED) >/dev/null
 
 $(call manifest,render): $(call manifest,augment) $(WORLD) $(call tree,rendering) pipelines/render.py | $(READY)
-	$(RUN) >/dev/null
+	$(RUN) --seed $(SEED) >/dev/null
 
 $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py | $(READY)
 	$(RUN) --seed $(SEED) >/dev/null
