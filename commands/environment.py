@@ -213,14 +213,16 @@ def preconditions(
     dataset: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Stages' folder: counts augmented programs' too.")
     ] = None,
+    drawing: Annotated[Path | None, typer.Option("--drawing", metavar="FILE", help="Draw the bars, as .svg.")] = None,
     limit: Limit = None,
     as_json: output.Json = False,
 ) -> None:
     """How the preconditions about some classes are distributed, before and after augmenting (figure 5-4).
 
     \b
-    Example:
+    Examples:
       python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
+      python cli.py environment preconditions release.zip --drawing bars.svg
     """
     from hearth.kb.knowledge import default
     from hearth.pipelines import realism as report
@@ -230,6 +232,8 @@ def preconditions(
     for stage in ("sample", "augment"):
         if dataset is not None and (dataset / stage).is_dir():
             groups[stage] = report.of_cases(dataset / stage, names)
+    if drawing is not None:
+        _svg(drawing, report.bar_chart(groups, names))
     if as_json:
         output.emit(
             {group: {name: dict(sorted(c.items())) for name, c in found.items()} for group, found in groups.items()}
@@ -239,6 +243,15 @@ def preconditions(
         print(name)
         for group, found in groups.items():
             _bars(group, found[name])
+
+
+def _svg(path: Path, text: str) -> None:
+    from hearth.schemas.errors import HearthError
+    from hearth.schemas.failures import Code
+
+    if path.suffix != ".svg":
+        raise HearthError.of(Code.UNSUPPORTED_FILE, "a drawing is written as .svg", file=str(path))
+    path.write_text(text, encoding="utf-8")
 
 
 def _bars(group: str, counts: Any) -> None:

@@ -217,3 +217,32 @@ def heat_map(counts: Counts, title: str) -> str:
     width, height = left + len(places) * cell + 90, above + len(kinds) * cell + 12
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif"'
     return "\n".join([head + ' font-size="10">', *lines, "</svg>"]) + "\n"
+
+
+COLOURS = ("#1b4f72", "#d68910", "#1e8449")
+
+
+def bar_chart(groups: Mapping[str, Counts], names: Sequence[str]) -> str:
+    """Figure 5-4 as SVG: for each class one row of bars, as long as the share of a condition in each group."""
+    left, wide, bar, gap = 110, 320, 11, 8
+    lines: list[str] = []
+    y = 34
+    for k, group in enumerate(groups):
+        x = left + 110 * k
+        lines.append(f'<rect x="{x}" y="8" width="10" height="10" fill="{COLOURS[k % 3]}"/>')
+        lines.append(f'<text x="{x + 14}" y="17">{group}</text>')
+    for name in names:
+        lines.append(f'<text x="8" y="{y + 12}" font-size="13" font-weight="bold">{name}</text>')
+        y += 20
+        kinds = sorted({kind for found in groups.values() for kind in found[name]})
+        for kind in kinds:
+            lines.append(f'<text x="{left - 6}" y="{y + bar - 2}" text-anchor="end">{kind}</text>')
+            for k, found in enumerate(groups.values()):
+                share = found[name][kind] / max(1, found[name].total())
+                lines.append(f'<rect x="{left}" y="{y}" width="{wide * share:.1f}" height="{bar - 2}" '
+                             f'fill="{COLOURS[k % 3]}"/>')  # fmt: skip
+                lines.append(f'<text x="{left + wide * share + 4:.1f}" y="{y + bar - 3}">{share:.0%}</text>')
+                y += bar
+            y += gap
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + wide + 60}" height="{y + 8}"'
+    return "\n".join([head + ' font-family="sans-serif" font-size="10">', *lines, "</svg>"]) + "\n"
