@@ -12,10 +12,12 @@ from hearth.commands import output
 Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new folder, or an earlier report.")]
 
+Workers = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")]
+
 _OUT = Path("report_out")
 
 
-def report(dataset: Folder, out: Out = _OUT, as_json: output.Json = False) -> None:
+def report(dataset: Folder, out: Out = _OUT, workers: Workers = 0, as_json: output.Json = False) -> None:
     """Write a dataset as one folder of static HTML: open its index.html, no network or server is needed.
 
     Where records went, statistics with the queries that make them, homes as floor plans, and every program with its
@@ -25,10 +27,12 @@ def report(dataset: Folder, out: Out = _OUT, as_json: output.Json = False) -> No
     Example:
       python cli.py report data_out --out report_out
     """
+    import os
+
     from hearth.pipelines.dataset import Dataset
     from hearth.report.write import write_report
 
-    programs = write_report(Dataset.open(dataset), out)
+    programs = write_report(Dataset.open(dataset), out, workers or os.cpu_count() or 1)
     if as_json:
         output.emit({"out": str(out), "programs": programs})
     else:

@@ -59,9 +59,10 @@ def _rooms(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
 
 def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
     for node, box in rooms:
-        x, y, _, _ = _rectangle(box)
+        x, y, width, _ = _rectangle(box)
         name = escape(node.class_name.replace("_", " "))
-        yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="0.35">{name}</text>'
+        size = min(0.35, 1.6 * (width - 0.3) / max(len(name), 1))
+        yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="{size:.2f}">{name}</text>'
 
 
 def _things(nodes: tuple[Node, ...]) -> Iterator[str]:

@@ -43,7 +43,8 @@ class Stories:
 
         Args:
             program: a row of `programs`.
-            runs: its rows of `executions`, each with its `environment`.
+            runs: its rows of `executions`, each with its `environment`: of all edges those that are drawn, and of each
+                tick how many edges came and went.
             repairs: its rows of `repairs`, in order.
         """
         steps = program_of(program).steps
@@ -77,8 +78,8 @@ class Stories:
             "failure": failure and _failure(failure),
             "conditions": [_condition(row) for row in environment["conditions"]],
             "ticks": [_tick(tick, names) for tick in run["ticks"]],
-            "start": _graph(start, states, names, shown),
-            "final": _graph(final, ended, names, shown),
+            "start": _graph(start, states, names, shown, home.characters),
+            "final": _graph(final, ended, names, shown, home.characters),
             "frames": self.frames.get(run["execution_id"], []),
         }
 
@@ -113,9 +114,7 @@ class _Home:
 
 def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]], shown: set[int]) -> None:
     edges.difference_update(edges_of(change["removed"]))
-    edges.update(
-        edge for edge in edges_of(change["added"]) if edge.relation in DRAWN and shown & {edge.source, edge.target}
-    )
+    edges.update(edge for edge in edges_of(change["added"]) if edge.source in shown or edge.target in shown)
     for row in change["cleared_states"]:
         states.get(row["node"], set()).discard(row["state"])
     for row in change["set_states"]:
@@ -123,10 +122,11 @@ def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]], shown: se
             states[row["node"]].add(row["state"])
 
 
-def _graph(edges: set[Edge], states: dict[int, set[str]], names: dict[int, str], shown: set[int]) -> Row:
+def _graph(
+    edges: set[Edge], states: dict[int, set[str]], names: dict[int, str], shown: set[int], people: set[int]
+) -> Row:
     # Rooms hold everything, and pictures face everything: said is where things are that a program names, and what
     # people face.
-    people = {node for node, name in names.items() if name == "character"}
     kept = sorted(e for e in edges if e.source in shown and (e.relation != "FACING" or e.source in people))
     kept = kept[:_MOST_RELATIONS]
     nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & states.keys())})
@@ -137,7 +137,7 @@ def _graph(edges: set[Edge], states: dict[int, set[str]], names: dict[int, str],
 
 
 def _tick(tick: Row, names: dict[int, str]) -> Row:
-    return {"steps": [each["step"] for each in tick["instructions"]], "changes": list(_changes(tick, names))}
+    return {"steps": tick["steps"], "changes": list(_changes(tick, names))}
 
 
 def _changes(tick: Row, names: dict[int, str]) -> Iterator[str]:
@@ -145,9 +145,9 @@ def _changes(tick: Row, names: dict[int, str]) -> Iterator[str]:
         return f"{names.get(node, '?')} ({node})"
 
     yield from (f"{said(row['node'])} is {row['state']}" for row in tick["set_states"])
-    told = [edge for edge in edges_of(tick["added"]) if edge.relation in DRAWN]
-    yield from (f"{said(edge.source)} {edge.relation} {said(edge.target)}" for edge in told[:6])
-    more, fewer = len(tick["added"]) - len(told[:6]), len(tick["removed"])
+    told = list(edges_of(tick["added"]))[:6]
+    yield from (f"{said(edge.source)} {edge.relation} {said(edge.target)}" for edge in told)
+    more, fewer = tick["came"] - len(told), tick["went"]
     if more or fewer:
         yield f"{more} more edges, {fewer} fewer"
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import shutil
+import sys
 from collections import defaultdict
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,7 +17,7 @@ import orjson
 from hearth.pipelines.dataset import Dataset
 from hearth.report.figures import figures
 from hearth.report.plans import plans
-from hearth.report.stories import Stories
+from hearth.report.stories import DRAWN, Stories
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -26,8 +29,8 @@ Row = dict[str, Any]
 _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
 
 
-def write_report(dataset: Dataset, to: Path) -> int:
-    """Write the report of a dataset into a folder.
+def write_report(dataset: Dataset, to: Path, workers: int = 1) -> int:
+    """Write the report of a dataset into a folder; the same files for any number of workers.
 
     `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so that data comes in
     scripts: `data/programs.js` has a short row a program, `data/stories-N.js` what their pages show.
@@ -44,8 +47,7 @@ def write_report(dataset: Dataset, to: Path) -> int:
     (to / "data").mkdir(parents=True, exist_ok=True)
     rows = _rows(dataset)
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
-    for number, stories in enumerate(_shards(dataset)):
-        (to / f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(stories) + b");\n")
+    _write_stories(dataset, to, workers)
     for name in ("app.js", "page.js", "style.css"):
         (to / name).write_bytes((files("hearth.report") / "assets" / name).read_bytes())
     (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
@@ -80,28 +82,74 @@ def _rows(dataset: Dataset) -> list[list[Any]]:
 _LISTED = ("program_id", "title", "origin", "split", "steps", "homes", "repairs", "code")
 
 
-def _shards(dataset: Dataset) -> Iterator[list[Row]]:
-    """Stories by program id, `SHARD` at a time."""
+def _write_stories(dataset: Dataset, to: Path, workers: int) -> None:
+    """Stories by program id, `SHARD` a file; shares of files go to processes."""
+    names = [name for (name,) in dataset.rows("SELECT program_id FROM programs ORDER BY 1")[1]]
+    shards = [names[start : start + SHARD] for start in range(0, len(names), SHARD)]
+    told = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
+    jobs = [(str(dataset.folder), str(to), told[start : start + _SHARE]) for start in range(0, len(told), _SHARE)]
+    if workers < 2 or len(jobs) < 2:
+        stories = Stories(dataset)
+        for number, low, high in told:
+            _write_shard(dataset, stories, to, (number, low, high))
+        return
+    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
+        for _ in pool.map(_write_share, jobs):
+            pass
+
+
+_SHARE = 8
+"""Files that a process writes at a time."""
+
+Shard = tuple[int, str, str]
+"""A file's number, and the ids of its first and last program."""
+
+
+def _write_share(job: tuple[str, str, list[Shard]]) -> None:
+    folder, to, shards = job
+    dataset = Dataset.open(folder)
     stories = Stories(dataset)
+    for shard in shards:
+        _write_shard(dataset, stories, Path(to), shard)
+
+
+def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> None:
+    number, low, high = shard
     with dataset.connection.cursor() as cursor:
-        names = [name for (name,) in cursor.sql("SELECT program_id FROM programs ORDER BY 1").fetchall()]
-        for start in range(0, len(names), SHARD):
-            asked = {"low": names[start], "high": names[min(start + SHARD, len(names)) - 1]}
-            yield list(_stories(cursor, stories, asked))
+        found = list(_stories(cursor, stories, {"low": low, "high": high}))
+    (to / f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
+
+
+# Only edges that are drawn are read: CLOSE is most of what a tick changes, and of that only the number is told.
+_DRAWN = ", ".join(f"'{name}'" for name in sorted(DRAWN))
+_EDGES = f"list_filter({{}}, lambda e: e.relation IN ({_DRAWN}))"
+_RUNS = f"""
+    SELECT e.execution_id, e.program_id, e.home, e.failure, e.bindings,
+        list_transform(e.ticks, lambda t: {{
+            'steps': list_transform(t.instructions, lambda i: i.step), 'set_states': t.set_states,
+            'cleared_states': t.cleared_states, 'added': {_EDGES.format("t.added")},
+            'removed': {_EDGES.format("t.removed")}, 'came': len(t.added), 'went': len(t.removed)}}) AS ticks,
+        {{'conditions': v.conditions, 'removed_nodes': v.removed_nodes,
+         'added_nodes': list_transform(v.added_nodes,
+            lambda n: {{'id': n.id, 'class_name': n.class_name, 'states': n.states}}),
+         'set_states': v.set_states, 'cleared_states': v.cleared_states,
+         'added': {_EDGES.format("v.added")}, 'removed': {_EDGES.format("v.removed")}}} AS environment
+    FROM (SELECT * FROM executions WHERE program_id BETWEEN $low AND $high) e
+    JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
+    ORDER BY e.execution_id
+"""
+_TOLD = "program_id, parent_id, title, description, origin, activity_id, steps"
 
 
 def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[Row]:
     between = "program_id BETWEEN $low AND $high"
-    programs = _ask(cursor, f"SELECT * FROM programs WHERE {between} ORDER BY program_id", asked)
-    environments = {
-        row["environment_id"]: row for row in _ask(cursor, f"SELECT * FROM environments WHERE {between}", asked)
-    }
     runs, repairs = defaultdict(list), defaultdict(list)
-    for row in _ask(cursor, f"SELECT * FROM executions WHERE {between} ORDER BY execution_id", asked):
-        runs[row["program_id"]].append({**row, "environment": environments[row["environment_id"]]})
+    for row in _ask(cursor, _RUNS, asked):
+        runs[row["program_id"]].append(row)
     for row in _ask(cursor, f"SELECT * FROM repairs WHERE {between} ORDER BY program_id, attempt", asked):
         repairs[row["program_id"]].append(row)
-    for program in programs:
+    for program in _ask(cursor, f"SELECT {_TOLD}, split FROM programs WHERE {between} ORDER BY program_id", asked):
         name = program["program_id"]
         yield stories.story(program, runs[name], repairs[name])
 

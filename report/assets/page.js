@@ -147,13 +147,18 @@ HEARTH.draw = (() => {
       clearInterval(timer);
       timer = 0;
       const run = told.runs[Number(choose.value)];
-      place.replaceChildren(...(run ? runCards(run, steps) : [element("p", "It was not run.", "quiet")]));
+      if (!run) { columns.replaceChildren(...first, element("p", "It was not run.", "quiet")); return; }
+      const [about, played, before, after] = runCards(run, steps);
+      const [left, right] = [element("div", null, "side"), element("div", null, "side")];
+      left.append(first[0], about);
+      right.append(played, ...first.slice(1));
+      columns.replaceChildren(left, right);
+      place.replaceChildren(before, after);
     };
     choose.onchange = open;
-    columns.append(...first);
     const label = element("p", "Run in ", "controls");
     label.append(choose);
-    page.replaceChildren(...head, columns, label, place);
+    page.replaceChildren(...head, label, columns, place);
     const filmed = told.runs.findIndex((run) => run.frames.length);
     if (filmed > 0) choose.value = String(filmed);
     open();
