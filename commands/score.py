@@ -291,23 +291,24 @@ def baselines(
     seed: Seed = 0,
     as_json: output.Json = False,
 ) -> None:
-    """LCS of simple baselines on a dataset's split, beside the thesis's tables 4.4 and 4.5.
+    """Every score of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
+
+    Needs scikit-learn, for the words.
 
     \b
     Example:
       python cli.py score baselines data_out
     """
-    from hearth.pipelines.baselines import THESIS
+    from hearth.pipelines.baselines import THESIS, Result
     from hearth.pipelines.baselines import baselines as run
     from hearth.pipelines.dataset import Dataset
 
     found = run(Dataset.open(folder), split, seed)
     if as_json:
-        names = ("baseline", "action", "object", "step", "mean")
-        thesis = [dict(zip(names, row, strict=True)) for row in THESIS]
+        thesis = [row._asdict() for row in THESIS]
         output.emit({"split": split, "here": [row._asdict() for row in found], "thesis": thesis})
         return
-    output.table(["baseline", "action", "object", "step", "mean"], [*found, *THESIS])
+    output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
     if not found:
         print("\nthe split has no original programs to learn from or to test on")
 

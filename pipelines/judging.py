@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.surroundings import RULES
-from hearth.pipelines.verify import StoredHomes
+from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
@@ -54,6 +53,7 @@ def judge(
     Raises:
         HearthError: what `read_pairs` raises; UNKNOWN_ID where the dataset has no such split or part.
     """
+    opened.cache_clear()
     wanted = chosen(dataset, split, part)
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
     named = _named(dataset)
@@ -62,6 +62,15 @@ def judge(
     shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
     jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
     return [each for done in _each(jobs, workers) for each in done]
+
+
+def judge_steps(
+    dataset: Dataset, predicted: Mapping[str, tuple[Step, ...]], options: Options | None = None
+) -> list[Scored]:
+    """Score programs for executions of a dataset, by execution id, in that order; as `judge`, in this process."""
+    pairs = [Pair(name, steps, ()) for name, steps in predicted.items()]
+    shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
+    return [each for share in shares for each in _judged((str(dataset.folder), share, options or Options()))]
 
 
 def _each(jobs: list[Job], workers: int) -> Iterator[list[Scored]]:
@@ -79,7 +88,7 @@ def _each(jobs: list[Job], workers: int) -> Iterator[list[Scored]]:
 
 def _judged(job: Job) -> list[Scored]:
     folder, pairs, options = job
-    dataset, homes = _opened(folder)
+    dataset, homes = opened(folder)
     cases = {case["execution_id"]: case for case in _cases(dataset, [pair.id for pair in pairs])}
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
     found = []
@@ -91,13 +100,6 @@ def _judged(job: Job) -> list[Scored]:
         ran = each.execution and replace(each.execution, final=None)
         found.append(replace(each, execution=ran))
     return found
-
-
-@lru_cache(maxsize=2)
-def _opened(folder: str) -> tuple[Dataset, StoredHomes]:
-    """A dataset and its homes, once a process."""
-    dataset = Dataset.open(folder)
-    return dataset, StoredHomes(dataset)
 
 
 def _filled(pair: Pair, case: dict[str, Any]) -> Pair:

@@ -11,7 +11,16 @@ import pytest
 import hearth
 from hearth.exports.words import sentences
 from hearth.kb import knowledge as kb
-from hearth.pipelines.baselines import BASELINES, Example, baselines, nearest_description, random_sampling
+from hearth.pipelines.baselines import (
+    BASELINES,
+    BY_SKETCH,
+    Example,
+    baselines,
+    nearest_description,
+    nearest_sketch,
+    random_retrieval,
+    random_sampling,
+)
 from hearth.pipelines.judging import chosen, judge, read_line
 from hearth.schemas.errors import HearthError
 from hearth.schemas.program import ObjectRef, Step
@@ -109,22 +118,50 @@ def test_lines_as_programs_and_as_sentences():
         assert read_line(said) == step, said
 
 
+def walk(name):
+    return (Step("Walk", (ObjectRef(name),)),)
+
+
 def test_every_baseline_gives_a_program_a_test():
-    train = [Example(f"t{n}", text, (Step("Walk", (ObjectRef(text.split()[1]),)),)) for n, text in enumerate(
+    train = [Example(f"t{n}", text, walk(text.split()[1])) for n, text in enumerate(
         ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
     test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
-    for make in BASELINES.values():
+    for make in (random_sampling, random_retrieval, nearest_sketch):
         assert len(make(train, test, 0)) == 2
         assert make(train, test, 0) == make(train, test, 0)
-    assert [steps[0].objects[0].name for steps in nearest_description(train, test, 0)] == ["book", "bed"]
     sampled = random_sampling(train, test, 0)
     assert all(parsability(steps, kb.default()).parsable for steps in sampled)
     assert random_sampling(train, test, 1) != sampled
 
 
+@pytest.mark.tools
+def test_the_nearest_description_shares_the_rarest_words():
+    pytest.importorskip("sklearn", reason="not installed: pip install scikit-learn")
+    train = [Example(f"t{n}", text, walk(text.split()[1])) for n, text in enumerate(
+        ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
+    test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
+    assert nearest_description(train, test, 0) == [walk("book"), walk("bed")]
+
+
+def test_the_nearest_sketch_and_of_equals_the_nearest_start():
+    train = [
+        Example("t0", "", walk("cup"), walk("sink"), frozenset({"ON cup table"})),
+        Example("t1", "", walk("book"), walk("sofa"), frozenset({"ON cup table", "OPEN fridge"})),
+        Example("t2", "", walk("bed"), walk("sofa"), frozenset({"ON cup bed", "OPEN fridge", "ON lamp"})),
+    ]
+    test = [
+        Example("a", "", (), walk("sofa"), frozenset({"ON lamp", "ON cup bed"})),
+        Example("b", "", (), walk("sofa"), frozenset({"ON cup table"})),
+        Example("c", "", (), walk("sink"), frozenset({"ON lamp"})),
+    ]
+    assert nearest_sketch(train, test, 0) == [walk("bed"), walk("book"), walk("cup")]
+
+
+@pytest.mark.tools
 def test_baselines_of_a_dataset(ds):
+    pytest.importorskip("sklearn", reason="not installed: pip install scikit-learn")
     found = baselines(ds)
     if found:
-        assert [each.baseline for each in found] == list(BASELINES)
-        assert all(0 <= value <= 1 for each in found for value in each[1:])
+        assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH}
+        assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:])
     assert baselines(ds, "nothing") == []
