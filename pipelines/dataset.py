@@ -64,7 +64,12 @@ class Dataset:
 
     @cached_property
     def connection(self) -> Any:
-        """A DuckDB connection with the views and macros. It can read this folder only, and change nothing in it."""
+        """A DuckDB connection with the views and macros. It can read this folder only, and change nothing in it.
+
+        Raises:
+            HearthError: MISSING_FILE, where a table is not there.
+        """
+        _complete(self.folder, self.manifest)
         return attach(self.folder)
 
     def sql(self, query: str, **parameters: Any) -> Any:
@@ -328,6 +333,19 @@ def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]]) -> None:
         states[row["node"]].discard(row["state"])
     for row in change["set_states"]:
         states[row["node"]].add(row["state"])
+
+
+def _complete(folder: Path, content: Row) -> None:
+    """Name the tables that are not there, before a query says so in DuckDB's words."""
+    from hearth.schemas.tables import TABLES
+
+    missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
+    if missing:
+        message = (
+            f"it has no table {', '.join(f'`{table}`' for table in missing)}; it was written by {content['version']}"
+        )
+        remedy = "fetch the dataset again, or publish it again with this version"
+        raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
 
 
 def _refused(error: Exception) -> HearthError:

@@ -50,6 +50,7 @@ REFERENCES = (
     ("splits", "program_id", "programs", "program_id"),
     ("sketches", "program_id", "programs", "program_id"),
     ("frames", "execution_id", "executions", "execution_id"),
+    ("videos", "execution_id", "executions", "execution_id"),
 )
 """What refers to what: table and column, and the table and key in which its value must be; null refers to nothing."""
 

@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
+import hearth
 from hearth.pipelines.files import file_digest
 from hearth.pipelines.verify import verify
 from hearth.schemas.errors import HearthError
@@ -140,3 +141,33 @@ def test_a_newer_dataset_is_not_guessed_at(copy):
     (copy / "manifest.json").write_text(text)
     with pytest.raises(HearthError, match="format 99"):
         verify(copy)
+
+
+def test_a_table_that_is_not_there_is_named(copy):
+    shutil.rmtree(copy / "sketches")
+    assert codes(copy) == ["MISSING_FILE"]
+    with pytest.raises(HearthError, match="no table `sketches`") as caught:
+        len(hearth.load(copy))
+    assert str(caught.value.diagnostics[0].code) == "MISSING_FILE"
+
+
+def test_a_program_dealt_to_both_sides(copy):
+    def dealt(table):
+        other = ["test" if split == "train" else "train" for split in table["split"].to_pylist()]
+        return table.set_column(table.schema.get_field_index("split"), table.schema.field("split"), [other])
+
+    rewritten(copy, "programs", dealt)
+    assert "BAD_TABLE" in codes(copy)
+
+
+def test_any_number_of_workers_finds_the_same(copy, monkeypatch):
+    def moved(table):
+        rows = table.to_pylist()
+        for row in rows:
+            row["bindings"] = [{**each, "node": each["node"] + 1} for each in row["bindings"]]
+        return pa.Table.from_pylist(rows, table.schema)
+
+    rewritten(copy, "executions", moved)
+    monkeypatch.setattr("hearth.pipelines.verify.SHARE", 3)
+    one, two = (verify(copy, number) for number in (1, 2))
+    assert one == two and one.faults
