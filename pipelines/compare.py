@@ -22,6 +22,7 @@ KEYS = {
     "splits": ("split", "execution_id"),
     "sketches": ("program_id", "keep"),
     "frames": ("execution_id", "tick", "camera", "modality"),
+    "videos": ("execution_id", "camera"),
     "vocabulary": ("kind", "id"),
     "rejects": ("stage", "record_id", "code", "fault", "line", "column", "file"),
     "ledger": ("stage",),

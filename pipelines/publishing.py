@@ -55,7 +55,8 @@ def finish(job: Job, counts: Counts) -> None:
         "home_edges": lambda: _home_edges(job, homes),
         "splits": lambda: _splits(job),
         "sketches": lambda: _sketches(job),
-        "frames": lambda: _frames(job),
+        "frames": lambda: _frames(job, ""),
+        "videos": lambda: _frames(job, "videos"),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
         "rejects": lambda: _rejects(job),
         "ledger": lambda: _ledger(job, counts),
@@ -239,12 +240,12 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[Row]:
             yield {"home": name, **edge._asdict()}
 
 
-def _frames(job: Job) -> Iterator[Row]:
+def _frames(job: Job, kind: str) -> Iterator[Row]:
     home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet"):
         table = pq.read_table(path, columns=["execution_id", "home"])
         home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
-    for path in _parts(job, "render"):
+    for path in _parts(job, "render", kind):
         for row in read_rows(path):
             if row["execution_id"] in home:
                 yield {**row, "home": home[row["execution_id"]]}
@@ -275,7 +276,12 @@ def _told_for_splits(folder: Path) -> list[splits.Told]:
 
 def _copy_pictures(job: Job) -> None:
     """Copy the pictures beside the tables, and drop those of an earlier build."""
-    source, folder = job.settings.folder("render") / "frames", job.folder / "frames"
+    for name in ("frames", "films"):
+        _copy_folder(job.settings.folder("render") / name, job.folder / name)
+
+
+def _copy_folder(source: Path, folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
     wanted = {path.relative_to(source) for path in source.rglob("*") if path.is_file()} if source.exists() else set()
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.suffix != ".parquet" and path.relative_to(folder) not in wanted:

@@ -1,4 +1,6 @@
-"""Stage 5: pictures of a few programs while they run: the home from above and one camera, colour and instance ids."""
+"""Stage 5: pictures of a few programs while they run: the home from above and one camera, colour and instance ids; and
+films of some of them, each with light, bodies, designs, places and speed of its own.
+"""
 
 from __future__ import annotations
 
@@ -12,17 +14,23 @@ from hearth.pipelines.parts import READ_BATCH, Row, read_rows
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Partition, Record, Stage
 from hearth.pipelines.surroundings import USES, Homes, overlays
-from hearth.schemas.tables import RENDERED
+from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:
     from hearth.rendering.camera import Camera
     from hearth.rendering.snapshots import Snapshot
+    from hearth.schemas.graph import EnvironmentGraph
+    from hearth.simulation.engine import Execution
 
 AUTO = "auto"
 TOP = "top"
 
 FRAMES = "frames"
 """Folder of the pictures, in the stage's own folder and in the dataset."""
+
+
+FILMS = "films"
+"""Folder of the films, likewise."""
 
 
 class Context(NamedTuple):
@@ -32,8 +40,8 @@ class Context(NamedTuple):
     job: Job
 
 
-def process(case: Record, context: Context) -> Iterator[Row]:
-    """One row for each picture of a case."""
+def process(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
+    """One row for each picture of a case, and one for its film, if it is filmed."""
     from hearth.rendering.png import encode
     from hearth.rendering.snapshots import snapshots
     from hearth.simulation.homes import catalog
@@ -42,13 +50,56 @@ def process(case: Record, context: Context) -> Iterator[Row]:
     home = catalog.load_graph(case["home"], job.settings.homes_folder)
     execution = rerun(case, context.homes)
     folder = _folder(case["execution_id"])
+    if case["execution_id"] in job.plan["films"]:
+        yield "videos", _film(case, execution, home, context)
     for shot in snapshots(execution, home, knowledge=context.homes.knowledge):
         for modality, picture in shot.pictures.items():
             name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
             path = job.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             write_bytes(path, encode(picture))
-            yield {**_camera(shot.camera), **_told(case, shot, modality), "file": name}
+            yield "", {**_camera(shot.camera), **_told(case, shot, modality), "file": name}
+
+
+FILM_SIZE, FILM_RATE = (320, 240), 15.0
+"""Width and height of a film, and its pictures a second."""
+
+
+def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: Context) -> Row:
+    """Write a film, as mp4: its bytes are the same each time, which webm's are not."""
+    from hearth.rendering.snapshots import play
+    from hearth.rendering.variation import drawn
+    from hearth.rendering.video import record
+
+    name, job = case["execution_id"], context.job
+    folder = f"{FILMS}/{_folder(name)}"
+    (job.folder / folder).mkdir(parents=True, exist_ok=True)
+    variation = drawn(job.settings.seed, name)
+    staged = play(execution, home, knowledge=context.homes.knowledge, variation=variation)
+    done = record(staged, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".mp4",))
+    return {
+        "execution_id": name,
+        "camera": AUTO,
+        "width": FILM_SIZE[0],
+        "height": FILM_SIZE[1],
+        "fps": FILM_RATE,
+        "frames": done.frames,
+        "seconds": done.frames / FILM_RATE,
+        "steps": done.steps,
+        "track": list(_track(done.track)),
+        "variation": variation.told(),
+        "file": f"{folder}/{done.files[0].name}",
+    }
+
+
+def _track(track: list[tuple[int, Camera]]) -> Iterator[Row]:
+    """The pictures at which the tick or the camera changes."""
+    before: tuple[int, Camera] | None = None
+    for number, (tick, camera) in enumerate(track):
+        if before != (tick, camera):
+            told = _camera(camera)
+            yield {"frame": number, "tick": tick, **{key: told[key] for key in ("camera", "intrinsics", "pose")}}
+        before = (tick, camera)
 
 
 def _folder(execution_id: str) -> str:
@@ -87,11 +138,12 @@ def prepare(settings: Settings) -> dict[str, Any]:
     homes = Homes(settings)
     found: dict[str, tuple[str, str]] = {}
     for file, row in _sampled(settings):
-        if len(found) >= settings.pictures:
+        if len(found) >= max(settings.pictures, settings.videos):
             break
         if row["executable"] and homes.in_catalog(row["home"]):
             found.setdefault(row["program_id"], (row["execution_id"], file))
-    return {**overlays(settings), "executions": dict(sorted(found.values()))}
+    films = sorted(name for name, _ in list(found.values())[: settings.videos])
+    return {**overlays(settings), "executions": dict(sorted(found.values())), "films": films}
 
 
 def _sampled(settings: Settings) -> Iterator[tuple[str, Row]]:
@@ -148,14 +200,15 @@ def open_context(job: Job) -> Context:
 
 STAGE = Stage(
     name="render",
-    tables={"": RENDERED},
+    tables={"": RENDERED, "videos": FILMED},
     process=process,
     reads=("sample",),
     uses=(*USES, "grounding", "rendering", "pipelines/render.py", "pipelines/cases.py"),
-    settings=("pictures",),
+    settings=("pictures", "videos", "seed"),
     open=open_context,
     prepare=prepare,
     partitions=partitions,
     records=records,
+    patience=10,
     identify=lambda case: str(case["execution_id"]),
 )

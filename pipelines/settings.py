@@ -25,7 +25,8 @@ class Settings:
         target: augmented programs wanted in all; 0 for as many as `variants` gives.
         homes_each: homes to sample each program in, drawn from `homes`; 0 for all of them.
         tries: repairs of one program, at most.
-        pictures: how many executions to film.
+        pictures: how many executions to picture, step by step.
+        videos: how many of them to film in motion.
         time_limit: seconds that a record may take in a stage; 0 for any time. Those that take longer are tried again by
             the next build.
         store: URL of what `out` is a local copy of (see `stores`), or "".
@@ -46,6 +47,7 @@ class Settings:
     homes_each: int = 0
     tries: int = 20
     pictures: int = 3
+    videos: int = 0
     time_limit: float = 60.0
     store: str = ""
     revision: str = ""

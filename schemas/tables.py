@@ -204,6 +204,52 @@ RENDERED: Final = pa.schema(
     ]
 )
 
+_PINHOLE = _struct(fx=pa.float64(), fy=pa.float64(), cx=pa.float64(), cy=pa.float64())
+
+FILMED: Final = pa.schema(
+    [
+        _column("execution_id", TEXT, "the execution filmed"),
+        _column("camera", TEXT, "auto (chosen by what it sees), top, first, third, or the name of one that stays"),
+        _column("width", COUNT, "pixels"),
+        _column("height", COUNT, "pixels"),
+        _column("fps", pa.float64(), "pictures a second"),
+        _column("frames", COUNT, "pictures"),
+        _column("seconds", pa.float64(), "how long it is"),
+        _column(
+            "steps",
+            pa.list_(
+                _struct(
+                    tick=COUNT,
+                    steps=TEXTS,
+                    start=pa.float64(),
+                    end=pa.float64(),
+                    cameras=TEXTS,
+                    visible=pa.float64(),
+                )
+            ),
+            "when each tick is shown, seconds; by which cameras; the share of the objects it names that are seen",
+        ),
+        _column(
+            "track",
+            pa.list_(_struct(frame=COUNT, tick=COUNT, camera=TEXT, intrinsics=_PINHOLE, pose=pa.list_(pa.float64()))),
+            "camera of the pictures from this one on: intrinsics, and pose from camera to world, 4x4 row by row",
+        ),
+        _column(
+            "variation",
+            _struct(
+                seed=pa.int64(),
+                hour=pa.float64(),
+                speed=pa.float64(),
+                jitter=pa.float64(),
+                scatter=pa.float64(),
+                wander=pa.bool_(),
+            ),
+            "what was drawn by chance: see `rendering.variation`",
+        ),
+        _column("file", TEXT, "the video, relative to the dataset"),
+    ]
+)
+
 REJECTED: Final = pa.schema(
     [
         _column("stage", TEXT, "which stage refused it"),
@@ -297,6 +343,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
     ),
     "sketches": _published(*SKETCHED),
     "frames": _published(*RENDERED, _column("home", TEXT, "where it was filmed")),
+    "videos": _published(*FILMED, _column("home", TEXT, "where it was filmed")),
     "vocabulary": _published(
         _column("kind", TEXT, "action, class, state, property, relation, edge_type or failure"),
         _column("id", COUNT, "stable number within its kind"),

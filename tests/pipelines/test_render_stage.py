@@ -13,7 +13,7 @@ def filmed(tmp_path_factory, build_folder):
     folder = tmp_path_factory.mktemp("filmed")
     program = folder / "bed.txt"
     program.write_text("Rest\nLie down.\n\n[Walk] <bed> (1)\n")
-    built = build_folder(folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, variants=0)
+    built = build_folder(folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, variants=0)
     return built.run_all()
 
 
@@ -26,6 +26,29 @@ def test_a_picture_a_tick_camera_and_modality(filmed):
         assert (filmed.out / "render" / row["file"]).read_bytes().startswith(b"\x89PNG")
         assert len(row["pose"]) == 16
         assert row["intrinsics"]["fx"] > 0
+
+
+def test_a_film_has_its_steps_its_cameras_and_what_was_drawn_by_chance(filmed):
+    (row,) = filmed.rows("render/videos")
+    film = (filmed.out / "render" / row["file"]).read_bytes()
+    assert len(film) > 1000
+    assert row["frames"] == pytest.approx(row["seconds"] * row["fps"])
+    assert [step["tick"] for step in row["steps"]] == [0, 1]
+    assert row["steps"][1]["steps"][0].startswith("[Walk] <bed>")
+    assert row["steps"][1]["end"] == pytest.approx(row["seconds"], abs=0.1)
+    assert row["steps"][1]["visible"] == 1.0
+    assert row["track"][0]["frame"] == 0
+    assert len(row["track"][0]["pose"]) == 16
+    assert 7.5 <= row["variation"]["hour"] <= 18.5
+
+
+def test_films_are_published_and_counted(filmed):
+    import hearth
+
+    ds = hearth.load(filmed.out)
+    (row,) = ds.rows("SELECT file, home, seconds FROM videos")[1]
+    assert row[1] == "maple"
+    assert file_digest(ds.folder / row[0]) == file_digest(filmed.out / "render" / row[0])
 
 
 def test_pictures_are_published_with_the_dataset(filmed):
