@@ -100,20 +100,20 @@ docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, comman
 	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocstrings[python]>=0.28'
 	@$(PY) -m mkdocs build -q && echo build/site/index.html
 
-lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock
-	@rm -rf build/lock && $(PYTHON) -m venv build/lock
-	@build/lock/bin/python -m pip install -q --upgrade pip
-	@build/lock/bin/python -m pip install -q -e '.[test]' setuptools
-	@build/lock/bin/python -m pip uninstall -q -y $(NOTEBOOK)
-	@build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth > build/base.lock
-	@build/lock/bin/python -m pip install -q -c build/base.lock -e '.[tools]'
-	@build/lock/bin/python -m pip freeze --all --exclude pip --exclude hearth > build/tools.lock
+lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock and requirements-tools.lock
+	@rm -rf build/lock && mkdir -p build/lock
+	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
+	@build/lock/all/bin/python -m pip install -q -e '.[test,tools]' setuptools
+	@build/lock/all/bin/python -m pip uninstall -q -y $(NOTEBOOK)
+	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth | sort > build/lock/all.txt
+	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[test]' setuptools
+	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
+	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth | sort > build/lock/base.txt
 	@{ sed '/^#/!d' requirements.lock; \
-	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/" build/base.lock; \
-	   } > build/requirements.lock
-	@{ echo '# What `make test-tools` adds to requirements.lock. Made by `make lock`; not edited by hand.'; \
-	   comm -13 <(sort build/base.lock) <(sort build/tools.lock); } > requirements-tools.lock
-	@mv build/requirements.lock requirements.lock && rm -rf build/lock build/base.lock build/tools.lock
+	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/" build/lock/base.txt; \
+	   } > build/lock/requirements.lock
+	@{ sed '/^#/!d' requirements-tools.lock; comm -13 build/lock/base.txt build/lock/all.txt; } > requirements-tools.lock
+	@mv build/lock/requirements.lock requirements.lock && rm -rf build/lock
 
 wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
