@@ -153,7 +153,8 @@ def realism(
 ) -> None:
     """Where sampled objects are, beside where a release's stored start graphs have them (figure B-4), and their states.
 
-    The distance of two distributions is 0 when they are alike and 1 when they have nothing in common.
+    The distance of two distributions is 0 when they are alike and 1 when they have nothing in common. The release
+    leaves most things that it adds on and in nothing, so they are compared without those, too.
 
     \b
     Example:
@@ -169,13 +170,15 @@ def realism(
         out.mkdir(parents=True, exist_ok=True)
         (out / "release.svg").write_text(report.heat_map(theirs, "Start graphs of the release"), encoding="utf-8")
         (out / "sampled.svg").write_text(report.heat_map(ours, "Sampled environments"), encoding="utf-8")
-    told = {"places": report.overall(places), "states": report.overall(states)}
+    held = report.distances(report.held(theirs), report.held(ours))
+    told = {"places": report.overall(places), "places_held": report.overall(held), "states": report.overall(states)}
     if as_json:
         output.emit({**told, "places_by_class": places, "states_by_class": states, "files": out})
         return
     for what, by_class in (("places", places), ("states", states)):
         output.table((what, "distance", "in the release", "sampled"), [(k, *row) for k, row in by_class.items()])
         print(f"{what}: {told[what]} on average\n")
+    print(f"places of what is on or in something in both: {told['places_held']} on average")
 
 
 @app.command()

@@ -24,10 +24,11 @@ WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 
 
 class Spots(NamedTuple):
-    """Where things of a class belong in a home: (class, destination's index, ON or INSIDE), with cumulative weights."""
+    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights added up, and each."""
 
     choices: tuple[tuple[str, int, str], ...]
     weights: tuple[int, ...]
+    each: tuple[int, ...]
 
 
 class Kind(NamedTuple):
@@ -177,7 +178,8 @@ def prepared(home: Home) -> Base:
 
 def _weighted(spots: Iterable[tuple[tuple[str, int, str], int]]) -> Spots:
     pairs = tuple(spots)
-    return Spots(tuple(spot for spot, _ in pairs), tuple(accumulate(weight for _, weight in pairs)))
+    each = tuple(weight for _, weight in pairs)
+    return Spots(tuple(spot for spot, _ in pairs), tuple(accumulate(each)), each)
 
 
 def _at_rest(home: Home) -> Home:

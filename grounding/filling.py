@@ -22,7 +22,7 @@ def fill(draft: Draft, least: int, most: int, some: int) -> None:
         some: things added all the same to a home that has as many already.
     """
     base = draft.base
-    choices, weights = base.fillers
+    choices, weights, _ = base.fillers
     if not weights:
         return
     random = draft.rng.random

@@ -185,8 +185,8 @@ def put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int, must:
     spots = base.spots(name)
     closed = home.states[0]
     good = [
-        (i, relation)
-        for _, i, relation in spots.choices
+        (i, relation, weight)
+        for (_, i, relation), weight in zip(spots.choices, spots.each, strict=True)
         if (room < 0 or (base.room[i] >= 0 and home.ids[base.room[i]] == room))
         and home.ids[i] not in draft.taken
         and not (relation == "INSIDE" and closed >> i & 1)
@@ -195,10 +195,12 @@ def put_where_it_belongs(draft: Draft, name: str, node_id: int, room: int, must:
     if not good and must:
         surfaces = home.properties["SURFACES"] & home.furniture
         good = [
-            (i, "ON") for i in indices(surfaces) if room < 0 or (base.room[i] >= 0 and home.ids[base.room[i]] == room)
+            (i, "ON", 1)
+            for i in indices(surfaces)
+            if room < 0 or (base.room[i] >= 0 and home.ids[base.room[i]] == room)
         ]
     if good:
-        i, relation = draft.rng.choice(good)
+        ((i, relation, _),) = draft.rng.choices(good, [weight for _, _, weight in good])
         if room < 0 and base.room[i] >= 0:
             draft.added.remove(next(e for e in draft.added if e.source == node_id and e.relation == "INSIDE"))
             draft.settle(node_id, home.ids[base.room[i]])

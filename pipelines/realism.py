@@ -124,6 +124,12 @@ def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
     return found
 
 
+def held(counts: Counts) -> Counts:
+    """Without what is on and in nothing: the release leaves most of what it adds in the middle of a room."""
+    found = {kind: Counter({p: n for p, n in places.items() if p != NOWHERE}) for kind, places in counts.items()}
+    return {kind: places for kind, places in found.items() if places}
+
+
 def overall(found: Mapping[str, tuple[float, int, int]]) -> float | None:
     """The mean distance, each class weighted by how often the release has it."""
     total = sum(seen for _, seen, _ in found.values())
