@@ -1,70 +1,179 @@
-"""Rates of reading, drawing and comparing programs, and five minutes of mutated input.
+"""Rates of ingesting, understanding, drawing and comparing programs, and the memory that each reader needs.
 
-Seconds are of the processor, the best of three, so that a busy machine slows them less. `--fuzz 0` leaves the fuzzing
-out.
+Seconds are of the processor, of one core. Memory is the most that a process of its own ever held while it read an
+input and ten times that input: flat is a ratio of about 1. The files are made here; nothing is downloaded.
+`--programs N` sets how many programs of text are ingested; `--memory 0` leaves the memory out.
 """
 
 from __future__ import annotations
 
-import argparse
+import json
+import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
+import zipfile
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from random import Random
+
+from measuring import Figure, finish, parser, rate, runs, tell
 
 from hearth.kb import knowledge
-from hearth.pipelines import corpus, fuzzing, spoken, synthesis
-from hearth.pipelines.readers import text
+from hearth.pipelines import corpus, spoken, synthesis
+from hearth.pipelines.readers.crowd import DESCRIPTIONS, PROGRAMS
 from hearth.schemas.program import ObjectRef, Step
 
-COUNT = 20_000
+OBJECTS = ("couch", "bed", "table", "kitchen", "cup", "milk", "fridge", "television", "sofa", "desk", "book")
+
+INGEST = """
+import resource, sys, tempfile, time
+from hearth.pipelines.ingest import STAGE
+from hearth.pipelines.run import run_stage
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.workers import Workers
+with tempfile.TemporaryDirectory() as out, Workers(1) as workers:
+    began = time.process_time()
+    counts = run_stage(STAGE, Settings((sys.argv[1],), out), workers).manifest.counts
+    taken = time.process_time() - began
+print(counts.records_in, taken, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
 
 
-def timed(name: str, units: int, work: Callable[[], object]) -> None:
-    best = float("inf")
-    for _ in range(3):
-        before = time.process_time()
-        work()
-        best = min(best, time.process_time() - before)
-    print(f"{name:<52} {units / best:>12,.0f} a second   {best:>8.3f} s")
+def steps_of(chance: Random) -> list[str]:
+    return [f"[Walk] <{chance.choice(OBJECTS)}> ({chance.randint(1, 3)})" for _ in range(chance.randint(8, 15))]
 
 
-def program(number: int) -> str:
-    steps = "".join(f"[Walk] <couch> ({place + number % 7})\n" for place in range(1, 12))
-    return f"Watch TV\nSit down on the couch. Pick up the remote. Stay until the show is over.\n\n\n{steps}"
+def told(number: int) -> str:
+    return f"Sit down on the couch. Pick up the remote. Stay until show {number} is over and then go to bed."
+
+
+def as_text(count: int) -> Iterator[str]:
+    chance = Random(1)
+    for number in range(count):
+        yield f"Watch TV {number}\n{told(number)}\n\n\n" + "\n".join(steps_of(chance)) + "\n\n"
+
+
+def as_words(count: int) -> Iterator[str]:
+    for number in range(count):
+        steps = "".join(f"Step {n}: Walk to the {OBJECTS[(number * n) % 11]}\n" for n in range(1, 13))
+        yield f"Task: Watch TV {number}\n{steps}\n"
+
+
+def as_records(count: int) -> Iterator[str]:
+    chance = Random(1)
+    for number in range(count):
+        yield json.dumps({"title": "Watch TV", "description": told(number), "steps": steps_of(chance)}) + "\n"
+
+
+def as_list(entries: Iterable[str]) -> Iterator[str]:
+    yield "["
+    for number, entry in enumerate(entries):
+        yield f"{', ' if number else ''}{entry}"
+    yield "]\n"
+
+
+def as_sketches(count: int) -> Iterator[str]:
+    chance = Random(1)
+    yield '{"answer": '
+    yield from as_list("[1, 0, 1]" for _ in range(count))
+    yield ', "input": '
+    prog = {"title": "T", "prog": ["Walk couch", "Find cup", "Grab cup"]}
+    yield from as_list(json.dumps({**prog, "descr": told(n), "prefix": f"b/f_{chance.random()}"}) for n in range(count))
+    yield "}"
+
+
+def as_descriptions(count: int) -> Iterator[str]:
+    chance = Random(1)
+    yield ",".join(DESCRIPTIONS) + "\n"
+    for number in range(count):
+        words = " ".join(f"{chance.choice(OBJECTS)}{chance.randint(1, 99)}" for _ in range(22))
+        yield f'D{number},W{number % 50},Approved,kitchen,Title {number},"{words}"\n'
+
+
+def as_answers_of_one_worker(count: int) -> Iterator[str]:
+    chance = Random(1)
+    yield ",".join(PROGRAMS) + "\n"
+    for number in range(count):
+        steps = "\n".join(steps_of(chance))
+        yield f'P{number},W1,Approved,D{number},Watch TV,"{told(number)}",,,"{steps}"\n'
+
+
+FORMS: dict[str, tuple[str, int, Callable[[int], Iterator[str]]]] = {
+    "program text": ("a.txt", 10_000, as_text),
+    "one text without end": ("a.txt", 20_000, lambda n: (told(k) + "\n" for k in range(10 * n))),
+    "steps in words": ("a.txt", 5_000, as_words),
+    "JSON list of texts": ("a.json", 5_000, lambda n: as_list(map(json.dumps, as_words(n)))),
+    "JSON Lines of records": ("a.jsonl", 5_000, as_records),
+    "JSON list of records": ("a.json", 5_000, lambda n: as_list(as_records(n))),
+    "sketches": ("a.json", 5_000, as_sketches),
+    "crowd descriptions": ("a.csv", 5_000, as_descriptions),
+    "crowd programs of one worker": ("a.csv", 10_000, as_answers_of_one_worker),
+}
+"""For each reader a file's name, how many records the smaller input has, and what makes them."""
+
+
+def ingested(file: Path) -> tuple[int, float, float]:
+    """Records, seconds of the processor and MB at most, of the ingest stage in a process of its own."""
+    done = subprocess.run([sys.executable, "-c", INGEST, str(file)], check=True, capture_output=True, text=True)
+    records, seconds, megabytes = done.stdout.split()[-3:]
+    return int(records), float(seconds), float(megabytes)
+
+
+def whole_ingest(folder: Path, programs: int) -> Iterator[Figure]:
+    file = folder / "plain.txt"
+    with file.open("w") as out:
+        out.writelines(as_text(programs))
+    taken = [ingested(file)[1] for _ in range(3)]
+    yield rate("programs of text ingested, read to Parquet", programs, taken, "a second", 20_000)
+    with zipfile.ZipFile(folder / "plain.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(file, "plain.txt")
+    taken = [ingested(folder / "plain.zip")[1] for _ in range(3)]
+    yield rate("the same inside a zip", programs, taken, "a second", 20_000)
+
+
+def memory(folder: Path) -> Iterator[Figure]:
+    for name, (file, count, make) in FORMS.items():
+        used = []
+        for times in (1, 10):
+            path = folder / file
+            with path.open("w") as out:
+                out.writelines(make(count * times))
+            records, _, megabytes = ingested(path)
+            used.append(megabytes)
+        path.unlink()
+        yield Figure(f"most memory, {name}, {records:,} records", used[1], "MB")
+        yield Figure(f"... over that of a tenth of them ({used[0]:,.0f} MB)", used[1] / used[0], "times", 1.2)
+
+
+def others() -> Iterator[Figure]:
+    known = knowledge.default()
+    grammar = synthesis.load(synthesis.FILE, known)
+    words = "".join(as_words(1))
+    heard = runs(lambda: [spoken.parse_spoken(words, 0, "", known) for _ in range(1_000)])
+    yield rate("programs in words understood", 1_000, heard, "a second")
+    count = synthesis.DEFAULT_COUNT
+    drawn = runs(lambda: list(synthesis.synthesize(count, 0, grammar)))
+    yield rate("programs drawn", count, drawn, "a second", 5_000)
+    some = list(synthesis.synthesize(5_000, 0, grammar))
+    steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
+    many = corpus.Corpus(programs=[corpus.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)])
+    taken = runs(lambda: corpus.similarities(many, workers=1))
+    yield Figure("all pairs of 5,000 programs compared and sorted", sorted(taken)[2], "s", 2.0)
 
 
 def main() -> int:
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--fuzz", type=float, default=300, metavar="SECONDS")
+    arguments = parser(__doc__)
+    arguments.add_argument("--programs", type=int, default=100_000, metavar="N")
+    arguments.add_argument("--memory", type=int, default=1, metavar="0|1")
     asked = arguments.parse_args()
-    known = knowledge.default()
-    grammar = synthesis.load(synthesis.FILE, known)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "plain.txt"
-        file.write_text("\n".join(program(number) for number in range(COUNT)))
-        timed(
-            "programs of text found and read", COUNT, lambda: [text.read(item) for item in text.scan(file, "plain.txt")]
-        )
-    words = "Task: T\n" + "".join(f"Step {n}: Walk to the kitchen\n" for n in range(1, 13))
-    timed(
-        "programs in words understood", 1_000, lambda: [spoken.parse_spoken(words, 0, "", known) for _ in range(1_000)]
-    )
-    count = synthesis.DEFAULT_COUNT
-    timed("programs drawn", count, lambda: list(synthesis.synthesize(count, 0, grammar)))
-    drawn = list(synthesis.synthesize(5_000, 0, grammar))
-    steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in drawn]
-    many = corpus.Corpus(programs=[corpus.Written(str(n), drawn[n].title, "", each) for n, each in enumerate(steps)])
-    timed("pairs of 5,000 programs, compared and sorted", 12_497_500, lambda: corpus.similarities(many, workers=1))
-    if asked.fuzz:
-        report = fuzzing.fuzz(known, asked.fuzz, 0)
-        print(
-            f"{report.cases:,} cases, {report.records:,} records, {len(report.crashes)} crashes",
-            *report.crashes,
-            sep="\n",
-        )
-        return bool(report.crashes)
+    figures: list[Figure] = []
+    with tempfile.TemporaryDirectory() as name:
+        parts = [whole_ingest(Path(name), asked.programs), others()]
+        for part in [*parts, memory(Path(name))] if asked.memory else parts:
+            for figure in part:
+                figures.append(figure)
+                print(tell(figure), flush=True)
+    finish(figures, asked.json)
     return 0
 
 

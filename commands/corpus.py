@@ -43,6 +43,7 @@ def synthesize(
     Examples:
       python cli.py corpus synthesize --out synthetic.jsonl
       python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
+      python cli.py sample synthetic.jsonl   (runs every one of them in every home)
     """
     import orjson
 
@@ -82,8 +83,8 @@ def stats(
 ) -> None:
     """Say what a corpus looks like, beside the thesis's numbers: funnel, variety, diversity, averages, missing actions.
 
-    With --out: histograms of actions and objects, the funnel and the similarity matrix of activities as PNG and SVG,
-    and all numbers as Parquet.
+    With --out: histograms of actions and objects, the funnel, the similarity matrix of activities and which objects
+    are used together as PNG and SVG, and all numbers as Parquet.
 
     \b
     Examples:

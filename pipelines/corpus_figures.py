@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 BARS = 50
 """Actions and objects in a histogram (figure 3-4)."""
 
+USED_TOGETHER = 30
+"""Objects in the picture of which are used together."""
+
 _BLUE, _GREY = "#31688e", "#b8b8b8"
 
 
@@ -28,6 +31,7 @@ def write(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
         "actions": _bars(actions, "Steps with each action"),
         "objects": _bars(objects, "Steps with each object"),
         "similarity": _matrix(alike),
+        "together": _together(found, objects),
     }
     files = [file for name, figure in figures.items() for file in saved(figure, folder / name)]
     return [*files, *_tables(found, alike, folder)]
@@ -81,10 +85,6 @@ def _tables(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
     return files
 
 
-def _lcs(one: numbers.Activity) -> dict[str, float]:
-    return {"lcs": one.lcs, "normalised": one.normalised}
-
-
 def _ranked(counts: Counter[Any]) -> list[tuple[Any, int]]:
     return sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
 
@@ -132,11 +132,34 @@ def _bars(counts: Counter[str], label: str) -> Figure:
     figure, axes = _figure(11, 3.8)
     shown = _ranked(counts)[:BARS]
     axes.bar(range(len(shown)), [count for _, count in shown], color=_BLUE)
-    axes.set_xticks(range(len(shown)), [name.replace("_", " ") for name, _ in shown], rotation=90, fontsize=8)
+    axes.set_xticks(range(len(shown)), [_said(name) for name, _ in shown], rotation=90, fontsize=8)
     axes.set_ylabel(label)
     axes.margins(x=0.01)
     axes.spines[["top", "right"]].set_visible(False)
     return figure
+
+
+def _together(found: Corpus, objects: Counter[str]) -> Figure:
+    """In how many programs each two of the commonest objects are used."""
+    import numpy as np
+
+    names = [name for name, _ in _ranked(objects)[:USED_TOGETHER]]
+    place = {name: number for number, name in enumerate(names)}
+    counts = np.full((len(names), len(names)), np.nan)
+    for (one, other), programs in numbers.together(found).items():
+        if one in place and other in place:
+            counts[place[one], place[other]] = counts[place[other], place[one]] = programs
+    figure, axes = _figure(9, 8)
+    if names:
+        shown = axes.imshow(counts, cmap="viridis")
+        figure.colorbar(shown, ax=axes, shrink=0.7, label="programs that use both")
+    axes.set_xticks(range(len(names)), list(map(_said, names)), rotation=90, fontsize=8)
+    axes.set_yticks(range(len(names)), list(map(_said, names)), fontsize=8)
+    return figure
+
+
+def _said(name: str) -> str:
+    return name.removeprefix("food_").replace("_", " ")
 
 
 def _matrix(alike: Similarities) -> Figure:
