@@ -24,7 +24,7 @@ WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
 
 
 class Spots(NamedTuple):
-    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights added up, and each."""
+    """Where things of a class belong in a home: (class, index of the place, ON or INSIDE), weights summed and each."""
 
     choices: tuple[tuple[str, int, str], ...]
     weights: tuple[int, ...]
