@@ -6,6 +6,7 @@ owns the rest. Every record read ends in rows or in rejects, and an exception co
 
 from __future__ import annotations
 
+import errno
 import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -186,7 +187,13 @@ def _attempt(stage: Stage, record: Record, context: Any, deadline: Deadline) -> 
         place = str(record.get("place") or "")
         return [Reject.of(Code.TIMED_OUT, message, file=place, suggestion="give it more time with --time-limit")]
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in _FULL:
+            # No fault of the record: the stage stops, what is complete stays, and the next run goes on from there.
+            raise
         return [Reject.caused(error, str(record.get("place") or ""))]
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
 class _Sink:
