@@ -189,9 +189,9 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]
         return Reject.of(Code.NOT_TEXT, message, line=item.line, **told)
     other = no_activity(f"{cells['Answer.title']}. {cells['Answer.description']}")
     if other:
-        kind, told = other
-        message = f"{kind}, not an activity: {', '.join(f'`{phrase}`' for phrase in told[:3])}"
-        return Reject.of(Code.OFF_TOPIC, message, file=item.place, line=item.line, found=told[0])
+        kind, phrases = other
+        message = f"{kind}, not an activity: {', '.join(f'`{phrase}`' for phrase in phrases[:3])}"
+        return Reject.of(Code.OFF_TOPIC, message, file=item.place, line=item.line, found=phrases[0])
     return {
         **_common(item, cells, salt),
         "kind": "description",
