@@ -86,6 +86,8 @@ def program(
         output.emit({"program": execution.program.title, "home": home, "failure": failure, **told})
     else:
         print(f"{told['pictures']} pictures of {file.name} in {out}; all together: {told['sheet']}")
+        if told.get("visible") is not None:
+            print(f"Steps of which every object is visible: {told['visible']:.1%}")
         for page in told.get("pages", ()):
             print(f"Open {page} in a browser.")
         if failure:
