@@ -104,7 +104,6 @@ lock: ## choose the newest versions that fit pyproject.toml and pin them in requ
 	@rm -rf build/lock && mkdir -p build/lock
 	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
 	@build/lock/all/bin/python -m pip install -q -e '.[test,tools]' setuptools
-	@build/lock/all/bin/python -m pip uninstall -q -y $(NOTEBOOK)
 	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth | sort > build/lock/all.txt
 	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[test]' setuptools
 	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
