@@ -110,35 +110,6 @@ def contents(
                            "take something away, or make it larger")  # fmt: skip
 
 
-def room_for(
-    class_name: str, holder: Thing, relation: str, others: Sequence[Thing], knowledge: Knowledge
-) -> tuple[Box, float] | None:
-    """Where one more thing finds room on or in another beside what is there; None where it does not.
-
-    Args:
-        class_name: of what is to be put there.
-        holder: on or in what.
-        relation: `on` or `inside`.
-        others: what is there.
-        knowledge: for shapes.
-    """
-    holding = form(holder.class_name, knowledge)
-    if holding is None:
-        return None
-    support = _support(holder, holding, relation, knowledge, FAR if relation == "on" else 0.0)
-    for other in others:
-        level = min(support.levels, key=lambda level: abs(level.y - bottom(other.box)))
-        local = _local(support, footprint(other.box))
-        level.taken.append((other.class_name, local))
-        level.piles[local] = other.box.size[1]
-    piece = Piece(class_name)
-    try:
-        (stood,) = _stand(support, piece, [class_name], relation, knowledge)
-    except NoPlaceError:
-        return None
-    return stood.box, stood.yaw or 0.0
-
-
 def _settings(
     table: Thing, lay: Sequence[Piece], seats: Sequence[Thing], numbers: dict[str, int], knowledge: Knowledge
 ) -> Iterator[tuple[Piece, str, Rect]]:
@@ -160,7 +131,7 @@ def _arranged(
     """Everything in its place, well apart if it can be, closer together if it must; and what has none, with why."""
     named, laid = wanted
     for apart in (FAR, FAR / 3, 0.0):
-        support = _support(thing, shaped, relation, knowledge, apart)
+        support = support_of(thing, shaped, relation, knowledge, apart)
         found: list[tuple[Piece, Thing]] = []
         missed: list[tuple[Piece, str]] = []
         for entry, name, rect in laid:
@@ -170,7 +141,7 @@ def _arranged(
                 missed.append((entry, str(why)))
         for entry, names in named:
             try:
-                found.extend((entry, stood) for stood in _stand(support, entry, names, relation, knowledge))
+                found.extend((entry, stood) for stood in stand(support, entry, names, relation, knowledge))
             except NoPlaceError as why:
                 missed.append((entry, str(why)))
         if not missed or support.tidy:
@@ -195,7 +166,8 @@ def _rank(piece: Piece, knowledge: Knowledge) -> tuple[bool, bool, float]:
     return (not sunk, not by_hand, 0.0 if by_hand else -area)
 
 
-def _support(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge, apart: float) -> Support:
+def support_of(thing: Thing, shaped: Form, relation: str, knowledge: Knowledge, apart: float) -> Support:
+    """A thing with the levels on (or in) it, still empty."""
     width, _, depth = thing.box.size if _along_x(thing) else thing.box.size[::-1]
     low, high = bottom(thing.box), top(thing.box)
     if relation == "on":
@@ -218,9 +190,7 @@ def _along_x(thing: Thing) -> bool:
     return (thing.yaw or 0.0) % 180 == 0
 
 
-def _stand(
-    support: Support, piece: Piece, names: Sequence[str], relation: str, knowledge: Knowledge
-) -> Iterator[Thing]:
+def stand(support: Support, piece: Piece, names: Sequence[str], relation: str, knowledge: Knowledge) -> Iterator[Thing]:
     """Find a place for each of an entry's things.
 
     Raises:
@@ -243,7 +213,7 @@ def _lay(support: Support, piece: Piece, name: str, rect: Rect, knowledge: Knowl
         NoPlaceError: something else lies there, or it would stick out.
     """
     level, height = support.levels[-1], shape(piece, knowledge).size[1]
-    local = _local(support, rect)
+    local = local_of(support, rect)
     _check(support, level, local)
     level.taken.append((name, local))
     level.piles[local] = height
@@ -412,7 +382,7 @@ def _box(support: Support, level: Level, local: Local, under: float, height: flo
     return box_over(over, level.y + under, level.y + under + height)
 
 
-def _local(support: Support, rect: Rect) -> Local:
+def local_of(support: Support, rect: Rect) -> Local:
     """A rectangle of the room in the support's own axes: the inverse of what `_box` does."""
     over = footprint(support.thing.box)
     wall = wall_of(support.thing.yaw or 0.0)

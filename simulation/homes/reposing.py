@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from hearth.kb.knowledge import Knowledge
@@ -17,8 +17,10 @@ from hearth.simulation.homes.graph_furnishing import FRONT, passable, spots
 from hearth.simulation.homes.graph_measured import measured
 from hearth.simulation.homes.graph_obstacles import Obstacles
 from hearth.simulation.homes.layout import Layout
-from hearth.simulation.homes.packing import room_for
-from hearth.simulation.homes.shell import interior, strip
+from hearth.simulation.homes.packing import FAR, local_of, stand, support_of
+from hearth.simulation.homes.placing import NoPlaceError
+from hearth.simulation.homes.plan import Piece
+from hearth.simulation.homes.shell import Thing, interior, strip
 
 DOORWAY = 0.6
 """Metres of floor kept free before a door."""
@@ -115,3 +117,32 @@ def _carried(nodes: Mapping[int, Node], graph: EnvironmentGraph, moved: int, box
 def _full(node: Node, relation: str, place: Node, why: str) -> HearthError:
     said = f"{node.class_name} ({node.id}) {relation} {place.class_name} ({place.id})"
     return HearthError.of(Code.NO_PLACE, f"{said}: {why}", suggestion="another place, or take something away")
+
+
+def room_for(
+    class_name: str, holder: Thing, relation: str, others: Sequence[Thing], knowledge: Knowledge
+) -> tuple[Box, float] | None:
+    """Where one more thing finds room on or in another beside what is there; None where it does not.
+
+    Args:
+        class_name: of what is to be put there.
+        holder: on or in what.
+        relation: `on` or `inside`.
+        others: what is there.
+        knowledge: for shapes.
+    """
+    holding = form(holder.class_name, knowledge)
+    if holding is None:
+        return None
+    support = support_of(holder, holding, relation, knowledge, FAR if relation == "on" else 0.0)
+    for other in others:
+        level = min(support.levels, key=lambda level: abs(level.y - bottom(other.box)))
+        local = local_of(support, footprint(other.box))
+        level.taken.append((other.class_name, local))
+        level.piles[local] = other.box.size[1]
+    piece = Piece(class_name)
+    try:
+        (stood,) = stand(support, piece, [class_name], relation, knowledge)
+    except NoPlaceError:
+        return None
+    return stood.box, stood.yaw or 0.0

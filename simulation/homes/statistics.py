@@ -102,4 +102,5 @@ def beside(figures: dict[str, Any], theirs: dict[str, Any] | None) -> float | No
     """By how many per cent homes have more edges than others would have at the same nodes; None without others."""
     if not theirs:
         return None
-    return round(100 * (figures["edges a node"] / theirs["edges a node"] - 1), 1)
+    more = float(figures["edges a node"]) / float(theirs["edges a node"]) - 1
+    return round(100 * more, 1)
