@@ -69,7 +69,8 @@ class JsonLines:
     def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = time.time) -> None:
         self._stream = stream or sys.stderr
         self._clock = clock
-        self._stage, self._total = "", None
+        self._stage = ""
+        self._total: int | None = None
         self._done = self._rejects = 0
         self._began = self._said = 0.0
 

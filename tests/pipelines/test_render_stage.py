@@ -13,7 +13,9 @@ def filmed(tmp_path_factory, build_folder):
     folder = tmp_path_factory.mktemp("filmed")
     program = folder / "bed.txt"
     program.write_text("Rest\nLie down.\n\n[Walk] <bed> (1)\n")
-    built = build_folder(folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, variants=0)
+    built = build_folder(
+        folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, variants=0
+    )
     return built.run_all()
 
 
