@@ -44,7 +44,7 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,
 	@mkdir -p $(OUT)/full
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
 	@$(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
-	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --homes-each 2 --per-program 6 --target 30000 --pictures 0
+	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --homes-each 2 --per-program 6 --target 30000 --pictures 0 --videos 0
 
 setup: $(READY)  ## make .venv with the locked versions (uv if there is one, else pip)
 

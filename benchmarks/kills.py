@@ -93,7 +93,7 @@ def main() -> int:
     parser.add_argument("--limit", type=int, default=40, help="programs read")
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    options = ["--limit", str(asked.limit), "--home", "maple", "--pictures", "1", "--workers", "2"]
+    options = ["--limit", str(asked.limit), "--home", "maple", "--pictures", "1", "--videos", "0", "--workers", "2"]
     with tempfile.TemporaryDirectory() as folder:
         kills, ends, faults = killed(options, Path(folder), asked.times, asked.seed)
     print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *faults, sep="\n")

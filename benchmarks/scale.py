@@ -51,7 +51,7 @@ def measured(size: int, workers: int, seed: int, folder: Path) -> list[Figure]:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     began = time.monotonic()
     with Largest() as largest:
-        run("build", *given, "--out", folder / "out", *options, "--pictures", 0)
+        run("build", *given, "--out", folder / "out", *options, "--pictures", 0, "--videos", 0)
     seconds = time.monotonic() - began
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     count = augmented(folder / "out")

@@ -55,7 +55,7 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
             place, Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         )
     own = str(value.get("program_id") or value.get("id") or "")
-    if leaves(own.partition(":")[2] or own) or not own.isprintable():
+    if any(map(leaves, own.split(":"))) or not own.isprintable():
         message = "an id that is a path out of its folder, or can't be printed"
         suggestion = "letters, digits and `-_./:#`, without `..`"
         return refused(place, Reject.of(Code.BAD_JSON, message, file=place, line=line, found=ascii(own)[:60],

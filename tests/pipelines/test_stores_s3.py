@@ -52,7 +52,7 @@ def bucket(server):
 def test_built_verified_and_queried(run, bucket, made, engine):
     if engine == "dask":
         pytest.importorskip("distributed")
-    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0")
+    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--videos", "0")
     bucket.put(str(made.settings.sources[1]), "homes/in/evening.txt")
     sources = [made.settings.sources[0], "s3://homes/in/evening.txt", made.settings.sources[2]]
     run("build", *sources, "--out", "s3://homes/evening", *homes, "--workers", "2", "--engine", engine)
