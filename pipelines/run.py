@@ -142,8 +142,19 @@ def input_partitions(job: Job) -> Iterator[Partition]:
         assert manifest is not None
         for part in manifest.parts:
             file = part["files"][0]
-            yield Partition(number, manifest.content["files"][file]["sha256"], str(folder / file), part["rows"])
-            number += 1
+            digest = manifest.content["files"][file]["sha256"]
+            for rows in _shares(part["rows"], job.stage.share):
+                told = digest if rows is None else f"{digest} {rows}"
+                size = part["rows"] if rows is None else rows[1] - rows[0]
+                yield Partition(number, told, str(folder / file), size, rows)
+                number += 1
+
+
+def _shares(rows: int, share: int | None) -> list[tuple[int, int] | None]:
+    """Rows of a part that make a partition each; None for all of them."""
+    if share is None or rows <= share:
+        return [None]
+    return [(first, min(first + share, rows)) for first in range(0, rows, share)]
 
 
 def _partitions(job: Job, workers: Engine, progress: Progress) -> tuple[list[int], Counts]:

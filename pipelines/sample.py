@@ -203,4 +203,5 @@ STAGE = Stage(
     prepare=prepare,
     begin=derive_homes,
     tally=lambda row: "executable" if row["executable"] else "not executable",
+    share=64,
 )

@@ -11,6 +11,7 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -42,12 +43,14 @@ class Partition:
         digest: of its input's content.
         payload: what `Stage.records` needs to read it; small and picklable.
         size: how many records, if known.
+        rows: of a part that several partitions share, the first row of this one and the one after its last.
     """
 
     number: int
     digest: str
     payload: Any
     size: int | None = None
+    rows: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class Stage:
         tally: a label under which a row is counted, or None.
         finish: writes what needs all partitions, before the manifest.
         patience: how many times the usual limit a record may take.
+        share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
 
     A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
     """
@@ -98,6 +102,7 @@ class Stage:
     tally: Callable[[Row], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
     patience: int = 1
+    share: int | None = None
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
         """Workers get a stage by the module that defines it, as its `STAGE`."""
@@ -173,7 +178,10 @@ def _records(job: Job, partition: Partition) -> Iterable[Record]:
     if stage.records is not None:
         return stage.records(job, partition)
     columns = list(stage.columns) if stage.columns is not None else None
-    return (row for row in read_rows(Path(partition.payload), columns) if stage.select(row, job.plan))
+    rows: Iterable[Record] = read_rows(Path(partition.payload), columns)
+    if partition.rows is not None:
+        rows = islice(rows, *partition.rows)
+    return (row for row in rows if stage.select(row, job.plan))
 
 
 def _attempt(stage: Stage, record: Record, context: Any, deadline: Deadline) -> list[Output]:

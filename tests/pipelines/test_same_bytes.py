@@ -76,7 +76,18 @@ def test_a_second_build_does_nothing(made):
 def test_killed_at_random_moments_and_taken_up_again(made, inputs, tmp_path, times):
     """`kill -9` of whole builds; `python benchmarks/kills.py` does it two hundred times."""
     kills = harness("kills")
-    options = ["--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--videos", "0", "--workers", "2"]
+    options = [
+        "--homes",
+        made.settings.homes_folder,
+        "--home",
+        "cabin",
+        "--pictures",
+        "0",
+        "--videos",
+        "0",
+        "--workers",
+        "2",
+    ]
     done, ends, faults = kills.killed([str(inputs / "programs"), *options], tmp_path, times, seed=times)
     assert done == times and ends >= 1
     assert faults == []

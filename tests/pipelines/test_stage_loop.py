@@ -226,3 +226,18 @@ def test_a_record_that_hangs_costs_only_itself_and_is_tried_again(settings):
     again = run_stage(stage, replace(settings, time_limit=0.2))
     assert again.fresh and again.manifest.counts.through == 100
     assert not run_stage(stage, settings).fresh
+
+
+def test_parts_are_shared_among_partitions_without_loss(settings):
+    run_stage(STAGE, settings)
+    source = replace(STAGE, process=lambda record, context: [{**record}] if record["number"] != 40 else [])
+    whole = replace(source, name="whole", reads=("count",), partitions=None, records=None)
+    shared = replace(whole, name="shared", share=7)
+    one, other = (run_stage(stage, settings).manifest for stage in (whole, shared))
+    assert other.counts.to_json() == one.counts.to_json()
+    assert len(one.parts) == 4 and len(other.parts) > 12
+    rows = [
+        [row for part in found.parts for row in pq.read_table(found.folder / part["files"][0]).to_pylist()]
+        for found in (one, other)
+    ]
+    assert rows[0] == rows[1]
