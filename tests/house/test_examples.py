@@ -31,7 +31,12 @@ def ran(script: str, folder: Path, checkout: Path) -> str:
     for name, words in (("hearth", f'"{checkout / "cli.py"}"'), ("python", "")):
         (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
         (tools / name).chmod(0o755)
-    environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    # In a copy the package is the copy, not the checkout that .venv knows.
+    site = folder.parent / "site"
+    site.mkdir(exist_ok=True)
+    if not (site / "hearth").is_symlink():
+        (site / "hearth").symlink_to(checkout)
+    environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "PYTHONPATH": str(site)}
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, capture_output=True, text=True,
         timeout=900, check=False,
