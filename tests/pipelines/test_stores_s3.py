@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 
 import pytest
 
@@ -24,11 +26,11 @@ def server():
 
 
 @pytest.fixture
-def run(server, tmp_path, request):
+def run(server, request):
     """Run the command line against the server, as somebody who has only this much set up."""
     here = {"AWS_ACCESS_KEY_ID": "x", "AWS_SECRET_ACCESS_KEY": "x", "AWS_DEFAULT_REGION": "us-east-1"}
-    (tmp_path / "work").mkdir()
-    environment = {**os.environ, **here, "AWS_ENDPOINT_URL": server, "TMPDIR": str(tmp_path / "work")}
+    work = tempfile.mkdtemp(prefix="h")  # short: sockets of worker processes stand below it
+    environment = {**os.environ, **here, "AWS_ENDPOINT_URL": server, "TMPDIR": work}
     cli = request.config.rootpath / "cli.py"
 
     def command(*words: str, status: int = 0) -> str:
@@ -37,7 +39,8 @@ def run(server, tmp_path, request):
         assert done.returncode == status, done.stderr
         return done.stdout + done.stderr
 
-    return command
+    yield command
+    shutil.rmtree(work)
 
 
 @pytest.fixture
