@@ -12,6 +12,7 @@ from hearth.kb.hearing import understand
 from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
+from hearth.pipelines.spread import spread
 from hearth.pipelines.surroundings import RULES
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -58,32 +59,20 @@ def judge(
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
     named = _named(dataset)
     predicted = {pair.id: pair for pair in read_pairs(file, known, read_line, named)}
-    pairs = [predicted[name] for name in wanted]
-    shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
-    jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
-    return [each for done in _each(jobs, workers) for each in done]
+    return _in_shares(dataset, [predicted[name] for name in wanted], options, workers)
 
 
 def judge_steps(
     dataset: Dataset, predicted: Mapping[str, tuple[Step, ...]], options: Options | None = None
 ) -> list[Scored]:
     """Score programs for executions of a dataset, by execution id, in that order; as `judge`, in this process."""
-    pairs = [Pair(name, steps, ()) for name, steps in predicted.items()]
+    return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted.items()], options, 1)
+
+
+def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, workers: int) -> list[Scored]:
     shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
-    return [each for share in shares for each in _judged((str(dataset.folder), share, options or Options()))]
-
-
-def _each(jobs: list[Job], workers: int) -> Iterator[list[Scored]]:
-    if workers < 2 or len(jobs) < 2:
-        yield from map(_judged, jobs)
-        return
-    import multiprocessing
-    import sys
-    from concurrent.futures import ProcessPoolExecutor
-
-    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
-        yield from pool.map(_judged, jobs)
+    jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
+    return [each for done in spread(_judged, jobs, workers) for each in done]
 
 
 def _judged(job: Job) -> list[Scored]:

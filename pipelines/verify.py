@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from hearth.pipelines.dataset import Dataset
+from hearth.pipelines.spread import spread
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.home import Home
@@ -265,12 +263,7 @@ def _replayed(dataset: Dataset, workers: int) -> Iterator[Wrong]:
     names = [name for (name,) in rows]
     shares = [names[start : start + SHARE] for start in range(0, len(names), SHARE)]
     jobs = [(str(dataset.folder), share[0], share[-1]) for share in shares]
-    if workers < 2 or len(jobs) < 2:
-        yield from map(_replay, jobs)
-        return
-    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
-        yield from pool.map(_replay, jobs)
+    return spread(_replay, jobs, workers)
 
 
 def _replay(job: tuple[str, str, str]) -> Wrong:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import gc
 import itertools
-import multiprocessing
-import sys
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -16,6 +14,7 @@ from typing import Any
 from hearth.pipelines.engines import Done, Seen
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Counts, part_path, rejects_path
+from hearth.pipelines.spread import context
 from hearth.pipelines.stage import Job, Partition, run_partition
 from hearth.pipelines.stores import store
 from hearth.schemas.errors import HearthError
@@ -95,9 +94,9 @@ class Workers:
 
     def _start(self) -> ProcessPoolExecutor:
         if self._pool is None:
-            context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
-            self._seen = context.Array("q", 2)
-            self._pool = ProcessPoolExecutor(self.count, context, _begin, (self._seen,))
+            here = context()
+            self._seen = here.Array("q", 2)
+            self._pool = ProcessPoolExecutor(self.count, here, _begin, (self._seen,))
         return self._pool
 
     def _stop(self) -> None:

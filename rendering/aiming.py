@@ -221,6 +221,18 @@ def aim_around(points: Floats, flats: Floats, noise: Floats, number: int, share:
 
 
 @kernel
+def _meets(boxes: Floats, x: Any, y: Any, z: Any, dx: Any, dy: Any, dz: Any) -> bool:
+    """Whether a ray, up to its tip, goes through one of (B, 6) boxes."""
+    for b in range(len(boxes)):
+        near, far = slab(boxes[b, 0], boxes[b, 3], x, dx, ZERO, ONE)
+        near, far = slab(boxes[b, 1], boxes[b, 4], y, dy, near, far)
+        near, far = slab(boxes[b, 2], boxes[b, 5], z, dz, near, far)
+        if near <= far:
+            return True
+    return False
+
+
+@kernel
 def aim_again(
     lit: Ints, skipped: Any, points: Floats, target: Floats, is_sun: bool, boxes: Floats, out: Floats, index: Ints
 ) -> int:
@@ -243,13 +255,7 @@ def aim_again(
             continue
         x, y, z = points[k, 0], points[k, 1], points[k, 2]
         dx, dy, dz = (tx * FAR, ty * FAR, tz * FAR) if is_sun else (tx - x, ty - y, tz - z)
-        met = False
-        for b in range(len(boxes)):
-            near, far = slab(boxes[b, 0], boxes[b, 3], x, dx, ZERO, ONE)
-            near, far = slab(boxes[b, 1], boxes[b, 4], y, dy, near, far)
-            near, far = slab(boxes[b, 2], boxes[b, 5], z, dz, near, far)
-            met = met or near <= far
-        if met:
+        if _meets(boxes, x, y, z, dx, dy, dz):
             out[count, 0], out[count, 1], out[count, 2] = x, y, z
             out[count, 3], out[count, 4], out[count, 5] = dx, dy, dz
             index[count] = k
@@ -262,13 +268,8 @@ def meeting(rays: Floats, done: Any, boxes: Floats, index: Ints) -> int:
     """Fill in which of (N, 6) rays, but for those that are done, meet one of (B, 6) boxes; gives how many."""
     count = 0
     for k in range(len(rays)):
-        met = False
-        for b in range(0 if done[k] else len(boxes)):
-            near, far = slab(boxes[b, 0], boxes[b, 3], rays[k, 0], rays[k, 3], ZERO, ONE)
-            near, far = slab(boxes[b, 1], boxes[b, 4], rays[k, 1], rays[k, 4], near, far)
-            near, far = slab(boxes[b, 2], boxes[b, 5], rays[k, 2], rays[k, 5], near, far)
-            met = met or near <= far
-        if met:
+        ray = rays[k]
+        if not done[k] and _meets(boxes, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5]):
             index[count] = k
             count += 1
     return count

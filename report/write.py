@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import shutil
-import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -15,6 +13,7 @@ from typing import Any
 import orjson
 
 from hearth.pipelines.dataset import Dataset
+from hearth.pipelines.spread import spread
 from hearth.report.figures import figures
 from hearth.report.plans import plans
 from hearth.report.stories import DRAWN, Stories
@@ -88,15 +87,9 @@ def _write_stories(dataset: Dataset, to: Path, workers: int) -> None:
     shards = [names[start : start + SHARD] for start in range(0, len(names), SHARD)]
     told = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
     jobs = [(str(dataset.folder), str(to), told[start : start + _SHARE]) for start in range(0, len(told), _SHARE)]
-    if workers < 2 or len(jobs) < 2:
-        stories = Stories(dataset)
-        for number, low, high in told:
-            _write_shard(dataset, stories, to, (number, low, high))
-        return
-    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(min(workers, len(jobs)), context) as pool:
-        for _ in pool.map(_write_share, jobs):
-            pass
+    _opened.cache_clear()
+    for _ in spread(_write_share, jobs, workers):
+        pass
 
 
 _SHARE = 8
@@ -106,10 +99,16 @@ Shard = tuple[int, str, str]
 """A file's number, and the ids of its first and last program."""
 
 
+@lru_cache(maxsize=1)
+def _opened(folder: str) -> tuple[Dataset, Stories]:
+    """A dataset and its homes, once a process."""
+    dataset = Dataset.open(folder)
+    return dataset, Stories(dataset)
+
+
 def _write_share(job: tuple[str, str, list[Shard]]) -> None:
     folder, to, shards = job
-    dataset = Dataset.open(folder)
-    stories = Stories(dataset)
+    dataset, stories = _opened(folder)
     for shard in shards:
         _write_shard(dataset, stories, Path(to), shard)
 

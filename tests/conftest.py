@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from pathlib import Path
 
@@ -35,3 +36,17 @@ def knowledge():
 @pytest.fixture(scope="session")
 def maple(knowledge):
     return Home.from_graph(catalog.load_graph("maple"), "maple", knowledge)
+
+
+@pytest.fixture(scope="session")
+def module():
+    """A way to load a script of the checkout that is no part of the package, by its path from the root."""
+
+    def load(path: str):
+        file = Path(__file__).resolve().parents[1] / path
+        spec = importlib.util.spec_from_file_location(file.stem, file)
+        loaded = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(loaded)
+        return loaded
+
+    return load

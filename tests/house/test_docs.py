@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import pytest
@@ -12,15 +11,10 @@ from hearth.kb.knowledge import default
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
 
-ROOT = Path(__file__).resolve().parents[2]
-
 
 @pytest.fixture(scope="module")
-def pages():
-    spec = importlib.util.spec_from_file_location("docs_pages", ROOT / "docs/hooks/pages.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def pages(module):
+    return module("docs/hooks/pages.py")
 
 
 def test_every_commands_help_is_there(pages):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import subprocess
 import sys
@@ -22,13 +21,10 @@ if __name__ == "__main__":
 """
 
 
-def harness(name: str):
-    """A module of benchmarks/."""
-    path = Path(__file__).resolve().parents[2] / f"benchmarks/{name}.py"
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture(scope="module")
+def kills(module):
+    """What kills builds, and tells what differs."""
+    return module("benchmarks/kills.py")
 
 
 def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = "0", engine: str = "local"):
@@ -43,22 +39,18 @@ def started(out: Path, made, tmp_path: Path, workers: int = 1, hash_seed: str = 
     ("workers", "hash_seed"),
     [(2, "1"), pytest.param(7, "2", marks=pytest.mark.slow), pytest.param(1, "3", marks=pytest.mark.slow)],
 )
-def test_for_any_number_of_workers_and_any_hash_seed(made, tmp_path, workers, hash_seed):
+def test_for_any_number_of_workers_and_any_hash_seed(made, kills, tmp_path, workers, hash_seed):
     out = tmp_path / "again"
     assert started(out, made, tmp_path, workers, hash_seed).wait(timeout=900) == 0
-    assert_same(made.out, out)
-
-
-def assert_same(one: Path, other: Path) -> None:
-    assert harness("kills").differing(one, other) == []
+    assert kills.differing(made.out, out) == []
 
 
 @pytest.mark.tools
-def test_on_a_dask_cluster(made, tmp_path):
+def test_on_a_dask_cluster(made, kills, tmp_path):
     pytest.importorskip("distributed")
     out = tmp_path / "again"
     assert started(out, made, tmp_path, workers=2, engine="dask").wait(timeout=900) == 0
-    assert_same(made.out, out)
+    assert kills.differing(made.out, out) == []
 
 
 def test_a_second_build_does_nothing(made):
@@ -73,9 +65,8 @@ def test_a_second_build_does_nothing(made):
 
 
 @pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.slow)])
-def test_killed_at_random_moments_and_taken_up_again(made, inputs, tmp_path, times):
+def test_killed_at_random_moments_and_taken_up_again(made, kills, inputs, tmp_path, times):
     """`kill -9` of whole builds; `python benchmarks/kills.py` does it two hundred times."""
-    kills = harness("kills")
     options = [
         "--homes",
         made.settings.homes_folder,

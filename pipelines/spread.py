@@ -1,0 +1,33 @@
+"""A function over many jobs in several processes, where nothing is written and no order of completion matters."""
+
+from __future__ import annotations
+
+import multiprocessing
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing.context import BaseContext
+from typing import TypeVar
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+
+def context() -> BaseContext:
+    """How processes are started: never by forking a process that may hold threads or locks."""
+    return multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+
+
+def spread(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[Result]:
+    """The results in the order of the jobs, for any number of workers.
+
+    Args:
+        function: of a module, so that other processes find it.
+        jobs: what it is called with, one after the other.
+        workers: processes; below 2, or for a single job, all is done in this one.
+    """
+    if workers < 2 or len(jobs) < 2:
+        yield from map(function, jobs)
+        return
+    with ProcessPoolExecutor(min(workers, len(jobs)), context()) as pool:
+        yield from pool.map(function, jobs)
