@@ -18,7 +18,7 @@ from pathlib import Path
 from measuring import Figure, finish, parser, rate, seconds, tell
 
 from hearth.rendering.camera import Camera, top_view
-from hearth.rendering.figure import BODIES
+from hearth.rendering.figure import BODIES, figure_mesh
 from hearth.rendering.figure import Figure as Person
 from hearth.rendering.geometry import Still
 from hearth.rendering.meshes.look import Look
@@ -28,7 +28,7 @@ from hearth.rendering.retake import take
 from hearth.rendering.scene import Scene
 from hearth.rendering.skeleton import Stance
 from hearth.rendering.staging import scene_of
-from hearth.rendering.things import Thing
+from hearth.rendering.things import Thing, placed
 from hearth.rendering.threads import count
 from hearth.rendering.viewpoints import home_box, room_views
 from hearth.rendering.warm import warm
@@ -64,6 +64,8 @@ def room_of(graph: EnvironmentGraph) -> Node:
 
 def measured(name: str, target: float | None, films: list[Scene], picture: Callable[[int, Scene], object]) -> Figure:
     """Frames a second of a picture of each scene; the first one gets ready what is kept for a home."""
+    placed.cache_clear()
+    figure_mesh.cache_clear()
     picture(0, films[0])
     taken = []
     for number, scene in enumerate(films[1:], 1):
@@ -96,13 +98,16 @@ def filmed(camera: Camera) -> Callable[[int, Scene], object]:
 def whole(
     films: list[Scene], camera: Camera, modalities: tuple[str, ...], quality: str
 ) -> Callable[[int, Scene], object]:
-    """Whole pictures; the camera moves, so that nothing is known from the one before."""
+    """Whole pictures; the camera moves, so that nothing is known from the one before but what things look like.
+
+    Each scene is built once, as in a film: as the next moment of the one before.
+    """
+    own = [replace(scene, things=tuple(scene.things)) for scene in films]
 
     def picture(number: int, scene: Scene) -> object:
         eye = (camera.eye[0] + 0.001 * number, camera.eye[1], camera.eye[2])
-        after = films[min(number + 1, len(films) - 1)]
-        fresh = replace(scene, things=tuple(scene.things))
-        return render(fresh, replace(camera, eye=eye), modalities, quality=quality, after=after)
+        after = own[min(number + 1, len(own) - 1)]
+        return render(own[number], replace(camera, eye=eye), modalities, quality=quality, after=after)
 
     return picture
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import cos, radians, sin
 from typing import Any, NamedTuple
 
@@ -66,7 +67,35 @@ def seen(shot: Shot) -> list[Seen]:
         joined[things[number].id] = _joined(joined.get(things[number].id), found[number])
     for thing in things:
         first.setdefault(thing.id, thing)
-    return [_seen(camera, first[node], extent) for node, extent in sorted(joined.items())]
+    boxes = [world_box(first[node]) for node in sorted(joined)]
+    places, depths = camera.project(np.array([box.corners for box in boxes]).reshape(-1, 3))
+    places[depths <= 0] = np.nan
+    return [
+        Seen(node, first[node].class_name, extent[4], tuple(extent[:4]), box.center, box.size, first[node].yaw, corners)
+        for (node, extent), box, corners in zip(
+            sorted((node, extent.tolist()) for node, extent in joined.items()),
+            boxes,
+            places.reshape(-1, 8, 2),
+            strict=True,
+        )
+    ]
+
+
+class WorldBox(NamedTuple):
+    """The box of a thing in the world: its middle, its size in the thing's own frame, and (8, 3) corners; metres."""
+
+    center: Point
+    size: Point
+    corners: NDArray[np.float64]
+
+
+@lru_cache(maxsize=4096)
+def world_box(thing: Thing) -> WorldBox:
+    """Around a thing's mesh, turned with it."""
+    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
+    low, high = (bound.astype(np.float64) for bound in mesh.bounds())
+    corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
+    return WorldBox(_placed(thing, point_of((low + high) / 2)), point_of(high - low), corners)
 
 
 def _joined(one: NDArray[np.int32] | None, other: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -74,19 +103,6 @@ def _joined(one: NDArray[np.int32] | None, other: NDArray[np.int32]) -> NDArray[
     if one is None:
         return other
     return np.array((*np.minimum(one[:2], other[:2]), *np.maximum(one[2:4], other[2:4]), one[4] + other[4]), np.int32)
-
-
-def _seen(camera: Camera, thing: Thing, extent: NDArray[np.int32]) -> Seen:
-    left, top, right, bottom, pixels = extent.tolist()
-    box = (left, top, right, bottom)
-    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
-    low, high = (bound.astype(np.float64) for bound in mesh.bounds())
-    middle = (low + high) / 2
-    corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
-    places, depths = camera.project(corners)
-    places[depths <= 0] = np.nan
-    center = _placed(thing, point_of(middle))
-    return Seen(thing.id, thing.class_name, pixels, box, center, point_of(high - low), thing.yaw, places)
 
 
 def _corners(low: NDArray[Any], high: NDArray[Any]) -> list[Point]:
@@ -177,4 +193,6 @@ def poses(shot: Shot) -> list[dict[str, Any]]:
 
 
 def _rounded(values: Any) -> Any:
+    if isinstance(values, tuple):
+        return [round(float(value), 4) + 0.0 for value in values]
     return np.round(np.asarray(values, np.float64) + 0.0, 4).tolist()

@@ -117,7 +117,7 @@ def _again(shot: Shot, pixels: Ints, sight: Sight, setting: Setting, number: int
         missing = maps.borrowed(pixels[part], *faces, *size, sight.flats, sight.points, sight.seen, seen, rest)
         if missing:
             rest = rest[:missing]
-            some = shading.located(chunk[rest], rays, hits, geometry)
+            some = shading.located(chunk[rest], rays, hits, geometry, "others")
             seen[rest] = shading.expose(some, geometry, setting, noise[chunk[rest]]).seen
         shading.paint(spots, setting.reaching(spots.bounds), seen, rays, hits, setting, out)
 

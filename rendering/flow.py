@@ -11,7 +11,7 @@ from hearth.rendering.camera import Camera
 from hearth.rendering.maps import HORIZON, motion
 from hearth.rendering.meshes.mesh import rotation
 from hearth.rendering.scene import Scene
-from hearth.rendering.shot import Shot, shoot
+from hearth.rendering.shot import Shot, shoot_after
 from hearth.rendering.things import Thing, placed
 
 Floats = NDArray[np.floating[Any]]
@@ -28,7 +28,7 @@ def flow(shot: Shot, after: Shot) -> Floats:
         after: the next one, of any camera of the same size.
     """
     ids, later = (_ids(one) for one in (shot, after))
-    far = np.where(after.hits.triangle >= 0, after.distance, HORIZON).astype(np.float32)
+    far = np.where(after.hits.triangle >= 0, after.distance, np.float32(HORIZON))
     out = np.empty((len(shot.rays), 2), np.float32)
     size = (shot.camera.width, shot.camera.height)
     shifts, first = _shifts(shot, after), shot.geometry.first
@@ -39,7 +39,7 @@ def flow(shot: Shot, after: Shot) -> Floats:
 
 def flow_of(scene: Scene, shot: Shot) -> Floats:
     """Flow from a shot to the same camera's picture of a later scene."""
-    return flow(shot, shoot(scene, shot.camera))
+    return flow(shot, shoot_after(scene, shot))
 
 
 def _ids(shot: Shot) -> NDArray[np.int32]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.memory import keep
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -44,6 +45,7 @@ def engine() -> Any:
     finally:
         if skipped:
             sys.modules.pop(viewers, None)
+    keep()
     return open3d
 
 

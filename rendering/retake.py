@@ -110,7 +110,7 @@ def _drawn(ground: Ground, scene: Scene, geometry: Geometry, rest: tuple[Ground,
     base = ground.shot
     hits = base.hits.copy()
     shown = overlay(geometry, base.camera, base.rays, hits)
-    shot = Shot(scene, base.camera, geometry, base.rays, base.skipped, hits, base.class_ids)
+    shot = Shot(scene, base.camera, geometry, base.rays, base.skipped, hits, base.class_ids, None, base.hits)
     rgb = ground.rgb.copy()
     hidden = np.zeros(len(rgb), np.bool_)
     hidden[shown] = True

@@ -20,6 +20,7 @@ from hearth.rendering.aiming import OPEN
 from hearth.rendering.geometry import Geometry, Part
 from hearth.rendering.kernels import COLUMNS, gather_rows
 from hearth.rendering.lights import Daylight, Light
+from hearth.rendering.memory import scratch
 from hearth.rendering.rays import Hits
 from hearth.rendering.textures import decode, texels
 from hearth.rendering.threads import each
@@ -118,12 +119,12 @@ class Spots:
     bounds: Floats
 
 
-def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry) -> Spots:
-    """What some pixels show, given the rays and hits of all."""
+def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> Spots:
+    """What some pixels show, given the rays and hits of all; good until this thread asks again for the same `use`."""
     count = len(pixels)
-    rows = np.empty((count, COLUMNS), np.float32)
+    rows = scratch(f"{use} rows", count, COLUMNS)
     gather_rows(pixels, hits.triangle, geometry.still.rows, geometry.moving.rows, rows)
-    points, normals, flats, views = np.empty((4, count, 3), np.float32)
+    points, normals, flats, views = scratch(use, 4, count, 3)
     bounds = np.empty(4, np.float32)
     aiming.locate(pixels, rays, hits.distance, hits.u, hits.v, rows, points, normals, flats, views, bounds)
     return Spots(pixels, rows, points, normals, flats, views, bounds)
@@ -169,8 +170,7 @@ def expose(spots: Spots, geometry: Geometry, setting: Setting, noise: Floats = N
     near = setting.reaching(spots.bounds)
     seen = np.full((count, len(setting.lights) + 2), OPEN, np.uint8)
     lit: dict[int, Ints] = {}
-    out, index = np.empty((count, 6), np.float32), np.empty(count, np.int32)
-    power = np.empty(count, np.float32)
+    out, index, power = scratch("rays", count, 6), scratch("index", count, dtype=np.int32), scratch("power", count)
     # Soft rays go all over a light: they are cast at everything at once, since they can't be found again.
     parts = (geometry.still, geometry.moving) if setting.fine else (geometry.still,)
     if setting.day[aiming.D_UP]:
@@ -190,7 +190,7 @@ def expose(spots: Spots, geometry: Geometry, setting: Setting, noise: Floats = N
         found = aiming.aim_around(points, spots.flats, noise, number, np.float32(number / AROUND), out, index)
         blocked = _blocked(parts, out[:found], 0.999)
         aiming.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
-    return Plate(spots.pixels, points, near, seen, lit)
+    return Plate(spots.pixels, points.copy(), near, seen, lit)
 
 
 AROUND = 1
@@ -202,7 +202,7 @@ def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = Fals
     stays = parts[0]
     found = (stays.shadows if lamps else stays.caster).occluded(rays, far)
     for moves in parts[1:]:
-        index = np.empty(len(rays), np.int32)
+        index = scratch("meeting", len(rays), dtype=np.int32)
         index = index[: aiming.meeting(rays, found, moves.boxes, index)]
         if len(index):
             found[index] = (moves.shadows if lamps else moves.caster).occluded(rays[index], far)
@@ -211,8 +211,8 @@ def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = Fals
 
 def _marked(seen: Bytes, column: int, index: Ints, blocked: NDArray[np.bool_], value: np.uint8) -> Ints:
     """The points whose rays got through; the others are marked."""
-    lit = np.empty(len(index), np.int32)
-    return lit[: aiming.mark(index, blocked, seen, column, value, lit)]
+    lit = scratch("lit", len(index), dtype=np.int32)
+    return lit[: aiming.mark(index, blocked, seen, column, value, lit)].copy()
 
 
 def dim(plate: Plate, geometry: Geometry, setting: Setting, skipped: NDArray[np.bool_]) -> tuple[Bytes, Ints]:
@@ -231,7 +231,7 @@ def dim(plate: Plate, geometry: Geometry, setting: Setting, skipped: NDArray[np.
     seen = plate.seen
     for column, lit in plate.lit.items():
         target = setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
-        out, index = np.empty((len(lit), 6), np.float32), np.empty(len(lit), np.int32)
+        out, index = scratch("rays", len(lit), 6), scratch("index", len(lit), dtype=np.int32)
         found = aiming.aim_again(lit, skipped, plate.points, target, column == SUN, moving.boxes, out, index)
         if not found:
             continue
@@ -257,16 +257,13 @@ def paint(spots: Spots, near: Ints, seen: Bytes, rays: Floats, hits: Hits, setti
         out: (N, 3) sRGB of all pixels, written to.
     """
     count, day = len(spots.pixels), setting.day
-    light, gloss, power = (
-        np.empty((count, 3), np.float32),
-        np.zeros((count, 3), np.float32),
-        np.empty(count, np.float32),
-    )
+    light, gloss, power = scratch("light", count, 3), scratch("gloss", count, 3), scratch("power", count)
+    gloss[:] = 0
     loops.ambient(spots.normals, seen, day, light)
     if day[aiming.D_UP]:
         aiming.facing_sun(spots.normals, spots.flats, day, power)
         loops.add(power, seen, SUN, day[aiming.D_COLOR :], light)
-    polished = np.empty(count, np.int32)
+    polished = scratch("index", count, dtype=np.int32)
     polished = polished[: loops.shiny(spots.rows, polished)]
     for number in near.tolist():
         row = setting.rows[number]

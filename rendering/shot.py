@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -35,6 +35,7 @@ class Shot:
         hits: what they hit.
         class_ids: class -> number.
         after: the next moment, if it is known: for optical flow.
+        behind: what the rays hit of the part that stays; for the next moment, too.
     """
 
     scene: Scene
@@ -45,6 +46,7 @@ class Shot:
     hits: Hits
     class_ids: Mapping[str, int]
     after: Scene | None = None
+    behind: Hits | None = None
 
     @cached_property
     def owner(self) -> NDArray[np.int32]:
@@ -68,8 +70,21 @@ def shoot(scene: Scene, camera: Camera, class_ids: Mapping[str, int] | None = No
     geometry = scene.geometry if camera.cut is None else scene.opened
     hits = Hits.none(len(rays))
     cast_at(geometry, rays, everywhere(len(rays)), hits)
+    behind = hits.copy() if after else None
     overlay(geometry, camera, rays, hits)
-    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {}, after)
+    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {}, after, behind)
+
+
+def shoot_after(scene: Scene, shot: Shot) -> Shot:
+    """A later scene by the camera of a shot, whose rays are only cast again at what may have moved."""
+    camera = shot.camera
+    geometry = scene.geometry if camera.cut is None else scene.opened
+    if shot.behind is None or geometry.still is not shot.geometry.still:
+        return shoot(scene, camera)
+    prepare(geometry)
+    hits = shot.behind.copy()
+    overlay(geometry, camera, shot.rays, hits)
+    return replace(shot, scene=scene, geometry=geometry, hits=hits, after=None)
 
 
 def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:

@@ -1,0 +1,45 @@
+"""Memory that is used again: fresh pages cost the system more than most loops take to fill them."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from functools import cache
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class _Kept(threading.local):
+    """The buffers of a thread, by what they are used for and the kind of their values."""
+
+    def __init__(self) -> None:
+        self.buffers: dict[tuple[str, Any], NDArray[Any]] = {}
+
+
+_kept = _Kept()
+
+
+def scratch(use: str, *shape: int, dtype: Any = np.float32) -> NDArray[Any]:
+    """An array of any content, which is the calling thread's until it asks for another of the same use."""
+    size = prod(shape)
+    buffer = _kept.buffers.get((use, dtype))
+    if buffer is None or buffer.size < size:
+        buffer = _kept.buffers[use, dtype] = np.empty(size, dtype)
+    return buffer[:size].reshape(shape)
+
+
+TRIM_THRESHOLD, TOP_PAD, MMAP_THRESHOLD = -1, -2, -3
+"""Numbers of glibc's `mallopt`."""
+
+
+@cache
+def keep() -> bool:
+    """Have the C library keep what is freed, up to 128 MB, for whoever asks next; gives whether it does."""
+    try:
+        mallopt = ctypes.CDLL(None).mallopt
+    except (AttributeError, OSError):
+        return False
+    return bool(mallopt(MMAP_THRESHOLD, 1 << 25) and mallopt(TRIM_THRESHOLD, 1 << 27) and mallopt(TOP_PAD, 1 << 22))
