@@ -97,8 +97,8 @@ bench: $(READY)  ## measure everything into benchmarks/RESULTS.md; fails where a
 	@$(PY) benchmarks/results.py
 
 docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, commands and knowledge
-	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocstrings[python]>=0.28'
-	@$(PY) -m mkdocs build -q && echo build/site/index.html
+	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocs<2' 'mkdocstrings[python]>=0.28'
+	@NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build -q && echo build/site/index.html
 
 lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock and requirements-tools.lock
 	@rm -rf build/lock && mkdir -p build/lock

@@ -138,6 +138,16 @@ PAGES: dict[str, Callable[[], str]] = {
 }
 
 
+def on_startup(command: str, dirty: bool) -> None:
+    """Lay out the package for mkdocstrings: the checkout is the package's folder, with much in it that is no code."""
+    package = ROOT / "build/source/hearth"
+    package.mkdir(parents=True, exist_ok=True)
+    for path in (*(ROOT / name for name in PACKAGES), *ROOT.glob("*.py")):
+        link = package / path.name
+        link.unlink(missing_ok=True)
+        link.symlink_to(path)
+
+
 def on_files(files: Any, config: Any) -> Any:
     """Add the pages; mkdocs calls this."""
     from mkdocs.structure.files import File
