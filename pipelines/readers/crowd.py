@@ -87,14 +87,18 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def _answers(rows: _Rows, header: Header, place: str) -> Iterator[Item]:
+    empty = True
     for line, raw, cells in rows.parsed(header):
         fault = _row_fault(line, raw, cells, header, place)
+        empty = empty and not fault and not cells
         if fault:
             yield refused(place, Reject((fault,)), line=line)
         elif cells:
             values = dict(zip(header.columns, cells, strict=False))
             record_id = f"{NAME}:{values['HITId'].strip() or f'{place}:{line}'}"
             yield Item(record_id, NAME, place, {"stage": header.stage, "cells": values}, line=line)
+    if empty:
+        yield refused(place, Reject.of(Code.EMPTY, "a batch with its first line only", file=place, line=1))
 
 
 def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, place: str) -> Diagnostic | None:

@@ -23,6 +23,7 @@ COLUMNS = [
     "program_id", "origin", "description_id", "parent_id", "title", "description", "steps", "rooms", "props",
     "worker", "platform",
 ]  # fmt: skip
+TOLD = ["description_id", "title", "description", "scene", "origin", "worker", "platform", "programs"]
 _ROWS = 1_000
 
 
@@ -41,23 +42,24 @@ def scan(path: Path, place: str) -> Iterator[Item]:
             empty = False
             row["scene"] = scenes.get(row["description_id"])
             yield Item(row["program_id"], NAME, f"{place}/programs", row)
-    for row in _rows(path, "descriptions", None):
-        if not row["programs"]:
+    for row in _rows(path, "descriptions", TOLD):
+        if not row.pop("programs"):
             empty = False
-            told = {key: row[key] for key in ("title", "description", "scene", "origin", "worker", "platform")}
-            value = {**told, "description_id": row["description_id"]}
-            yield Item(row["description_id"], NAME, f"{place}/descriptions", value)
+            yield Item(row["description_id"], NAME, f"{place}/descriptions", row)
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a dataset without programs or descriptions", file=place))
 
 
-def _rows(path: Path, table: str, columns: list[str] | None) -> Iterator[dict[str, Any]]:
+def _rows(path: Path, table: str, columns: list[str]) -> Iterator[dict[str, Any]]:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     for file in sorted((path / table).glob("*.parquet")):
         try:
             with pq.ParquetFile(file) as source:
+                lacking = sorted({*columns} - {*source.schema_arrow.names})
+                if lacking:
+                    raise ValueError(f"it lacks the column{'s' * (len(lacking) > 1)} {', '.join(lacking)}")
                 for batch in source.iter_batches(_ROWS, columns=columns):
                     yield from batch.to_pylist()
         except (pa.ArrowException, OSError, ValueError) as error:

@@ -8,8 +8,10 @@ import struct
 import zipfile
 
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
+from hearth.pipelines import fuzzing
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers import packed
 from hearth.pipelines.rejects import Reject
@@ -195,3 +197,19 @@ def test_a_lying_directory_does_not_help_a_bomb(tmp_path, monkeypatch):
     data = path.read_bytes().replace(struct.pack("<L", 4_000_000), struct.pack("<L", 1_000))
     path.write_bytes(data)
     assert codes(read(path))[-1] == "program"
+
+
+# Nothing vanishes; found by mutated input
+
+
+def test_a_batch_with_its_first_line_only_says_so(write):
+    (found,) = read(write("batch.csv", fuzzing.SEEDS["descriptions.csv"]().decode().splitlines()[0] + "\n\n"))
+    assert (found.code, found.diagnostics[0].line) == ("EMPTY", 1)
+
+
+def test_a_dataset_whose_programs_lack_a_column_names_it(tmp_path):
+    table = pq.read_table(pa.BufferReader(fuzzing.SEEDS[fuzzing.DATASET]())).drop_columns(["title"])
+    out = pa.BufferOutputStream()
+    pq.write_table(table, out)
+    (found,) = read(fuzzing.placed(tmp_path, fuzzing.DATASET, out.getvalue().to_pybytes()))
+    assert found.code == "DAMAGED_FILE" and "title" in found.diagnostics[0].message
