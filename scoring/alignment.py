@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from hearth.scoring.counts import Matches, matched
+from hearth.scoring.counts import Match, Matches, matched
 from hearth.scoring.side import Side
 from hearth.scoring.views import Label, View
 
@@ -61,10 +61,10 @@ class Problem:
         theirs = {node for group in self.groups for node in group.reference}
         self.predicted = Side(predicted, named_predicted, ours, either)
         self.reference = Side(reference, named_reference, theirs, either)
-        self._pairs: dict[Pair, Matches] = {}
-        self._still = Matches(
-            matched(self.predicted.still_states, self.reference.still_states),
-            matched(self.predicted.still_relations, self.reference.still_relations),
+        self._pairs: dict[Pair, tuple[int, ...]] = {}
+        self._still = (
+            *matched(self.predicted.still_states, self.reference.still_states),
+            *matched(self.predicted.still_relations, self.reference.still_relations),
         )
 
     def best(self, limit: int = LIMIT) -> Best:
@@ -88,25 +88,29 @@ class Problem:
         A tuple with one movable end matches, if at all, one about its counterpart: such counts are kept from alignment
         to alignment, and only edges between movable nodes are looked at again.
         """
-        states, relations = self._still
+        sums: tuple[int, ...] = self._still
         ours: dict[int, Label] = {}
         theirs: dict[int, Label] = {}
         for pair in pairs:
             reference, predicted = pair
             counted = self._pairs.get(pair)
             if counted is None:
-                counted = self._pairs[pair] = self._matches_of(reference, predicted)
-            states += counted.states
-            relations += counted.relations
+                counted = self._pairs[pair] = self._counted(reference, predicted)
+            # Six plain numbers: this is done for a thousand alignments of a dozen pairs.
+            a, b, c, d, e, f = sums
+            u, v, w, x, y, z = counted
+            sums = (a + u, b + v, c + w, d + x, e + y, f + z)
             if predicted is not None:
                 ours[predicted] = predicted
             if reference is not None:
                 theirs[reference] = predicted if predicted is not None else ("reference", reference)
-        return Matches(states, relations + matched(self.predicted.moving(ours), self.reference.moving(theirs)))
+        moving = matched(self.predicted.moving(ours), self.reference.moving(theirs))
+        return Matches(Match(*sums[:3]), Match(*sums[3:]) + moving)
 
-    def _matches_of(self, reference: int | None, predicted: int | None) -> Matches:
+    def _counted(self, reference: int | None, predicted: int | None) -> tuple[int, ...]:
+        """The matches of one pair's states and relations, as numbers in a row."""
         ours, theirs = self.predicted.about(predicted), self.reference.about(reference)
-        return Matches(matched(ours[0], theirs[0]), matched(ours[1], theirs[1]))
+        return (*matched(ours[0], theirs[0]), *matched(ours[1], theirs[1]))
 
     def _all(self) -> Iterator[tuple[Pair, ...]]:
         yield self._derived([group.identity() for group in self.groups])
@@ -150,8 +154,8 @@ class Problem:
         from scipy.optimize import linear_sum_assignment
 
         pairs = group.identity()
-        counts = [[self._matches_of(reference, predicted) for _, predicted in pairs] for reference, _ in pairs]
-        weights = np.array([[found.states.both + found.relations.both for found in row] for row in counts])
+        counts = [[self._counted(reference, predicted) for _, predicted in pairs] for reference, _ in pairs]
+        weights = np.array([[found[0] + found[3] for found in row] for row in counts])
         rows, columns = linear_sum_assignment(weights, maximize=True)
         return [(pairs[i][0], pairs[j][1]) for i, j in zip(rows.tolist(), columns.tolist(), strict=True)]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections.abc import Mapping
 from typing import NamedTuple
 
 
@@ -54,7 +54,11 @@ class Matches(NamedTuple):
         return sum(self.rank())
 
 
-def matched(predicted: Counter[object], reference: Counter[object]) -> Match:
+def matched(predicted: Mapping[object, int], reference: Mapping[object, int]) -> Match:
     """What two multisets of tuples share."""
-    both = sum(min(count, reference[item]) for item, count in predicted.items() if item in reference)
-    return Match(both, predicted.total(), reference.total())
+    both = 0
+    for item, count in predicted.items():
+        other = reference.get(item)
+        if other is not None:
+            both += count if count < other else other
+    return Match(both, sum(predicted.values()), sum(reference.values()))

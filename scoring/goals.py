@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from hearth.schemas.goals import Goal, Predicate
 from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.vocabulary import STATES
 from hearth.scoring.signature import signature
 from hearth.scoring.views import View, view_of
+from hearth.simulation.bits import indices
+from hearth.simulation.moved import INSIDE, NOTHING, ON
 from hearth.simulation.world import World
 
 SIGNATURE = signature("goal", level="program", empty=1)
@@ -62,21 +66,54 @@ def goal_of(start: World, final: World) -> Goal:
 
     Being in a room is not counted, nor what was true at the start. Both worlds are of one home.
     """
-    change = final.changes(start)
     nodes = view_of(final).nodes
     counts: Counter[Predicate] = Counter()
 
     def name(node: int) -> str:
         return AGENT if node in nodes.characters else nodes.classes[node]
 
-    for node, state in change.set_states:
+    entered, added = _achieved(start, final)
+    for node, state in entered:
         counts[Predicate(state, name(node))] += 1
     subjects: dict[Predicate, set[int]] = {}
-    for edge in change.added:
-        if edge.relation in LASTING and edge.target not in nodes.left_out:
+    for edge in added:
+        if edge.target not in nodes.left_out:
             subjects.setdefault(_as_predicate(edge, name(edge.source), name(edge.target)), set()).add(_counted(edge))
     counts.update({predicate: len(found) for predicate, found in subjects.items()})
     return Goal.of(*sorted(counts.items(), key=lambda item: str(item[0])))
+
+
+def _achieved(start: World, final: World) -> tuple[Iterable[tuple[int, str]], Iterable[Edge]]:
+    """The states that came and the lasting edges that were added."""
+    if start.home is final.home and start.moved is NOTHING and len(final.agents) == 1 and not final.home.others:
+        return _states_set(start, final), _lasting(start, final)
+    change = final.changes(start)
+    return change.set_states, [edge for edge in change.added if edge.relation in LASTING]
+
+
+def _states_set(start: World, final: World) -> Iterator[tuple[int, str]]:
+    ids = final.home.ids
+    for name, before, after in zip(STATES, start.states, final.states, strict=True):
+        yield from ((ids[i], name) for i in indices(after & ~before))
+
+
+def _lasting(start: World, final: World) -> Iterator[Edge]:
+    """As `World.changes` tells them; what moved is a world's `extra` rows, and what else is near it is not read."""
+    home = final.home
+    ids = home.ids
+    for key, row in final.moved.extra.items():
+        i, kind = divmod(key, 8)
+        if kind in (ON, INSIDE):
+            before = home.on[i] if kind == ON else home.inside[i]
+            relation = "ON" if kind == ON else "INSIDE"
+            yield from (Edge(ids[i], relation, ids[j]) for j in indices(row & ~before))
+    old, new = start.agents[0], final.agents[0]
+    me = ids[new.index]
+    out = (("ON", old.on, new.on), ("INSIDE", old.inside, new.inside))
+    for relation, before, after in (*out, (HANDS[0], old.right, new.right), (HANDS[1], old.left, new.left)):
+        yield from (Edge(me, relation, ids[j]) for j in indices(after & ~before))
+    for relation, before, after in (("ON", old.worn, new.worn), ("INSIDE", old.contents, new.contents)):
+        yield from (Edge(ids[j], relation, me) for j in indices(after & ~before & ~new.bit))
 
 
 def _as_predicate(edge: Edge, source: str, target: str) -> Predicate:
@@ -92,11 +129,11 @@ def _subjects(predicate: Predicate, view: View) -> set[int]:
     """The distinct nodes that satisfy a predicate: of HOLDS the things held, else the subjects."""
     subjects = _nodes(predicate.subject, view)
     if predicate.target is None:
-        return {node for node, state in view.states(subjects) if state == predicate.name}
+        return view.in_state(predicate.name, subjects)
     targets = _nodes(predicate.target, view)
     relations = HANDS if predicate.name == HOLDS else (predicate.name,)
-    edges = (edge for edge in view.edges(subjects) if edge.relation in relations)
-    return {_counted(edge) for edge in edges if edge.source in subjects and edge.target in targets}
+    edges = (edge for relation in relations for edge in view.out(relation, subjects))
+    return {_counted(edge) for edge in edges if edge.target in targets}
 
 
 def _nodes(term: str | int, view: View) -> frozenset[int]:

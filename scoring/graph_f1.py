@@ -8,6 +8,7 @@ from typing import Literal, get_args
 
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
+from hearth.scoring import row_match
 from hearth.scoring.alignment import LIMIT, PERFECT, Pair, Problem
 from hearth.scoring.counts import NOTHING, Match, Matches, Prf
 from hearth.scoring.signature import signature
@@ -99,12 +100,21 @@ def score(
     ours, theirs = _scored(a, named_predicted), _scored(b, named_reference)
     if match == "swap1":
         return _swap1(a, b, ours, theirs, scope)
-    about = (ours | theirs, ours | theirs) if scope == "either" else (ours, theirs)
-    by_id = _compare(_tuples(a, about[0]), _tuples(b, about[1]))
+    by_id = _by_id(predicted, reference, ours | theirs) if scope == "either" else None
+    if by_id is None:
+        about = (ours | theirs, ours | theirs) if scope == "either" else (ours, theirs)
+        by_id = _compare(_tuples(a, about[0]), _tuples(b, about[1]))
     if match == "none" or by_id.rank() == PERFECT:
         return GraphScore.of(by_id)
     best = Problem(a, b, ours, theirs, either=scope == "either").best(LIMIT)
     return GraphScore.of(best.matches, best.exact, best.pairs)
+
+
+def _by_id(predicted: Final | View, reference: Final | View, about: Set[int]) -> Matches | None:
+    """What two worlds of one home share, ids compared, from their rows; None where only tuples can tell."""
+    if isinstance(predicted, World) and isinstance(reference, World) and row_match.comparable(predicted, reference):
+        return row_match.matches(predicted, reference, about)
+    return None
 
 
 def _swap1(a: View, b: View, ours: Set[int], theirs: Set[int], scope: Scope) -> GraphScore:

@@ -78,8 +78,27 @@ def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsSco
 def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -> list[LcsScore]:
     """The scores of many pairs, in order; the same as `score` on each, only faster."""
     pairs = list(pairs)
-    columns = [_pairwise(pairs, level, instances) for level in LEVELS]
+    sides = [[_levels(pair[side], instances) for pair in pairs] for side in (0, 1)]
+    columns = [_pairwise(*([found[level] for found in side] for side in sides)) for level in range(len(LEVELS))]
     return [LcsScore(*row) for row in zip(*columns, strict=True)]
+
+
+def _levels(lines: Lines, instances: bool) -> tuple[list[Hashable], list[Hashable], list[Hashable]]:
+    """The items of every level, as `items` gives them one by one."""
+    steps: list[Hashable] = []
+    actions: list[Hashable] = []
+    objects: list[Hashable] = []
+    for line in lines:
+        if isinstance(line, str):
+            for level in (steps, actions, objects):
+                level.append(("text", line.casefold()))
+            continue
+        action = _plain(line.action)
+        named = [_plain(ref.name) if not instances else _named(ref, True) for ref in line.objects]
+        steps.append((action, *named, line.agent))
+        actions.append(action)
+        objects += named
+    return steps, actions, objects
 
 
 def matrix(
@@ -116,10 +135,10 @@ def matrix(
     return found
 
 
-def _pairwise(pairs: Sequence[tuple[Lines, Lines]], level: Level, instances: bool) -> list[float]:
+def _pairwise(predicted: Sequence[Sequence[Hashable]], reference: Sequence[Sequence[Hashable]]) -> list[float]:
     from rapidfuzz.distance import LCSseq
 
-    a, b = _encode(*([items(pair[side], level, instances) for pair in pairs] for side in (0, 1)))
+    a, b = _encode(predicted, reference)
     lengths = (max(len(x), len(y)) for x, y in zip(a, b, strict=True))
     return [LCSseq.similarity(x, y) / longest if longest else 1.0 for x, y, longest in zip(a, b, lengths, strict=True)]
 

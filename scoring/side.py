@@ -53,21 +53,22 @@ class Side:
             return self._states[node], self._relations[node]
         return Counter(), self._to_characters.get(node, Counter())
 
-    def moving(self, labels: Mapping[int, Label]) -> Tuples:
+    def moving(self, labels: Mapping[int, Label]) -> Mapping[object, int]:
         """Edges between movable nodes of which one is scored, and the characters' to those that are not aligned."""
         about = labels.keys() if self._either else self.named
-        found: Tuples = Counter()
-        for node in about:
-            for source, relation, target in self._out.get(node, ()):
-                found[relation, self._label(source, labels), self._label(target, labels)] += 1
-            for source, relation, target in self._into.get(node, ()):
-                if source not in about:
-                    found[relation, self._label(source, labels), self._label(target, labels)] += 1
+        found: dict[object, int] = {}
+        ends: list[Edge] = []
+        if self._out:
+            for node in about:
+                ends += self._out.get(node, ())
+                ends += [edge for edge in self._into.get(node, ()) if edge.source not in about]
+        classes = self._classes
+        for source, relation, target in ends:
+            item = (relation, labels.get(source, classes[source]), labels.get(target, classes[target]))
+            found[item] = found.get(item, 0) + 1
         for node, tuples in self._to_characters.items():
             if node not in labels:
-                for item, count in tuples.items():
-                    found[self._classes[node], item] += count
+                for told, count in tuples.items():
+                    one = (classes[node], told)
+                    found[one] = found.get(one, 0) + count
         return found
-
-    def _label(self, node: int, labels: Mapping[int, Label]) -> Label:
-        return labels.get(node, self._classes[node])

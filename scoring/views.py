@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Protocol
 
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
-from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
+from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices, mask_of
@@ -122,8 +122,14 @@ class View(Protocol):
     def states(self, nodes: Collection[int]) -> Iterator[StateTuple]:
         """The states of some nodes, as (id, state), each once."""
 
+    def in_state(self, state: str, nodes: Collection[int]) -> set[int]:
+        """Those of some nodes that are in a state."""
+
     def edges(self, nodes: Collection[int]) -> set[Edge]:
         """Every edge with an end in some nodes."""
+
+    def out(self, relation: str, nodes: Collection[int]) -> set[Edge]:
+        """The edges of a relation that go out from some nodes."""
 
     def sorted_edges(self, movable: Set[int]) -> SortedEdges:
         """The edges of some nodes and of the characters, as an alignment counts them."""
@@ -140,6 +146,15 @@ class GraphView:
         """The states of some nodes, as (id, state), each once."""
         wanted = frozenset(nodes)
         return ((node.id, state) for node in self._graph.nodes if node.id in wanted for state in {*node.states})
+
+    def in_state(self, state: str, nodes: Collection[int]) -> set[int]:
+        """Those of some nodes that are in a state."""
+        return {node for node, name in self.states(nodes) if name == state}
+
+    def out(self, relation: str, nodes: Collection[int]) -> set[Edge]:
+        """The edges of a relation that go out from some nodes."""
+        wanted = frozenset(nodes)
+        return {edge for edge in self._graph.edges if edge.relation == relation and edge.source in wanted}
 
     def edges(self, nodes: Collection[int]) -> set[Edge]:
         """Every edge with an end in some nodes."""
@@ -166,6 +181,27 @@ class WorldView:
             i = home.index.get(node)
             if i is not None:
                 yield from ((node, state) for state in with_states(home.node(i), i, world.states).states)
+
+    def in_state(self, state: str, nodes: Collection[int]) -> set[int]:
+        """Those of some nodes that are in a state."""
+        number = STATE_ID.get(state)
+        if number is None:
+            return {node for node, name in self.states(nodes) if name == state}
+        row, index = self._world.states[number], self._world.home.index
+        return {node for node in nodes if node in index and row >> index[node] & 1}
+
+    def out(self, relation: str, nodes: Collection[int]) -> set[Edge]:
+        """The edges of a relation that go out from some nodes."""
+        world, read = self._world, _READ.get(relation)
+        if world.home.others or (read is None and relation not in _HELD):
+            return {edge for edge in self.edges(nodes) if edge.relation == relation and edge.source in nodes}
+        ids, index = world.home.ids, world.home.index
+        wanted = [index[node] for node in nodes if node in index]
+        found = {Edge(ids[i], relation, ids[j]) for i in wanted for j in indices(read(world, i))} if read else set()
+        for agent in world.agents:
+            mine = ((i, j) for i, name, j in rows.agent_edges(agent) if name == relation and ids[i] in nodes)
+            found.update(Edge(ids[i], relation, ids[j]) for i, j in mine)
+        return found
 
     def edges(self, nodes: Collection[int]) -> set[Edge]:
         """Every edge with an end in some nodes."""
@@ -194,6 +230,10 @@ class WorldView:
         _sort_agent(world.agents[0], home, moving, found)
         return found
 
+
+_READ = {"ON": rows.on, "INSIDE": rows.inside, "CLOSE": rows.close, "FACING": rows.facing}
+_HELD = ("HOLDS_RH", "HOLDS_LH")
+"""Relations whose edges between things are rows, and those that only a character's go out by."""
 
 _OUT = (("ON", rows.on), ("INSIDE", rows.inside), ("CLOSE", rows.close), ("FACING", rows.facing))
 _INTO = (("ON", rows.bears), ("INSIDE", rows.contents), ("CLOSE", rows.close), ("FACING", rows.faced))

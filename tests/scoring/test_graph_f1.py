@@ -7,13 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.alignment import Problem
 from hearth.scoring.counts import Match, Matches, Prf
 from hearth.scoring.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
 from hearth.scoring.views import GraphView, WorldView
-from hearth.simulation.engine import run
+from hearth.simulation.engine import act, run
+from hearth.simulation.legal import legal
 
 CLASSES = {9: "character", 1: "kitchen", 10: "table", 11: "table", 20: "cup", 21: "cup", 22: "cup", 30: "plate"}
 CATEGORIES = {1: "Rooms", 9: "Characters"}
@@ -275,3 +277,23 @@ def test_a_worlds_view_is_its_graphs_view(world):
 def test_signature():
     assert f1_signature() == "f1|match:best|scope:either|empty:1|v1"
     assert f1_signature("swap1", "own") == "f1|match:swap1|scope:own|empty:1|v1"
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_worlds_scored_by_rows_score_as_their_graphs(world, seed):
+    """Random legal walks from one start: what is counted on rows is what the tuples of the graphs say."""
+    chance = random.Random(seed)
+    ends = [wandered(world, chance) for _ in range(2)]
+    ours, theirs = (set(chance.sample((10, 11, 12, 20, 21, 22), chance.randint(0, 3))) for _ in range(2))
+    for match in MATCHES:
+        for scope in SCOPES:
+            fast = score(*ends, ours, theirs, match=match, scope=scope)
+            slow = score(*(end.graph() for end in ends), ours, theirs, match=match, scope=scope)
+            assert (fast.states, fast.relations, fast.both) == (slow.states, slow.relations, slow.both)
+
+
+def wandered(world, chance):
+    for _ in range(12):
+        now = act(world, chance.choice(list(legal(world))))
+        world = world if isinstance(now, Failure) else now
+    return world
