@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
@@ -15,6 +15,7 @@ from hearth.rendering.scene import Scene
 from hearth.rendering.skeleton import HIP, PELVIS_ON_SEAT, Stance
 from hearth.rendering.snapshots import Moment, Play
 from hearth.rendering.things import Thing
+from hearth.schemas.graph import Node
 from hearth.schemas.program import Step
 from hearth.simulation.navigation import Ways
 
@@ -29,6 +30,9 @@ TURNING = 200.0
 
 RELAX, RISE, REACH, BACK, HOLD = 0.25, 0.8, 0.55, 0.3, 0.3
 """Seconds."""
+
+OPENING = 0.5
+"""Seconds that doors, lids and drawers take to open or close."""
 
 STEP_LENGTH = 0.16
 """How far before the hips a foot is set down at full stride, as a share of the body's height (see `skeleton`)."""
@@ -106,13 +110,26 @@ def frames(staged: Play, fps: float = 15.0, speed: float = 1.0) -> Iterator[Fram
     set_ = _Set(staged)
     number = 0
     for span, before, after, tracks in _spans(staged, ways, speed):
-        change = max((track.change for track in tracks), default=0.0)
+        change, swings = _change(tracks), swinging(before, after)
         while number / fps < span.end:
             time = number / fps
-            actors = tuple(track.at((time - span.start) * speed) for track in tracks)
-            moment = after if (time - span.start) * speed >= change else before
-            yield Frame(time, span.tick, span.steps, set_.scene(moment, actors), actors)
+            past = (time - span.start) * speed
+            actors = tuple(track.at(past) for track in tracks)
+            moment, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
+            ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
+            yield Frame(time, span.tick, span.steps, set_.scene(moment, actors, ajar), actors)
             number += 1
+
+
+def swinging(before: Moment, after: Moment) -> dict[int, bool]:
+    """The things that are opened (True) or closed from one moment to the next, by id."""
+    one, other = ({n.id for n in m.places.graph.nodes if "OPEN" in n.states} for m in (before, after))
+    return {node: node in other for node in sorted(one ^ other)}
+
+
+def _change(tracks: Sequence[Track]) -> float:
+    """Seconds after which all hands have arrived."""
+    return max((track.change for track in tracks), default=0.0)
 
 
 def spans(staged: Play, speed: float = 1.0) -> list[Span]:
@@ -136,7 +153,10 @@ def _spans(staged: Play, ways: Ways | None, speed: float) -> Iterator[tuple[Span
             track(one, other, before, by_agent.get(number), ways)
             for number, (one, other) in enumerate(zip(before.actors, after.actors, strict=True))
         )
-        end = time + max((found.seconds for found in tracks), default=HOLD) / speed
+        takes = [found.seconds for found in tracks] or [HOLD]
+        if swinging(before, after):
+            takes.append(_change(tracks) + OPENING)
+        end = time + max(takes) / speed
         yield Span(after.tick, after.steps, time, end), before, after, tracks
         time = end
 
@@ -146,30 +166,42 @@ class _Set:
 
     def __init__(self, staged: Play) -> None:
         self.staged = staged
-        self.known: dict[tuple[int, frozenset[int]], tuple[tuple[Thing, ...], Scene]] = {}
+        self.known: dict[tuple[int, frozenset[int], frozenset[int]], tuple[tuple[Thing, ...], Scene]] = {}
 
-    def scene(self, moment: Moment, actors: tuple[Actor, ...]) -> Scene:
-        """The scene of a moment with the actors as they are in a frame."""
+    def scene(self, moment: Moment, actors: tuple[Actor, ...], ajar: Mapping[int, float]) -> Scene:
+        """The scene of a moment with the actors as they are in a frame, and some things open by a share."""
         prepared, places = self.staged.prepared, moment.places
         held = carried(actors, places)
-        things, base = self._rest(moment, frozenset(held))
+        things, base = self._rest(moment, frozenset(held), frozenset(ajar))
         nodes = {node.id: node for node in places.graph.nodes if node.id in held}
+        swung = [
+            thing
+            for node in (places.nodes() if ajar else ())
+            if node.id in ajar and node.id not in held
+            for thing in prepared.things(_opened(node), ajar[node.id])
+        ]
         hands = [
             thing
             for number, pose in held.items()
             for thing in prepared.things(replace(nodes[number], box=pose.box, yaw=pose.yaw))
         ]
         people = [Thing(a.node.id, a.node.class_name, a.figure(), a.position, a.yaw) for a in actors]
-        return replace(base, things=(*things, *hands, *people), still=self.staged.still)
+        return replace(base, things=(*things, *hands, *swung, *people), still=self.staged.still)
 
-    def _rest(self, moment: Moment, held: frozenset[int]) -> tuple[tuple[Thing, ...], Scene]:
-        key = (moment.tick, held)
+    def _rest(self, moment: Moment, held: frozenset[int], swung: frozenset[int]) -> tuple[tuple[Thing, ...], Scene]:
+        key = (moment.tick, held, swung)
         if key not in self.known:
+            # What swings is left out afterwards: windows give light while they are opened.
             nodes = [node for node in moment.places.nodes() if node.id not in held]
             base = self.staged.prepared.scene(nodes)
             kept = frozenset(self.staged.still.things)
-            self.known[key] = tuple(thing for thing in base.things if thing not in kept), base
+            self.known[key] = tuple(t for t in base.things if t not in kept and t.id not in swung), base
         return self.known[key]
+
+
+def _opened(node: Node) -> Node:
+    """A node as it is while it swings: neither closed nor quite open."""
+    return replace(node, states=tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})))
 
 
 def track(one: Actor, other: Actor, before: Moment, step: Step | None, ways: Ways | None) -> Track:

@@ -154,8 +154,8 @@ class Stage:
             found = self._drawn[key] = tuple(self.things(node)), tuple(self.lights(node))
         return found
 
-    def things(self, node: Node) -> Iterator[Thing]:
-        """What a node is drawn as."""
+    def things(self, node: Node, ajar: float = 1.0) -> Iterator[Thing]:
+        """What a node is drawn as; `ajar` is how far it is open if it is OPEN."""
         if node.box is None:
             return
         room = self.rooms.get(self.room_of.get(node.id, -1))
@@ -166,13 +166,14 @@ class Stage:
                 yield from self.things(replace(node, box=part))
             return
         box, yaw = node.box, node.yaw or 0.0
-        if choice.recipe == "door" and "CLOSED" in node.states:
-            box, yaw = self._shut(box) or (box, yaw)
+        turned = self._leaf(box, 0.0 if "CLOSED" in node.states else ajar) if choice.recipe == "door" else None
+        if turned:
+            box, yaw = turned
         building = choice.recipe in BUILDING
         if building:
             yaw = 0.0
-        size = local_size(box.size, yaw)
-        more: dict[str, object] = {"level": self._level(node.class_name, size[1])}
+        size = box.size if turned else local_size(box.size, yaw)
+        more: dict[str, object] = {"level": self._level(node.class_name, size[1]), "ajar": round(ajar, 4)}
         if building and room:
             more["kind"] = room.class_name
         elif choice.recipe == "bookshelf" and node.id in self.laden:
@@ -212,8 +213,25 @@ class Stage:
             return 0.0
         return known.levels[0]
 
-    def _shut(self, leaf: Box) -> tuple[Box, float] | None:
-        """Box and yaw of a closed door: in the nearest doorway."""
+    def _leaf(self, leaf: Box, share: float) -> tuple[Box, float] | None:
+        """Middle, size in its own frame and yaw of a door that is open by a share of its way; None without a doorway.
+
+        Its own +x points away from the hinge.
+        """
+        shut = self._shut(leaf)
+        if shut is None:
+            return None
+        width, thick = (f(leaf.size[0], leaf.size[2]) for f in (max, min))
+        width = width if share else max(shut.size[0], shut.size[2])
+        hung, one, other = _hinge(shut, leaf)
+        hinge = [a + (b - a) * share for a, b in zip(*hung, strict=True)]
+        angle = one + ((other - one + 180) % 360 - 180) * share
+        x, z = cos(radians(angle)) * width / 2, sin(radians(angle)) * width / 2
+        center = (hinge[0] + x, leaf.center[1] - 0.025 * (1 - share), hinge[1] + z)
+        return Box(center, (width, leaf.size[1], thick)), round(-angle, 4)
+
+    def _shut(self, leaf: Box) -> Box | None:
+        """The box of a closed door: in the nearest doorway."""
         if not self.jambs:
             return None
         jamb = min(self.jambs, key=lambda node: _distance(node.box, leaf) if node.box else 1e9)
@@ -222,7 +240,7 @@ class Stage:
         (w, _, d), (x, _, z) = jamb.box.size, jamb.box.center
         height, thick = leaf.size[1], min(leaf.size[0], leaf.size[2])
         size = (w - 0.1, height - 0.05, thick) if w > d else (thick, height - 0.05, d - 0.1)
-        return Box((x, leaf.center[1] - 0.025, z), size), 0.0
+        return Box((x, leaf.center[1] - 0.025, z), size)
 
 
 def stage(graph: EnvironmentGraph, *, seed: int = 0, hour: float = 10.0, knowledge: Knowledge | None = None) -> Stage:
@@ -266,6 +284,28 @@ def liquid(node: Node, vessel: Box) -> Node:
     (x, y, z), (w, h, d) = vessel.center, vessel.size
     side = min(w, d) * 0.72
     return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
+
+
+Spot = tuple[float, float]
+
+
+def _hinge(shut: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
+    """Where a door hangs (x, z), and the ways it points from there, degrees: when it is shut and when it is open."""
+    ends = []
+    for box in (shut, leaf):
+        along = 0 if box.size[0] >= box.size[2] else 2
+        ends.append([(sign, along, _end(box, along, sign)) for sign in (-1, 1)])
+    pairs = [(one, other) for one in ends[0] for other in ends[1]]
+    one, other = min(pairs, key=lambda pair: abs(pair[0][2][0] - pair[1][2][0]) + abs(pair[0][2][1] - pair[1][2][1]))
+    ways = [(90.0 if along else 0.0) + (180.0 if sign > 0 else 0.0) for sign, along, _ in (one, other)]
+    return (one[2], other[2]), ways[0], ways[1]
+
+
+def _end(box: Box, along: int, sign: int) -> Spot:
+    """(x, z) of one end of a leaf."""
+    x, z = box.center[0], box.center[2]
+    half = sign * box.size[along] / 2
+    return (x + half, z) if along == 0 else (x, z + half)
 
 
 def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, float, float]:

@@ -46,7 +46,7 @@ def _oven_door(w: float, y0: float, y1: float, z: float, body: Paint, look: Look
         rod((-w * 0.38, y1 - 0.06, z + 0.024), (w * 0.38, y1 - 0.06, z + 0.024), 0.009, CHROME, sides=8),
     ]
     leaf = join(parts)
-    return turn(leaf, "x", 85, (0, y0, z)) if look.open else leaf
+    return turn(leaf, "x", 85 * look.open, (0, y0, z)) if look.open else leaf
 
 
 def microwave(look: Look) -> Mesh:
@@ -79,7 +79,7 @@ def microwave(look: Look) -> Mesh:
         rod((cut + 0.03, h * 0.2, depth / 2 + 0.028), (cut + 0.03, h * 0.8, depth / 2 + 0.028), 0.008, CHROME, sides=8),
     ))  # fmt: skip
     if look.open:
-        leaf = turn(leaf, "y", 100, (w / 2, 0, depth / 2))
+        leaf = turn(leaf, "y", 100 * look.open, (w / 2, 0, depth / 2))
     return shift(join([shell, side, lining, *keys, show, leaf]), z=-0.014)
 
 
@@ -111,7 +111,7 @@ def washing_machine(look: Look) -> Mesh:
         depth / 2,
     )
     if look.open:
-        hatch = turn(hatch, "y", -100, (-w * 0.34, 0, depth / 2))
+        hatch = turn(hatch, "y", -100 * look.open, (-w * 0.34, 0, depth / 2))
     board = join((
         box((0, h - 0.065, depth / 2 + 0.003), (w * 0.96, 0.1, 0.006), WHITE),
         block(w * 0.16, w * 0.45, h - 0.1, h - 0.03, depth / 2 + 0.006, depth / 2 + 0.009, GREY),
@@ -138,7 +138,7 @@ def dishwasher(look: Look) -> Mesh:
         panel((0.1, h - 0.08, depth / 2 + 0.024), 0.08, 0.03, LED if look.on else GREY),
     ))  # fmt: skip
     if look.open:
-        leaf = turn(leaf, "x", 88, (0, 0.1, depth / 2))
+        leaf = turn(leaf, "x", 88 * look.open, (0, 0.1, depth / 2))
     lid = block(-w / 2, w / 2, h - 0.025, h, -depth / 2, depth / 2, WHITE)
     return shift(join([shell, *racks, leaf, lid, feet(w, depth, 0.1, DARK)]), z=-0.014)
 

@@ -56,7 +56,7 @@ def toilet(look: Look) -> Mesh:
     cover = shift(
         stretch(lathe([(0, 0), (0.5, 0), (0.5, 0.015), (0, 0.02)], WHITE, 24), x=w * 0.96, z=reach), 0, seat, 0.1
     )
-    cover = turn(cover, "x", -95, (0, seat, -d / 2 + 0.23)) if look.open else cover
+    cover = turn(cover, "x", -95 * look.open, (0, seat, -d / 2 + 0.23)) if look.open else cover
     foot = block(-w * 0.2, w * 0.2, 0, seat * 0.7, -d / 2 + 0.05, 0.0, CERAMIC)
     return join((tank, lid, button, bowl, ring, pool, cover, foot))
 

@@ -41,9 +41,9 @@ def carcass(w: float, h: float, d: float, paint: Paint, y: float = 0.0, board: f
     return join([*sides, *flat, back])
 
 
-def door(x0: float, x1: float, y0: float, y1: float, z: float, paint: Paint, open_: bool, left: bool,
+def door(x0: float, x1: float, y0: float, y1: float, z: float, paint: Paint, open_: float, left: bool,
          knob: Paint = CHROME, frame: float = 0.05) -> Mesh:  # fmt: skip
-    """A cabinet's door with its front at `z`, hinged on its left (-x) or right side."""
+    """A cabinet's door with its front at `z`, hinged on its left (-x) or right side; `open_` from 0 to 1."""
     gap, thick = 0.003, 0.018
     leaf = block(x0 + gap, x1 - gap, y0 + gap, y1 - gap, z - thick, z - 0.004, paint)
     rails = _frame(x0 + gap, x1 - gap, y0 + gap, y1 - gap, z, min(frame, (x1 - x0) / 5), paint)
@@ -54,7 +54,7 @@ def door(x0: float, x1: float, y0: float, y1: float, z: float, paint: Paint, ope
     whole = join((leaf, rails, handle))
     hinge = x0 if left else x1
     # The frame is left-handed: a left door opens towards +z when it turns by a negative angle.
-    return turn(whole, "y", -SWING if left else SWING, (hinge, 0, z - thick)) if open_ else whole
+    return turn(whole, "y", (-SWING if left else SWING) * open_, (hinge, 0, z - thick)) if open_ else whole
 
 
 def _frame(x0: float, x1: float, y0: float, y1: float, z: float, width: float, paint: Paint) -> Mesh:
@@ -68,7 +68,7 @@ def _frame(x0: float, x1: float, y0: float, y1: float, z: float, width: float, p
 
 
 def doors(
-    w: float, y0: float, y1: float, z: float, count: int, paint: Paint, open_: bool, knob: Paint = CHROME
+    w: float, y0: float, y1: float, z: float, count: int, paint: Paint, open_: float, knob: Paint = CHROME
 ) -> Mesh:
     """`count` doors side by side over a front of width w; pairs open away from each other."""
     step = w / count
@@ -79,9 +79,9 @@ def doors(
 
 
 def drawers(
-    w: float, y0: float, y1: float, d: float, count: int, paint: Paint, open_: bool, knob: Paint = CHROME
+    w: float, y0: float, y1: float, d: float, count: int, paint: Paint, open_: float, knob: Paint = CHROME
 ) -> Mesh:
-    """A stack of drawers; the upper one is pulled out when open."""
+    """A stack of drawers; the upper one is pulled out by a share `open_` of the way."""
     step, gap = (y1 - y0) / count, 0.004
     parts = []
     for k in range(count):
@@ -98,7 +98,8 @@ def drawers(
         parts.append(front + bar)
         if open_ and k == count - 1:
             parts[-1] = shift(
-                join((parts[-1], tray(w - 0.04, min(high - low, 0.1) * 0.8, d * 0.8, low, d, paint))), z=d * 0.55
+                join((parts[-1], tray(w - 0.04, min(high - low, 0.1) * 0.8, d * 0.8, low, d, paint))),
+                z=d * 0.55 * open_,
             )
     return join(parts)
 

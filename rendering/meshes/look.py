@@ -27,6 +27,7 @@ class Look:
         kind: overrides what is special to a class (`apple`, `lemon`); recipes say which they know.
         level: height in metres at which things stand on it, if known (a seat's, a mattress's); 0 for the recipe's own.
         hole: (x0, x1, z0, z1) cut out of its top for what is sunk into it, in its own frame.
+        ajar: how far its doors and drawers are open when it is OPEN: from 0 to 1.
     """
 
     size: Size
@@ -37,15 +38,16 @@ class Look:
     kind: str = ""
     level: float = 0.0
     hole: tuple[float, float, float, float] | None = None
+    ajar: float = 1.0
 
     def seat(self, usual: float, share: float) -> float:
         """The height things stand at: `level`, else `usual` metres, but never above `share` of the height."""
         return min(self.level or usual, self.size[1] * share)
 
     @property
-    def open(self) -> bool:
-        """Whether it is OPEN."""
-        return "OPEN" in self.states
+    def open(self) -> float:
+        """How far it is open: 0 unless it is OPEN."""
+        return self.ajar if "OPEN" in self.states else 0.0
 
     @property
     def on(self) -> bool:

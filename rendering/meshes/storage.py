@@ -42,9 +42,9 @@ def mirror_cabinet(look: Look) -> Mesh:
     w, h, d = look.size
     shell = carcass(w, h, d - 0.01, WHITE, shelves=3)
     glass = panel((0, h / 2, d / 2 - 0.005 + 0.001), w - 0.05, h - 0.05, GLASS.tinted("#a9c4cf"))
-    leaf = doors(w, 0, h, d / 2 - 0.005, 1, WHITE, False) + glass
+    leaf = doors(w, 0, h, d / 2 - 0.005, 1, WHITE, 0.0) + glass
     if look.open:
-        leaf = turn(leaf, "y", -105, (-w / 2, 0, d / 2 - 0.02))
+        leaf = turn(leaf, "y", -105 * look.open, (-w / 2, 0, d / 2 - 0.02))
     return shell + leaf
 
 
@@ -231,7 +231,7 @@ def bin_(look: Look) -> Mesh:
     )
     lid = lathe([(r, h * 0.86), (r, h * 0.92), (r * 0.8, h * 0.98), (0, h)], DARK, 20)
     if look.open:
-        lid = turn(lid, "x", -70, (0, h * 0.88, -r * 0.9))
+        lid = turn(lid, "x", -70 * look.open, (0, h * 0.88, -r * 0.9))
     pedal = block(-0.15, 0.15, 0.0, 0.03, 0.4, 0.5, DARK)
     return stretch(join((body, lid, pedal)), x=w, z=d)
 
@@ -270,7 +270,7 @@ def fridge(look: Look) -> Mesh:
     body = look.tint(Paint("#eceeee", shine=0.5), ("#eef0f0", "#c3c7ca", "#eef0f0", "#9db3b8"))
     split = h * (0.34 if look.kind != "freezer" else 0.5)
     depth = d - 0.06
-    inner = Paint("#f4f7f8", shine=0.3).lit(0.35 if look.open else 0.0)
+    inner = Paint("#f4f7f8", shine=0.3).lit(0.35 * look.open)
     shell = carcass(w, h, depth, body, board=0.035) + block(
         -w / 2 + 0.035, w / 2 - 0.035, split - 0.03, split + 0.01, -depth / 2, depth / 2, inner
     )
@@ -313,7 +313,7 @@ def fridge(look: Look) -> Mesh:
     return join([shell, *leaves])
 
 
-def _fridge_door(w: float, y0: float, y1: float, z0: float, z1: float, paint: Paint, open_: bool) -> Mesh:
+def _fridge_door(w: float, y0: float, y1: float, z0: float, z1: float, paint: Paint, open_: float) -> Mesh:
     leaf = block(-w / 2, w / 2, y0, y1, z0 + 0.003, z1 - 0.012, paint)
     x = w / 2 - 0.07
     middle = y0 + 0.3 if y1 - y0 > 0.7 else (y0 + y1) / 2
@@ -325,7 +325,7 @@ def _fridge_door(w: float, y0: float, y1: float, z0: float, z1: float, paint: Pa
             if y < y1 - 0.15:
                 racks.append(block(-w / 2 + 0.06, w / 2 - 0.06, y, y + 0.07, z0 - 0.09, z0, GLASS))
     whole = join([leaf, grip, *racks])
-    return turn(whole, "y", -100, (-w / 2, 0, z0)) if open_ else whole
+    return turn(whole, "y", -100 * open_, (-w / 2, 0, z0)) if open_ else whole
 
 
 def fridge_inside(look: Look) -> tuple[Region, ...]:
