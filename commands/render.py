@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Pictures of a program, and of every model.")
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file.")]
-HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home with a floor plan.")]
+HomeName = Annotated[
+    str, typer.Option("--home", metavar="NAME", help="A home; one without geometry is laid out by its relations.")
+]
 Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the pictures go.")]
 OutFile = Annotated[Path, typer.Option("--out", metavar="FILE", help="A PNG file.")]
@@ -71,10 +73,12 @@ def program(
       python cli.py render-program watch_tv.txt --home maple --out pictures
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
     """
+    from hearth.rendering.laid import laid
     from hearth.simulation.homes import catalog
 
     execution = _execution(file, home, homes, seed)
-    graph = catalog.load_graph(home, homes)
+    place = laid(catalog.load_graph(home, homes), home)
+    graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
     taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
     if mode == "video":
@@ -83,8 +87,11 @@ def program(
         told = _snapshots(execution, graph, out, "fine" if fine else "draft", taken, _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
-        output.emit({"program": execution.program.title, "home": home, "failure": failure, **told})
+        output.emit(
+            {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made, **told}
+        )
     else:
+        print(note, end="\n" if note else "")
         print(f"{told['pictures']} pictures of {file.name} in {out}; all together: {told['sheet']}")
         if told.get("visible") is not None:
             print(f"Steps of which every object is visible: {told['visible']:.1%}")

@@ -18,6 +18,7 @@ from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:
     from hearth.rendering.camera import Camera
+    from hearth.rendering.laid import Laid
     from hearth.rendering.snapshots import Snapshot
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
@@ -38,27 +39,37 @@ class Context(NamedTuple):
 
     homes: Homes
     job: Job
+    laid: dict[str, Laid]
+
+    def home(self, name: str) -> Laid:
+        """A home with geometry, which is made if it has none; once a process."""
+        from hearth.rendering.laid import laid
+        from hearth.simulation.homes import catalog
+
+        if name not in self.laid:
+            graph = catalog.load_graph(name, self.job.settings.homes_folder)
+            self.laid[name] = laid(graph, name, self.homes.knowledge)
+        return self.laid[name]
 
 
 def process(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
     """One row for each picture of a case, and one for its film, if it is filmed."""
     from hearth.rendering.png import encode
     from hearth.rendering.snapshots import snapshots
-    from hearth.simulation.homes import catalog
 
-    job = context.job
-    home = catalog.load_graph(case["home"], job.settings.homes_folder)
+    job, place = context.job, context.home(case["home"])
+    home = place.graph
     execution = rerun(case, context.homes)
     folder = _folder(case["execution_id"])
     if case["execution_id"] in job.plan["films"]:
-        yield "videos", _film(case, execution, home, context)
+        yield "videos", {**_film(case, execution, home, context), "layout_made": place.made}
     for shot in snapshots(execution, home, knowledge=context.homes.knowledge):
         for modality, picture in shot.pictures.items():
             name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
             path = job.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             write_bytes(path, encode(picture))
-            yield "", {**_camera(shot.camera), **_told(case, shot, modality), "file": name}
+            yield "", {**_camera(shot.camera), **_told(case, shot, modality), "layout_made": place.made, "file": name}
 
 
 FILM_SIZE, FILM_RATE = (320, 240), 15.0
@@ -134,7 +145,7 @@ def _told(case: Record, shot: Snapshot, modality: str) -> Row:
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """Choose the executions: the first ones of different programs, in homes that have geometry."""
+    """Choose the executions: the first ones of different programs, in homes of the catalog."""
     homes = Homes(settings)
     found: dict[str, tuple[str, str]] = {}
     for file, row in _sampled(settings):
@@ -195,7 +206,7 @@ def records(job: Job, partition: Partition) -> Iterator[Record]:
 
 def open_context(job: Job) -> Context:
     """Homes, built when first asked for."""
-    return Context(Homes(job.settings), job)
+    return Context(Homes(job.settings), job, {})
 
 
 STAGE = Stage(

@@ -200,6 +200,7 @@ RENDERED: Final = pa.schema(
         _column("pose", pa.list_(pa.float64()), "camera to world, 4x4 row by row"),
         _column("start_time", pa.float64(), "seconds from the start of the execution; null for pictures between ticks"),
         _column("end_time", pa.float64(), "the same"),
+        _column("layout_made", pa.bool_(), "whether the home had no geometry, and was laid out by its relations"),
         _column("file", TEXT, "picture or video, relative to the dataset"),
     ]
 )
@@ -246,6 +247,7 @@ FILMED: Final = pa.schema(
             ),
             "what was drawn by chance: see `rendering.variation`",
         ),
+        _column("layout_made", pa.bool_(), "whether the home had no geometry, and was laid out by its relations"),
         _column("file", TEXT, "the video, relative to the dataset"),
     ]
 )

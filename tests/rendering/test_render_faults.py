@@ -1,6 +1,7 @@
 """A disk that is full, and what is drawn by chance."""
 
 import errno
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 pytest.importorskip("open3d", exc_type=ImportError)
 
 from hearth.rendering.camera import look_at
+from hearth.rendering.laid import laid
 from hearth.rendering.variation import PLAIN, drawn, scattered
 from hearth.rendering.video import Writer
 from hearth.schemas.errors import HearthError
@@ -83,3 +85,18 @@ def test_a_stage_goes_on_after_a_full_disk(tmp_path, monkeypatch):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in wrote)
     monkeypatch.undo()
     assert run_stage(stage("render"), settings).manifest.counts.rows[""] == 8
+
+
+def test_a_home_without_geometry_is_laid_out_and_said():
+    bare = EnvironmentGraph(
+        (Node(9, "kitchen", "Rooms"), *(replace(node, box=None) for node in HOME.nodes)),
+        (*HOME.edges, *(Edge(node.id, "INSIDE", 9) for node in HOME.nodes)),
+    )
+    found = laid(bare, "bare")
+    assert found.made
+    assert [node.id for node in found.graph.nodes] == [node.id for node in bare.nodes]
+    assert all(node.box for node in found.graph.nodes)
+    assert "bare has no geometry" in found.note("bare")
+    again = laid(found.graph)
+    assert again.graph is found.graph, "what has geometry keeps its own"
+    assert not again.note("bare")
