@@ -153,13 +153,14 @@ def program(
     """Every score: LCS and parsability; where rows name an environment also executability, final-graph F1 and goal.
 
     Rows are those of `score lcs`. An environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
-    or `home` (a name), or else --graph. The goal is what the reference program achieves there.
+    or `home` (a name), or else --graph. The goal is what the reference program achieves there. Steps may be in words.
 
     \b
     Example:
       python cli.py score program predictions.jsonl --graph home.json --by activity
     """
     from hearth.kb import knowledge
+    from hearth.pipelines.judging import read_line
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
     from hearth.scoring.predictions import read_pairs
@@ -167,7 +168,7 @@ def program(
 
     chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
     options = Options(chosen, match.value, scope.value, instances, seed)
-    pairs = read_pairs(file, references)
+    pairs = read_pairs(file, references, read_line)
     scored = evaluate(pairs, knowledge.default(), environments.by_row(file, graph, homes), options)
     if as_json:
         output.emit(_program_json(scored, options, by))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,6 +20,11 @@ def statements(root: str = "") -> str:
     return text.format(root=root.replace("'", "''"))
 
 
+def _reading(root: str, table: str) -> str:
+    quoted = root.replace("'", "''")
+    return f"read_parquet('{quoted}{table}/*.parquet')"
+
+
 def write_catalog(folder: Path) -> None:
     """Write `catalog.duckdb` and the SQL that it was made by, with paths that hold wherever the folder is moved."""
     import duckdb
@@ -34,14 +40,25 @@ def write_catalog(folder: Path) -> None:
             connection.execute(statements())
 
 
-def attach(folder: Path) -> Any:
-    """A connection with the dataset's views that reads nothing but this folder, and writes nothing anywhere."""
+def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
+    """A connection with the dataset's views that reads nothing but this folder, and writes nothing anywhere.
+
+    Args:
+        folder: of the dataset.
+        absent: tables that it has no files of; they are empty.
+    """
     import duckdb
+
+    from hearth.schemas.tables import TABLES
 
     root = f"{folder.resolve()}/"
     connection = duckdb.connect()
     connection.execute("SET parquet_metadata_cache = true")
-    connection.execute(statements(root))
+    text = statements(root)
+    for table in absent:
+        connection.register(f"no_{table}", TABLES[table].empty_table())
+        text = text.replace(_reading(root, table), f"no_{table}")
+    connection.execute(text)
     quoted = root.replace("'", "''")
     connection.execute(f"SET allowed_directories = ['{quoted}']")
     connection.execute("SET enable_external_access = false")

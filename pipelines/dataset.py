@@ -69,8 +69,7 @@ class Dataset:
         Raises:
             HearthError: MISSING_FILE, where a table is not there.
         """
-        _complete(self.folder, self.manifest)
-        return attach(self.folder)
+        return attach(self.folder, _absent(self.folder, self.manifest))
 
     def sql(self, query: str, **parameters: Any) -> Any:
         """A query as a DuckDB relation; `$name` in it is the parameter of that name.
@@ -335,17 +334,23 @@ def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]]) -> None:
         states[row["node"]].add(row["state"])
 
 
-def _complete(folder: Path, content: Row) -> None:
-    """Name the tables that are not there, before a query says so in DuckDB's words."""
+def _absent(folder: Path, content: Row) -> list[str]:
+    """The tables that a dataset never had, because an earlier version wrote it.
+
+    Raises:
+        HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
+            DuckDB's words.
+    """
     from hearth.schemas.tables import TABLES
 
     missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
-    if missing:
-        message = (
-            f"it has no table {', '.join(f'`{table}`' for table in missing)}; it was written by {content['version']}"
-        )
+    published = {name.partition("/")[0] for name in content["files"]}
+    lost = [f"`{table}`" for table in missing if table in published]
+    if lost:
+        message = f"it has no table {', '.join(lost)}; it was written by {content['version']}"
         remedy = "fetch the dataset again, or publish it again with this version"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
+    return missing
 
 
 def _refused(error: Exception) -> HearthError:

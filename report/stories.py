@@ -38,6 +38,12 @@ class Stories:
             found[execution_id].append({"tick": tick, "camera": camera, "file": file})
         return found
 
+    @cached_property
+    def films(self) -> dict[str, Row]:
+        """The film of each execution that has one: its file, and for each tick when it ends, seconds."""
+        query = "SELECT execution_id, file, list_transform(steps, lambda s: s.end) FROM videos ORDER BY 1, 2"
+        return {name: {"file": file, "ends": ends} for name, file, ends in self.dataset.rows(query)[1]}
+
     def story(self, program: Row, runs: Iterable[Row], repairs: Iterable[Row]) -> Row:
         """One program as JSON.
 
@@ -81,6 +87,7 @@ class Stories:
             "start": _graph(start, states, names, shown, home.characters),
             "final": _graph(final, ended, names, shown, home.characters),
             "frames": self.frames.get(run["execution_id"], []),
+            "film": self.films.get(run["execution_id"]),
         }
 
     def _home(self, name: str) -> _Home:

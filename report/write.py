@@ -159,7 +159,9 @@ def _ask(cursor: Any, query: str, asked: dict[str, str]) -> list[Row]:
 
 
 def _pictures(dataset: Dataset, to: Path) -> None:
-    for (name,) in dataset.rows("SELECT DISTINCT file FROM frames WHERE modality = 'rgb' ORDER BY 1")[1]:
+    query = """SELECT file FROM frames WHERE modality = 'rgb' UNION SELECT file FROM videos
+        UNION SELECT regexp_replace(file, '[.]webm$', '.mp4') FROM videos ORDER BY 1"""
+    for (name,) in dataset.rows(query)[1]:
         source, target = dataset.folder / name, to / name
         if source.is_file() and source.resolve().is_relative_to(dataset.folder.resolve()) and ".." not in name:
             target.parent.mkdir(parents=True, exist_ok=True)

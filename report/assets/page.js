@@ -74,6 +74,20 @@ HEARTH.draw = (() => {
     });
   }
 
+  function filmed(film) {
+    const video = element("video", null, "frame");
+    video.controls = true;
+    video.muted = true;
+    video.playsInline = true;
+    video.preload = "metadata";
+    for (const file of [film.file, film.file.replace(/\.webm$/, ".mp4")]) {
+      const source = element("source");
+      source.src = file.split("/").map(encodeURIComponent).join("/");
+      video.append(source);
+    }
+    return video;
+  }
+
   function player(run, steps) {
     const controls = element("p", null, "controls");
     const button = element("button", "Play");
@@ -83,9 +97,10 @@ HEARTH.draw = (() => {
     const changes = element("div");
     const picture = element("img", null, "frame");
     picture.alt = "";
-    picture.hidden = !run.frames.length;
+    picture.hidden = Boolean(run.film) || !run.frames.length;
+    const film = run.film ? filmed(run.film) : null;
     let tick = 0;
-    const stop = () => { clearInterval(timer); timer = 0; button.textContent = "Play"; };
+    const stop = () => { clearInterval(timer); timer = 0; if (film) film.pause(); button.textContent = "Play"; };
     function draw() {
       const now = new Set(tick ? run.ticks[tick - 1].steps : []);
       steps.forEach((line, number) => line.classList.toggle("now", now.has(number)));
@@ -95,8 +110,22 @@ HEARTH.draw = (() => {
       const frame = run.frames.filter((each) => each.tick === tick).at(-1);
       if (frame) picture.src = frame.file.split("/").map(encodeURIComponent).join("/");
     }
-    function go(to) { tick = Math.max(0, Math.min(run.ticks.length, to)); draw(); }
+    function go(to) {
+      tick = Math.max(0, Math.min(run.ticks.length, to));
+      if (film) film.currentTime = tick > 1 ? run.film.ends[tick - 2] : 0;
+      draw();
+    }
+    if (film) {
+      film.ontimeupdate = () => {
+        const now = run.film.ends.findIndex((end) => film.currentTime < end);
+        const shown = now < 0 ? run.ticks.length : film.currentTime ? now + 1 : tick;
+        if (shown !== tick) { tick = shown; draw(); }
+      };
+      film.onplay = () => { button.textContent = "Pause"; };
+      film.onpause = () => { button.textContent = "Play"; };
+    }
     button.onclick = () => {
+      if (film) { if (film.paused) film.play(); else film.pause(); return; }
       if (timer) { stop(); return; }
       button.textContent = "Pause";
       if (tick === run.ticks.length) go(0);
@@ -111,7 +140,7 @@ HEARTH.draw = (() => {
     });
     controls.append(button, ...ways, where);
     draw();
-    return card("Playing", controls, picture, changes);
+    return card("Playing", controls, film ?? picture, changes);
   }
 
   function runCards(run, steps) {
@@ -159,8 +188,9 @@ HEARTH.draw = (() => {
     const label = element("p", "Run in ", "controls");
     label.append(choose);
     page.replaceChildren(...head, label, columns, place);
-    const filmed = told.runs.findIndex((run) => run.frames.length);
-    if (filmed > 0) choose.value = String(filmed);
+    const seen = [(run) => run.film, (run) => run.frames.length].map((test) => told.runs.findIndex(test));
+    const pictured = seen.find((number) => number >= 0);
+    if (pictured) choose.value = String(pictured);
     open();
   };
 })();

@@ -14,6 +14,7 @@ import hearth
 from hearth.pipelines.files import file_digest
 from hearth.pipelines.verify import verify
 from hearth.schemas.errors import HearthError
+from hearth.schemas.tables import TABLES
 
 
 @pytest.fixture
@@ -149,6 +150,17 @@ def test_a_table_that_is_not_there_is_named(copy):
     with pytest.raises(HearthError, match="no table `sketches`") as caught:
         len(hearth.load(copy))
     assert str(caught.value.diagnostics[0].code) == "MISSING_FILE"
+
+
+def test_a_table_that_an_earlier_version_did_not_have_is_empty(copy):
+    shutil.rmtree(copy / "videos")
+    manifest = orjson.loads((copy / "manifest.json").read_bytes())
+    manifest["files"] = {name: told for name, told in manifest["files"].items() if not name.startswith("videos/")}
+    (copy / "manifest.json").write_bytes(orjson.dumps(manifest))
+    ds = hearth.load(copy)
+    assert len(ds) > 0
+    assert ds.rows("SELECT count(*) FROM videos")[1] == [(0,)]
+    assert ds.videos.columns == TABLES["videos"].names
 
 
 def test_a_program_dealt_to_both_sides(copy):
