@@ -58,6 +58,10 @@ HomesEach = Annotated[
     typer.Option("--homes-each", metavar="N", min=0, help="Sample each program in N homes drawn for it; 0 for all."),
 ]
 
+Tier = Annotated[
+    str, typer.Option("--tier", metavar="NAME", help="How much it holds: mini, full or frames; other options go first.")
+]
+
 EngineName = Annotated[
     str, typer.Option("--engine", metavar="NAME", help="What runs the partitions: local (processes here) or dask.")
 ]
@@ -77,6 +81,7 @@ _ALL = "all"
 
 
 def build(
+    context: typer.Context,
     sources: Sources = None,
     out: Out = _OUT,
     seed: Seed = 0,
@@ -92,6 +97,7 @@ def build(
     target: Target = 0,
     pictures: Pictures = 3,
     videos: Videos = 1,
+    tier: Tier = "",
     engine: EngineName = "local",
     scheduler: Scheduler = "",
     time_limit: TimeLimit = 60.0,
@@ -111,12 +117,22 @@ def build(
     Examples:
       python cli.py build --out data_out
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
+      python cli.py build corpus.csv --out small --tier mini
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
     more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures, "videos": videos}
     spread = {"engine": engine, "scheduler": scheduler, "time_limit": time_limit, "force": force, "log_json": log_json}
     options = _options(seed, limit, home, homes, kb, salt, **more, **spread)
-    _run(sources, out, workers, only, options, strict, as_json)
+    _run(sources, out, workers, only, _tiered(context, tier, options), strict, as_json)
+
+
+def _tiered(context: typer.Context, tier: str, options: dict[str, Any]) -> dict[str, Any]:
+    from hearth.pipelines.tiers import tiered
+
+    given = [
+        name for name in options if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
+    ]
+    return tiered(tier, options, given)
 
 
 def ingest(
