@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -51,6 +51,24 @@ class Moment:
     scene: Scene
     actors: tuple[Actor, ...]
     places: Places
+
+    @property
+    def acting(self) -> Actor:
+        """Who is looked at: the first who does something, else the first."""
+        return self.actors[acting(self.steps, len(self.actors))]
+
+
+def acting(steps: Sequence[Step], count: int) -> int:
+    """The number of the agent that is looked at in a tick, of `count`: the first who does something, else 0."""
+    found = min((step.agent for step in steps), default=0)
+    return found if found < count else 0
+
+
+def named_nodes(steps: Sequence[Step], rooms: Container[int]) -> tuple[int, ...]:
+    """The things that steps name, in their order; rooms are none."""
+    return tuple(
+        dict.fromkeys(ref.node for step in steps for ref in step.objects if ref.node and ref.node not in rooms)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,11 +260,11 @@ def snapshots(
     takes: dict[Camera | str, Take] = {}
     found = play(execution, home, seed=seed, hour=hour, knowledge=knowledge).moments
     for moment, later in zip(found, (*found[1:], found[-1]), strict=True):
-        named = tuple(ref.node for step in moment.steps for ref in step.objects if ref.node and ref.node not in rooms)
+        named = named_nodes(moment.steps, rooms)
         for choice in cameras:
             camera = choice if isinstance(choice, Camera) else above
             if choice == AUTO:
-                actor = moment.actors[0]
+                actor = moment.acting
                 camera = best_view(moment.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
             last[choice] = camera
             if quality == "draft":

@@ -16,7 +16,7 @@ from hearth.rendering.camera import Camera, follow, look_at, top_view
 from hearth.rendering.motion import Frame, Span, frames, spans
 from hearth.rendering.quiet import quiet
 from hearth.rendering.retake import Take, take
-from hearth.rendering.snapshots import AUTO, TOP, Play
+from hearth.rendering.snapshots import AUTO, TOP, Play, acting, named_nodes
 from hearth.rendering.variation import PLAIN, Variation
 from hearth.rendering.viewpoints import best_view, home_box, kept_inside, room_views
 from hearth.schemas.errors import HearthError
@@ -29,7 +29,16 @@ Image = NDArray[Any]
 
 FIRST, THIRD = "first", "third"
 VIEWS = (AUTO, TOP, FIRST, THIRD)
-"""Cameras that move or choose; others are named by `viewpoints.room_views`."""
+"""Cameras that move or choose; others are named by `viewpoints.room_views`. All but `top` may be those of an agent by
+number: `first.1`; else `auto` goes with whoever acts, and the others with agent 0.
+"""
+
+
+def agent_of(view: str) -> tuple[str, int | None]:
+    """A view's own name, and the agent it is of: `first.1` is (`first`, 1); None where it names no agent."""
+    name, _, number = view.partition(".")
+    return (name, int(number)) if name in (AUTO, FIRST, THIRD) and number.isdecimal() else (view, None)
+
 
 CODECS = {".webm": "VP80", ".mp4": "mp4v"}
 """What OpenCV writes into each kind of file: browsers play VP80."""
@@ -117,7 +126,8 @@ class Director:
     """
 
     def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], variation: Variation = PLAIN) -> None:
-        self.size, self.view = size, view
+        self.size = size
+        self.view, self.agent = agent_of(view)
         self.views = {
             room: tuple(variation.moved(camera) for camera in cameras)
             for room, cameras in room_views(home, *size).items()
@@ -125,7 +135,7 @@ class Director:
         self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
         fixed = {camera.name: camera for cameras in self.views.values() for camera in cameras}
         fixed[TOP] = top_view(home_box(home), TOP, *size)
-        if view not in VIEWS and view not in fixed:
+        if self.view not in VIEWS and view not in fixed:
             known_names = ", ".join((*VIEWS, *sorted(fixed)[:3], "..."))
             raise HearthError.of(Code.NOT_RENDERED, f"no camera `{view}`", suggestion=known_names)
         self.fixed = fixed.get(view)
@@ -134,11 +144,24 @@ class Director:
         self.since = 0.0
         self.room = 0
 
+    def _followed(self, frame: Frame) -> Actor:
+        """Who the camera goes with.
+
+        Raises:
+            HearthError: there is no such agent.
+        """
+        if self.agent is None:
+            return frame.actors[acting(frame.steps, len(frame.actors)) if self.view == AUTO else 0]
+        if self.agent >= len(frame.actors):
+            message = f"no agent {self.agent} to go with; there are {len(frame.actors)}, from 0"
+            raise HearthError.of(Code.UNKNOWN_AGENT, message)
+        return frame.actors[self.agent]
+
     def camera(self, frame: Frame) -> Camera:
         """The camera of a frame."""
-        actor = frame.actors[0]
         if self.fixed is not None:
             return self.fixed
+        actor = self._followed(frame)
         if self.view == FIRST:
             return first_person(actor, self.size)
         room = self._room(actor)
@@ -153,9 +176,7 @@ class Director:
         return self.chosen
 
     def _best(self, frame: Frame, actor: Actor, last: Camera | None) -> Camera:
-        named = tuple(
-            ref.node for step in frame.steps for ref in step.objects if ref.node and ref.node not in self.rooms
-        )
+        named = named_nodes([step for step in frame.steps if self.agent in (None, step.agent)], self.rooms)
         return best_view(frame.scene, self.views, actor, named, last, self.rooms.get(actor.room), wide=True)
 
     def _room(self, actor: Actor) -> int:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import degrees, radians, tan
+from math import cos, degrees, radians, sin, tan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.acting import Actor
+from hearth.rendering.annotations import world_box
 from hearth.rendering.camera import Camera, follow, room_cameras
 from hearth.rendering.models import Model
 from hearth.rendering.scene import Scene
@@ -97,11 +98,35 @@ def best_view(
     ]
     candidates = [*cameras, *(() if wide and cameras else (kept_inside(camera, room) for camera in behind))]
     turned = [aimed(camera, scene, actor, named, 1.2 if wide else 0.55) for camera in candidates]
+    seen = glances(scene, turned)
     values = [
-        value * (LOYALTY if last and camera.name == last.name else 1.0)
-        for camera, value in zip(turned, scores(scene, turned, actor, named), strict=True)
+        _score(scene, camera, ids, actor, named) * (LOYALTY if last and camera.name == last.name else 1.0)
+        for camera, ids in zip(turned, seen, strict=True)
     ]
-    return turned[values.index(max(values))]
+    best = values.index(max(values))
+    missed = () if wide else tuple(node for node in dict.fromkeys(named) if not (seen[best] == node).any())
+    near = [camera for node in missed for camera in _close(scene, node, actor, room, size)]
+    closer = [_score(scene, camera, ids, actor, named) for camera, ids in zip(near, glances(scene, near), strict=True)]
+    return near[closer.index(max(closer))] if max(closer, default=0.0) > values[best] else turned[best]
+
+
+AROUND = (0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0)
+"""Degrees about a thing, from the way its user looks, at which cameras are tried that come close to it."""
+
+
+def _close(scene: Scene, node: int, actor: Actor, room: Box | None, size: tuple[int, int]) -> Iterator[Camera]:
+    """Cameras close to a thing that no other shows: over its user's head and from all other sides."""
+    thing = scene.find(node)
+    if thing is None:
+        return
+    box = world_box(thing)
+    x, y, z = box.center
+    away = max(box.size[0], box.size[2]) / 2 + 0.9
+    for rise in (0.75, 0.2):
+        for turn in AROUND:
+            angle = radians(actor.yaw + 180 + turn)
+            eye = (x + sin(angle) * away, min(y + rise * away, actor.level + 2.3), z + cos(angle) * away)
+            yield kept_inside(Camera("close", eye, box.center, *size, fov=55.0), room)
 
 
 def kept_inside(camera: Camera, room: Box | None) -> Camera:
@@ -132,8 +157,8 @@ def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int], arou
     return replace(camera, target=(float(middle[0]), float(middle[1]), float(middle[2])), fov=fov)
 
 
-def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequence[int]) -> list[float]:
-    """How well cameras see someone and what the step names: up to 1 for the person, 1.3 for each object."""
+def glances(scene: Scene, cameras: Sequence[Camera]) -> list[NDArray[np.int64]]:
+    """What each pixel of a small picture of each camera shows: node ids, 0 for nothing."""
     if not cameras:
         return []
     width, height = GLANCE
@@ -141,12 +166,17 @@ def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequenc
     # All glances are cast at once: a cast of few rays costs as much as one of many.
     hits = scene.geometry.cast(np.concatenate([camera.rays() for camera in small]))
     numbers = np.array([*(thing.id for thing in scene.geometry.things), 0])
-    ids = numbers.take(scene.geometry.owner(hits.triangle), mode="wrap").reshape(len(small), -1)
-    return [_score(scene, camera, seen, actor, named) for camera, seen in zip(small, ids, strict=True)]
+    return list(numbers.take(scene.geometry.owner(hits.triangle), mode="wrap").reshape(len(small), -1))
+
+
+def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequence[int]) -> list[float]:
+    """How well cameras see someone and what the step names: up to 1 for the person, 1.3 for each object."""
+    seen = glances(scene, cameras)
+    return [_score(scene, camera, ids, actor, named) for camera, ids in zip(cameras, seen, strict=True)]
 
 
 def _score(scene: Scene, camera: Camera, ids: NDArray[np.int64], actor: Actor, named: Sequence[int]) -> float:
-    focal = camera.height / 2 / tan(radians(camera.fov) / 2)
+    focal = GLANCE[1] / 2 / tan(radians(camera.fov) / 2)
     eye = np.array(camera.eye)
     total = min(int((ids == actor.node.id).sum()) / ENOUGH, 1.0)
     to_eye = eye - np.array(actor.position)
