@@ -6,14 +6,14 @@ eq. A.1: the function Omega).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from hearth.grounding.conditions import Key
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
 from hearth.simulation import rows
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.engine import Execution
 from hearth.simulation.world import World
 
@@ -111,9 +111,9 @@ def _order(fact: Fact) -> tuple[str, Key, Key]:
 
 def _row(world: World, relation: str, i: int) -> int:
     """What node i is ON or INSIDE, or HOLDS."""
-    agent = next((agent for agent in world.agents if agent.index == i), None)
-    if agent is not None:
-        return {"ON": agent.on, "INSIDE": agent.inside}.get(relation, agent.held)
+    if world.home.characters >> i & 1:
+        agent = rows.character(world, i)
+        return agent.on if relation == "ON" else agent.inside if relation == "INSIDE" else agent.held
     if relation == "HOLDS":
         return 0
     bit = 1 << i
@@ -124,19 +124,25 @@ def _row(world: World, relation: str, i: int) -> int:
     return row
 
 
-def facts(world: World, nodes: Mapping[Key, int]) -> Iterable[Fact]:
-    """All states and relations of these objects in a world."""
+def facts(
+    world: World,
+    nodes: Mapping[Key, int],
+    states: Sequence[str] = STATES,
+    relations: Sequence[str] = ("ON", "INSIDE", "HOLDS"),
+) -> Iterable[Fact]:
+    """All states and relations, or these, of some objects in a world."""
     index = world.home.index
     keys: dict[int, list[Key]] = {}
     for key, node in nodes.items():
         keys.setdefault(index[node], []).append(key)
-    named = sum(1 << i for i in keys)
+    named = mask_of(keys)
+    known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
     for i, subjects in keys.items():
-        found: list[tuple[str, Key | None]] = [
-            (s, None) for s, row in zip(STATES, world.states, strict=True) if row >> i & 1
-        ]
-        for relation in ("ON", "INSIDE", "HOLDS"):
-            found.extend((relation, key) for j in indices(_row(world, relation, i) & named) for key in keys[j])
+        found: list[tuple[str, Key | None]] = [(state, None) for state, row in known if row >> i & 1]
+        for relation in relations:
+            row = _row(world, relation, i) & named
+            if row:
+                found.extend((relation, key) for j in indices(row) for key in keys[j])
         for subject in subjects:
             yield from (Fact(name, subject, target) for name, target in found)
 

@@ -7,6 +7,7 @@ program, which actions are never anybody's point, and what the words of the desc
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import lru_cache
 
 from hearth.grounding.conditions import Key, Preconditions
@@ -15,6 +16,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.program import Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution
+from hearth.simulation.world import World
 
 ENVIRONMENT = frozenset({"Walk", "Run", "Find", "TurnTo", "StandUp", "WakeUp", "Open", "Close", "PlugIn", "PlugOut"})
 """Going somewhere, turning, getting up, opening, plugging: what they are for is another step, in any activity."""
@@ -69,11 +71,11 @@ def milestones(execution: Execution) -> Postconditions:
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
     steps = [tick[0] for tick in program.ticks()]
-    first, last = frozenset(facts(worlds[0], nodes)), frozenset(facts(worlds[-1], nodes))
+    first, last = frozenset(_worked_with(worlds[0], nodes)), frozenset(_worked_with(worlds[-1], nodes))
     found: list[Fact] = []
     since: dict[Fact, int] = {}
     for tick, world in enumerate(worlds):
-        now = frozenset(fact for fact in facts(world, nodes) if _is_worked_with(fact))
+        now = frozenset(_worked_with(world, nodes))
         for fact in sorted(since.keys() - now, key=str):
             began = since.pop(fact)
             if fact not in first | last and any(s.action not in _PREPARING for s in steps[began : tick - 1]):
@@ -83,9 +85,10 @@ def milestones(execution: Execution) -> Postconditions:
     return tuple(dict.fromkeys(found))
 
 
-def _is_worked_with(fact: Fact) -> bool:
-    placed = fact.name in ("ON", "INSIDE") and CHARACTER_CLASS not in (fact.subject[0], (fact.target or ("", 0))[0])
-    return fact.name == "ON" if fact.target is None else placed
+def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Fact]:
+    """What is switched on, and what is ON or INSIDE what, characters left out."""
+    found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
+    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
 
 
 def _used_after(program: Program, action: str, key: Key) -> bool:

@@ -35,6 +35,7 @@ from hearth.schemas.rng import rng
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED, TRIED
 from hearth.simulation.change import Change
+from hearth.simulation.engine import Execution
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
@@ -63,9 +64,12 @@ class Context:
         self.keep: Keep = ()
 
     @cached_property
-    def places(self) -> list[Home]:
-        """The homes in which sketches have to be enough."""
+    def _others(self) -> list[Home]:
         return [self.homes.home(name) for name in self.homes.names()[:ENVIRONMENTS]]
+
+    def others(self, name: str) -> list[Home]:
+        """The homes besides its own in which a program's sketch has to be enough."""
+        return [home for home in self._others if home.name != name]
 
     @cached_property
     def at_rest(self) -> dict[str, bool]:
@@ -101,14 +105,23 @@ def process(record: Record, context: Context) -> Iterator[Output]:
     original = (_conditions(record), rerun(record, context.homes))
     found = augment(program, home, context.seed, record["environment_id"], options, original)
     assert isinstance(found, Augmented), "the original is at hand"
-    return _outputs(record, program, found, context, wanted=options.count > 0)
+    yield from _sketched(record, program, original, context)
+    yield from _outputs(record, found, context, wanted=options.count > 0)
 
 
-def _outputs(record: Record, program: Program, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
-    if record["program_id"] != context.sketched:
-        context.sketched = record["program_id"]
-        context.keep = sketch(program, context.places, context.homes.knowledge, context.seed, record["program_id"])
-        yield "sketches", _sketch(record["program_id"], "inferred", program, context.keep)
+def _sketched(
+    record: Record, program: Program, original: tuple[Preconditions, Execution], context: Context
+) -> Iterator[Output]:
+    """The program's sketch, unless another home's record gave it."""
+    name = record["program_id"]
+    if name != context.sketched:
+        context.sketched = name
+        others, knowledge = context.others(record["home"]), context.homes.knowledge
+        context.keep = sketch(program, others, knowledge, context.seed, name, original)
+        yield "sketches", _sketch(name, "inferred", program, context.keep)
+
+
+def _outputs(record: Record, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
     for pair in found.pairs:
         if pair.failure is not None:
             yield _reject(record, pair, pair.failure)

