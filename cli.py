@@ -142,10 +142,19 @@ class Commands(TyperGroup):
             return super().invoke(ctx)
         except (BrokenPipeError, typer.Abort, typer.Exit):
             raise
+        except KeyboardInterrupt:
+            kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
+            after = " What was complete is kept: the same command goes on from there." if kept else ""
+            print(f"Stopped.{after}", file=sys.stderr)
+            raise typer.Exit(STOPPED) from None
         except Exception as error:
             if ctx.params.get("debug") or _is_of_typer(error):
                 raise
             _fail(error, as_json=ctx.meta["hearth.json"])
+
+
+STOPPED = 128 + 2
+"""The status of what an interrupt (signal 2) from the keyboard ended, as shells have it."""
 
 
 def _is_of_typer(error: Exception) -> bool:

@@ -14,16 +14,18 @@ from hearth.schemas.failures import Code
 
 
 def labelled(paths: Iterable[str]) -> list[Source]:
-    """The sources with a label each: their name, numbered where several share one.
+    """The sources by name, with a label each: their name, numbered where several share one.
+
+    In the order of their names, so that the order they are given in decides nothing.
 
     Raises:
         HearthError: MISSING_FILE, naming every path that is not there; EMPTY, when none were given.
     """
     sources: list[Source] = []
     used: Counter[str] = Counter()
-    for text in paths:
+    named = sorted((Path(text).name or Path(text).resolve().name, text) for text in paths)
+    for name, text in named:
         path = Path(text)
-        name = path.name or path.resolve().name
         used[name] += 1
         sources.append(Source(name if used[name] == 1 else f"{name}~{used[name]}", path))
     missing = [source.path for source in sources if not source.path.exists()]

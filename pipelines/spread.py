@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -18,6 +19,11 @@ def context() -> BaseContext:
     return multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
 
 
+def begin() -> None:
+    """Let a worker end without a word when its build is stopped at the keyboard: the build itself says what to do."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def spread(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[Result]:
     """The results in the order of the jobs, for any number of workers.
 
@@ -29,5 +35,5 @@ def spread(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int)
     if workers < 2 or len(jobs) < 2:
         yield from map(function, jobs)
         return
-    with ProcessPoolExecutor(min(workers, len(jobs)), context()) as pool:
+    with ProcessPoolExecutor(min(workers, len(jobs)), context(), begin) as pool:
         yield from pool.map(function, jobs)

@@ -14,7 +14,7 @@ from typing import Any
 from hearth.pipelines.engines import Done, Seen
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Counts, part_path, rejects_path
-from hearth.pipelines.spread import context
+from hearth.pipelines.spread import begin, context
 from hearth.pipelines.stage import Job, Partition, run_partition
 from hearth.pipelines.stores import store
 from hearth.schemas.errors import HearthError
@@ -116,6 +116,7 @@ _job: Job | None = None
 def _begin(told: Any) -> None:
     global _told  # noqa: PLW0603 - a worker's own state
     _told = told
+    begin()
 
 
 def _collect_seldom() -> None:

@@ -1,0 +1,75 @@
+"""A worker that is killed, a build that is stopped at the keyboard: what to do is said, and nothing is lost."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from hearth.pipelines.run import run_stage
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.workers import Workers
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
+
+DEADLY = """
+import os, signal
+import pyarrow as pa
+from pathlib import Path
+from hearth.pipelines.stage import Partition, Stage
+
+DEAD = Path(__file__).with_name("dead")
+
+def process(record, context):
+    if record["number"] == 70 and not DEAD.exists():
+        DEAD.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return [record]
+
+def partitions(job):
+    return (Partition(n, str(n), range(25 * n, 25 * n + 25), 25) for n in range(4))
+
+def records(job, partition):
+    return ({"program_id": str(n), "number": n} for n in partition.payload)
+
+SCHEMA = pa.schema([("program_id", pa.string()), ("number", pa.int32())])
+STAGE = Stage("count", {"": SCHEMA}, process, partitions=partitions, records=records)
+"""
+
+
+def test_a_worker_that_is_killed_is_named_and_its_partition_made_again(tmp_path, monkeypatch):
+    (tmp_path / "deadly_stage.py").write_text(DEADLY)
+    (tmp_path / "numbers.txt").write_text("0 to 99")
+    monkeypatch.syspath_prepend(tmp_path)
+    stage = importlib.import_module("deadly_stage").STAGE
+    settings = Settings((str(tmp_path / "numbers.txt"),), str(tmp_path / "out"))
+    with Workers(2) as workers:
+        with pytest.raises(HearthError) as stopped:
+            run_stage(stage, settings, workers)
+        (fault,) = stopped.value.diagnostics
+        assert fault.code == Code.CONFLICT and "killed" in fault.message and "--workers" in fault.suggestion
+        assert not (tmp_path / "out/count/manifest.json").exists()
+        assert run_stage(stage, settings, workers).manifest.counts.through == 100
+
+
+@pytest.mark.slow
+def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
+    options = ["--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--workers", "2"]
+    command = [sys.executable, "-m", "hearth.cli", "build", *made.settings.sources, "--out", str(tmp_path), *options]
+    build = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True, text=True)
+    for _ in range(6000):
+        if (tmp_path / "ingest/manifest.json").exists() or build.poll() is not None:
+            break
+        time.sleep(0.01)
+    os.killpg(build.pid, signal.SIGINT)
+    told = build.communicate(timeout=120)[1]
+    assert build.returncode == 130, told
+    assert "goes on from there" in told and "Traceback" not in told
+    assert not (tmp_path / "publish/manifest.json").exists()
+    assert subprocess.run(command, check=False, capture_output=True).returncode in (0, 1)
+    assert module("benchmarks/kills.py").differing(made.out, tmp_path) == []
