@@ -59,8 +59,9 @@ def test_a_worker_that_is_killed_is_named_and_its_partition_made_again(tmp_path,
 
 @pytest.mark.slow
 def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
-    options = ["--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--workers", "2"]
-    command = [sys.executable, "-m", "hearth.cli", "build", *made.settings.sources, "--out", str(tmp_path), *options]
+    homes = ["--homes", made.settings.homes_folder, "--home", "cabin"]
+    options = [*homes, "--out", str(tmp_path), "--pictures", "0", "--videos", "0", "--workers", "2"]
+    command = [sys.executable, "-m", "hearth.cli", "build", *made.settings.sources, *options]
     build = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True, text=True)
     for _ in range(6000):
         if (tmp_path / "ingest/manifest.json").exists() or build.poll() is not None:
