@@ -77,7 +77,7 @@ FILM_SIZE, FILM_RATE = (320, 240), 15.0
 
 
 def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: Context) -> Row:
-    """Write a film, as mp4: its bytes are the same each time, which webm's are not."""
+    """Write a film, as mp4."""
     from hearth.rendering.snapshots import play
     from hearth.rendering.variation import drawn
     from hearth.rendering.video import record

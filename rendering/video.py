@@ -73,7 +73,27 @@ class Writer:
         self.file.release()
         if not self.part.exists() or not self.part.stat().st_size:
             raise HearthError.of(Code.NOT_RENDERED, f"nothing could be written to {self.path}", file=str(self.path))
+        if self.path.suffix == ".webm":
+            _renumber(self.part)
         self.part.replace(self.path)
+
+
+TRACK_IDS = (b"\x73\xc5\x88", b"\x63\xc5\x88")
+"""How Matroska's TrackUID and TagTrackUID of eight bytes begin."""
+
+HEAD = 4096
+"""Bytes of a file in which they stand."""
+
+
+def _renumber(path: Path) -> None:
+    """Write 1 over the number that is drawn anew for the track of every webm, so that equal films are equal bytes."""
+    with path.open("r+b") as file:
+        head = file.read(HEAD)
+        for mark in TRACK_IDS:
+            at = head.find(mark)
+            if at >= 0:
+                file.seek(at + len(mark))
+                file.write((1).to_bytes(8, "big"))
 
 
 class Shown(NamedTuple):

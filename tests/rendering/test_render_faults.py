@@ -35,6 +35,21 @@ def test_a_film_that_could_not_be_written_leaves_the_complete_one(tmp_path):
     assert film.read_bytes() == b"an earlier one"
 
 
+@pytest.mark.parametrize("suffix", [".webm", ".mp4"])
+def test_equal_films_are_equal_bytes(tmp_path, suffix):
+    import cv2
+
+    films = [tmp_path / f"{name}{suffix}" for name in ("one", "other")]
+    for film in films:
+        writer = Writer(film, 64, 48, 10)
+        for level in range(0, 240, 20):
+            writer.add(np.full((48, 64, 3), level, np.uint8))
+        writer.close()
+    assert films[0].read_bytes() == films[1].read_bytes()
+    read = cv2.VideoCapture(str(films[0]))
+    assert sum(read.read()[0] for _ in range(20)) == 12, "it can still be played"
+
+
 def test_small_things_are_moved_on_their_support_and_not_into_each_other():
     how = drawn(3, "a program")
     moved = {node.id: node.box for node in scattered(HOME, how).nodes}
