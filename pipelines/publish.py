@@ -81,6 +81,7 @@ STAGE = Stage(
         "pipelines/publishing.py",
         "pipelines/naming.py",
         "pipelines/splits.py",
+        "pipelines/alike.py",
         "pipelines/card.py",
         "pipelines/croissant.py",
         "pipelines/cases.py",

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hearth.pipelines.alike import near_sequences
 from hearth.schemas.rng import derive
 
 NEAR = 0.9
@@ -105,40 +106,32 @@ def _is_text(description: str) -> bool:
 
 def near_steps(programs: Sequence[Told], others: Sequence[Told] | None = None) -> Iterator[tuple[int, int]]:
     """Pairs of programs (places in the sequences) whose normalised LCS over steps is at least `NEAR`."""
-    numbers: dict[str, int] = {}
-    rows, columns = (
-        [[numbers.setdefault(step, len(numbers)) for step in each.steps] for each in given]
-        for given in (programs, programs if others is None else others)
-    )
-    yield from _near(rows, columns, "steps", others is None)
+    rows = [each.steps for each in programs]
+    columns = rows if others is None else [each.steps for each in others]
+    found = near_sequences(rows, columns, NEAR)
+    yield from (pair for pair in found if others is not None or pair[0] != pair[1])
 
 
 def near_texts(programs: Sequence[Told], others: Sequence[Told] | None = None) -> Iterator[tuple[int, int]]:
     """Pairs whose descriptions are nearly the same, case and spaces aside."""
+    import numpy as np
+    from rapidfuzz import fuzz, process
+
     rows, columns = (
         [_worded(each.description) for each in given] for given in (programs, programs if others is None else others)
     )
-    for one, other in _near(rows, columns, "texts", others is None):
-        if min(len(rows[one]), len(columns[other])) >= SHORTEST_TEXT:
-            yield one, other
+    cut = NEAR * 100
+    for start in range(0, len(rows), _CHUNK):
+        part = rows[start : start + _CHUNK]
+        found = process.cdist(part, columns, scorer=fuzz.ratio, score_cutoff=cut - 1e-6, dtype=np.float32)
+        for place, other in np.argwhere(found >= cut - 1e-5).tolist():
+            one = start + place
+            if (others is not None or one != other) and min(len(rows[one]), len(columns[other])) >= SHORTEST_TEXT:
+                yield one, other
 
 
 def _worded(text: str) -> str:
     return " ".join(text.lower().split())
-
-
-def _near(rows: Sequence[Any], columns: Sequence[Any], kind: str, among: bool) -> Iterator[tuple[int, int]]:
-    import numpy as np
-    from rapidfuzz import fuzz, process
-    from rapidfuzz.distance import LCSseq
-
-    scorer, cut = (LCSseq.normalized_similarity, NEAR) if kind == "steps" else (fuzz.ratio, NEAR * 100)
-    for start in range(0, len(rows), _CHUNK):
-        part = rows[start : start + _CHUNK]
-        found = process.cdist(part, columns, scorer=scorer, score_cutoff=cut - 1e-6, dtype=np.float32)
-        for one, other in np.argwhere(found >= cut - 1e-5).tolist():
-            if not among or start + one != other:
-                yield start + one, other
 
 
 def parts(programs: Sequence[Told], runs: Iterable[tuple[str, str, str]], seed: int) -> Iterator[Row]:
