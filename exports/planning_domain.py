@@ -134,9 +134,9 @@ class _Writer:
         yield from self._written(action, action.name, stopped)
 
     def to_door(self, walk: Action) -> list[str]:
-        """A walk to a door whose own room is behind a closed one, or itself: it ends in the room where it began."""
+        """A walk to a closed door with its room behind it, no other in between: it ends in the room where it began."""
         self._on_own_side = True
-        lines = list(self._written(walk, TO_DOOR, [self._stopped()]))
+        lines = list(self._written(walk, TO_DOOR, [self._stopped_by_itself()]))
         self._on_own_side = False
         return lines
 
@@ -159,6 +159,12 @@ class _Writer:
         """A closed door parts the character from the object's room."""
         where = "(and (is-closed ?d) (blocks ?d ?r ?q) (inside ?a ?r) (or (= ?o ?q) (inside ?o ?q)))"
         return f"(exists (?d - object ?r - object ?q - object) {where})"
+
+    def _stopped_by_itself(self) -> str:
+        """The object is a closed door that parts the character from its room, and no other closed one does."""
+        other = "(exists (?d - object) (and (is-closed ?d) (blocks ?d ?r ?q) (not (= ?d ?o))))"
+        where = f"(and (inside ?a ?r) (inside ?o ?q) (is-closed ?o) (blocks ?o ?r ?q) (not {other}))"
+        return f"(exists (?r - object ?q - object) {where})"
 
     def formula(self, formula: Formula, names: Names) -> str:
         """A formula, derived predicates written out."""
