@@ -35,7 +35,7 @@ SHARED   := version.py $(call tree,schemas) \
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
 
-.PHONY: all full setup test test-tools test-all lint docs bench lock wheel clean distclean help $(STAGES)
+.PHONY: all full mini frames setup test test-tools test-all lint docs bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -44,7 +44,12 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,
 	@mkdir -p $(OUT)/full
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
 	@$(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
-	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --homes-each 2 --per-program 6 --target 30000 --pictures 0 --videos 0
+	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --tier full
+
+mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
+frames: $(READY)  ## one of our corpus with many pictures and some films, in data_out/frames
+mini frames:
+	@$(HEARTH) build --out $(OUT)/$@ --seed $(SEED) --workers $(JOBS) --tier $@
 
 setup: $(READY)  ## make .venv with the locked versions (uv if there is one, else pip)
 
@@ -118,7 +123,7 @@ wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
 clean:  ## remove what was built; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/full $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/full $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## remove .venv, too

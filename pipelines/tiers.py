@@ -13,8 +13,8 @@ TIERS: dict[str, dict[str, int]] = {
     "full": {"homes_each": 2, "variants": 6, "target": 30_000, "pictures": 0, "videos": 0},
     "frames": {"homes_each": 1, "variants": 1, "pictures": 200, "videos": 20},
 }
-"""`mini` is made within a minute, to try things out; `full` is all programs, augmented to 30,000, as text and graphs;
-`frames` is every program once more or less, with many pictures and some films."""
+"""`mini` is a small one to try things out; `full` is all programs, augmented to 30,000, as text and graphs; `frames` is
+every program about once, with many pictures and some films."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
