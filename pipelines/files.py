@@ -18,6 +18,11 @@ from hearth.schemas.failures import Code
 TEMPORARY = ".tmp"
 
 
+def is_temporary(name: str) -> bool:
+    """Whether a file's name is that of something half written, or of what a library keeps beside such a file."""
+    return TEMPORARY in Path(name).suffixes
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; on success it is fsynced and takes the place of `path`."""

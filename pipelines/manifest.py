@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.pipelines.files import TEMPORARY, file_digest, read_json, value_digest, walk, write_json
+from hearth.pipelines.files import file_digest, is_temporary, read_json, value_digest, walk, write_json
 from hearth.pipelines.parts import Counts
 from hearth.version import ACTION_SET, VERSION
 
@@ -78,7 +78,7 @@ def write_manifest(folder: Path, asked: dict[str, Any], inputs: dict[str, str], 
 def _files(folder: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     for path in walk(folder):
         name = path.relative_to(folder).as_posix()
-        if name not in _UNHASHED and not name.endswith(TEMPORARY):
+        if name not in _UNHASHED and not is_temporary(name):
             yield name, {"bytes": path.stat().st_size, "sha256": file_digest(path)}
 
 

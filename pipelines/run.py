@@ -13,7 +13,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.pipelines.engines import Engine
-from hearth.pipelines.files import TEMPORARY, value_digest, write_json
+from hearth.pipelines.files import is_temporary, value_digest, write_json
 from hearth.pipelines.lock import locked
 from hearth.pipelines.manifest import NAME, TIMING, Manifest, read_manifest, write_manifest
 from hearth.pipelines.parts import Counts, part_path, part_state, rejects_path, write_table
@@ -129,7 +129,7 @@ def _clear(folder: Path) -> None:
 
 def _drop_leftovers(folder: Path) -> None:
     """Remove what workers that were lost had half written."""
-    for leftover in folder.rglob(f".*{TEMPORARY}"):
+    for leftover in [path for path in folder.rglob(".*") if is_temporary(path.name)]:
         leftover.unlink(missing_ok=True)
 
 

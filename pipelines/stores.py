@@ -21,7 +21,7 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.files import TEMPORARY, read_json, value_digest, write_bytes, write_json
+from hearth.pipelines.files import TEMPORARY, is_temporary, read_json, value_digest, write_bytes, write_json
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -177,7 +177,7 @@ class Store:
         return {path[len(self._root) + 1 :]: info for path, info in sorted(found.items())}
 
     def _names(self) -> list[str]:
-        return [name for name in self._found() if not name.endswith(TEMPORARY)]
+        return [name for name in self._found() if not is_temporary(name)]
 
     def _put(self, name: str) -> None:
         self._fs.put_file(str(self.work / name), self._path(name))

@@ -175,6 +175,10 @@ def test_nothing_half_written_is_left(settings):
         run_stage(stage, settings)
     folder = settings.folder("count")
     assert [path.name for path in folder.iterdir()] == []
+    (folder / ".part-00000.parquet.99.tmp").write_text("half of a part")
+    (folder / ".catalog.duckdb.99.tmp.wal").write_text("what a library keeps beside half a file")
+    run_stage(STAGE, settings)
+    assert [path.name for path in folder.iterdir() if ".tmp" in path.name] == []
 
 
 def test_two_builds_at_once_are_refused(settings, tmp_path):
