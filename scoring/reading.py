@@ -42,14 +42,16 @@ def steps_of(lines: Iterable[Line]) -> tuple[Step, ...]:
 
 
 def _body(text: str, reader: Reader) -> list[str]:
-    """The lines from the first step on, or all of them when there is none."""
+    """The lines from the first step on, or all of them when there is none.
+
+    Where any line is written as a step, words before it are title and description, though they may read like steps.
+    """
     lines = [stripped for line in text.splitlines() if (stripped := line.strip())]
-    first = next((n for n, line in enumerate(lines) if _is_step(line, reader)), 0)
-    return lines[first:]
-
-
-def _is_step(line: str, reader: Reader) -> bool:
-    return line.startswith(_MARKS) or not isinstance(reader(line), Diagnostic)
+    written = next((n for n, line in enumerate(lines) if line.startswith(_MARKS)), None)
+    if written is not None:
+        return lines[written:]
+    spoken = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)
+    return lines[spoken:]
 
 
 def _read_lines(lines: Iterable[str | Step], reader: Reader) -> Iterator[Line]:

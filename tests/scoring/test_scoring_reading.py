@@ -43,3 +43,4 @@ def test_another_reader_reads_other_words():
 
     assert read("Sit down\nWalk to sofa\nrest", words) == (WALK, "rest")
     assert steps_of(read("Sit down\nWalk to sofa\nrest", words)) == (WALK,)
+    assert steps_of(read("Walk to sofa\nSit down\n\n[Walk] <sofa> (1)", words)) == (WALK,)  # a title that reads so
