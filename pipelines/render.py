@@ -77,7 +77,7 @@ FILM_SIZE, FILM_RATE = (320, 240), 15.0
 
 
 def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: Context) -> Row:
-    """Write a film, as mp4."""
+    """Write a film, as webm: browsers play that, and not the mp4 that OpenCV writes."""
     from hearth.rendering.snapshots import play
     from hearth.rendering.variation import drawn
     from hearth.rendering.video import record
@@ -87,7 +87,7 @@ def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: C
     (job.folder / folder).mkdir(parents=True, exist_ok=True)
     variation = drawn(job.settings.seed, name)
     staged = play(execution, home, knowledge=context.homes.knowledge, variation=variation)
-    done = record(staged, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".mp4",))
+    done = record(staged, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".webm",))
     return {
         "execution_id": name,
         "camera": AUTO,
