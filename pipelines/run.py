@@ -67,6 +67,7 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     known = read_manifest(folder)
     if known and known.key == key and known.intact() and not known.counts.codes[Code.TIMED_OUT]:
         os.utime(folder / NAME)
+        _drop_gathered(folder)
         progress.end(stage.name, known.counts, 0.0, fresh=False)
         return Result(known, fresh=False)
     began = time.monotonic()
@@ -87,8 +88,7 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     manifest = write_manifest(
         folder, job.asked(), inputs, key, counts=counts.to_json(), parts=list(_parts(job, numbers))
     )
-    for number in numbers:
-        rejects_path(folder, number).unlink(missing_ok=True)
+    _drop_gathered(folder)
     seconds = time.monotonic() - began
     write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
     if elsewhere:
@@ -125,6 +125,12 @@ def _clear(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / NAME).unlink(missing_ok=True)
     _drop_leftovers(folder)
+
+
+def _drop_gathered(folder: Path) -> None:
+    """Remove the rejects of single partitions, once a manifest vouches for the file that holds them all."""
+    for path in folder.glob(".rejects-*.parquet"):
+        path.unlink(missing_ok=True)
 
 
 def _drop_leftovers(folder: Path) -> None:

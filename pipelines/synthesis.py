@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -162,6 +163,14 @@ def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
                         yield Diagnostic(Code.NOT_AFFORDED, message, file, found=name)
 
 
+class Told(NamedTuple):
+    """A part that was drawn, the objects of its task by slot, and how they are called."""
+
+    part: Part
+    chosen: dict[str, str]
+    said: dict[str, str]
+
+
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
     """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
 
@@ -196,11 +205,12 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
         name = grammar.weights.draw(chance)
         if name not in names:
             names.append(name)
-    told: list[tuple[Part, dict[str, str]]] = []
+    told: list[Told] = []
     for name in names:
         task = grammar.tasks[name]
         chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
-        told += [(part, chosen) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
+        said = {slot: _spoken(name) for slot, name in chosen.items()}
+        told += [Told(part, chosen, said) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
     steps = _steps(told)
     if not steps:
         return None
@@ -208,13 +218,13 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
     return Synthetic(chance.choice(grammar.tasks[names[0]].titles), tuple(steps), tuple(ways))
 
 
-def _steps(told: Sequence[tuple[Part, dict[str, str]]]) -> list[tuple[str, tuple[str, ...]]]:
+def _steps(told: Sequence[Told]) -> list[tuple[str, tuple[str, ...]]]:
     """The steps of the parts with their objects; none where they contradict each other or hands are full."""
     steps: list[tuple[str, tuple[str, ...]]] = []
     made: dict[tuple[str, str], str] = {}
     held: set[str] = set()
     seated = False
-    for part, chosen in told:
+    for part, chosen, _ in told:
         for action, slots in part.steps:
             names = tuple(chosen.get(slot, slot) for slot in slots)
             if seated and action in _MOVES:
@@ -257,17 +267,18 @@ def _possible(action: str, names: tuple[str, ...], made: dict[tuple[str, str], s
     return True
 
 
-def _tell(told: Sequence[tuple[Part, dict[str, str]]], grammar: Grammar, chance: Random) -> str:
+def _tell(told: Sequence[Told], grammar: Grammar, chance: Random) -> str:
     """The parts in sentences; commonsense ones may be left out (thesis 3.3)."""
-    shown = {slot: _spoken(name) for _, chosen in told for slot, name in chosen.items()}
+    shown: dict[str, str] = {}
+    for each in told:
+        shown.update(each.said)
     clauses: list[str] = []
-    for part, chosen in told:
+    for part, _, said in told:
         if chance.random() < part.told:
-            shown.update((slot, _spoken(name)) for slot, name in chosen.items())
+            shown.update(said)
             clauses.append(chance.choice(part.say).format_map(shown))
     if not clauses:
-        part, chosen = told[0]
-        clauses.append(part.say[0].format_map({slot: _spoken(name) for slot, name in chosen.items()}))
+        clauses.append(told[0].part.say[0].format_map(told[0].said))
     start = "I " if chance.random() < grammar.first else ""
     sentences: list[str] = []
     while clauses:
@@ -290,6 +301,7 @@ def _sentence(words: str, start: str) -> str:
 _SAID = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ceiling lamp"}
 
 
+@cache
 def _spoken(name: str) -> str:
     return _SAID.get(name) or name.removeprefix("food_").replace("_", " ")
 

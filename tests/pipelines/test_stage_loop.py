@@ -181,6 +181,14 @@ def test_nothing_half_written_is_left(settings):
     assert [path.name for path in folder.iterdir() if ".tmp" in path.name] == []
 
 
+def test_what_a_build_stopped_after_its_manifest_left_goes(settings):
+    folder = run_stage(STAGE, settings).manifest.folder
+    before = contents(folder)
+    (folder / ".rejects-00001.parquet").write_bytes(b"gathered already")
+    assert not run_stage(STAGE, settings).fresh
+    assert contents(folder) == before
+
+
 def test_two_builds_at_once_are_refused(settings, tmp_path):
     reader, writer = os.pipe()
     child = os.fork()
