@@ -218,8 +218,9 @@ def visible(
     """
     from hearth.rendering.visibility import shares
 
-    found, missed = [], []
+    found, missed, programs = [], [], 0
     for execution, looks in _looked(sources or [], count, seed):
+        programs += 1
         found += looks
         classes = {node.id: node.class_name for node in execution.worlds[0].graph().nodes}
         title = execution.program.title
@@ -228,9 +229,11 @@ def visible(
         ]
     share = shares(found)
     if as_json:
-        output.emit({**share._asdict(), "unseen": [list(row) for row in missed]})
+        output.emit({"programs": programs, **share._asdict(), "unseen": [list(row) for row in missed]})
         return
-    print(f"{share.steps} steps of {count} programs name objects. All of them are visible in {share.chosen:.1%} by the")
+    print(
+        f"{share.steps} steps of {programs} programs name objects. All of them are visible in {share.chosen:.1%} by the"
+    )
     print(f"camera that is chosen, in {share.either:.1%} by that or from above; in {share.open_:.1%} of the steps that")
     print("name nothing inside something closed.")
     output.table(("program", "tick", "not visible"), missed)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from hearth.grounding.conditions import Key, Preconditions
 from hearth.grounding.postconditions import Postconditions, achieved, holds, nodes_of
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
-from hearth.grounding.sketches import ENVIRONMENT, REPLACEABLE, asked, meant, milestones
+from hearth.grounding.sketches import REPLACEABLE, asked, meant, milestones
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.handlers.common import Handler
 from hearth.pipelines.handlers.registry import HANDLERS
@@ -97,43 +97,13 @@ def _smallest(
     keep = [True] * len(program.steps)
     for tried in (places[:1], places):
         keep = [True] * len(program.steps)
-        for numbers in _runs(program):
-            _leave_out(numbers, keep, lambda kept, tried=tried: _suffices(kept, tried, goal, passed, knowledge))  # type: ignore[misc]
+        for number, step in enumerate(program.steps):
+            if step.action in REPLACEABLE:
+                keep[number] = False
+                keep[number] = not _suffices(keep, tried, goal, passed, knowledge)
         if _suffices(keep, places[len(tried) :], goal, passed, knowledge):
             break
     return tuple(keep)
-
-
-def _runs(program: Program) -> list[list[int]]:
-    """Steps that may be left out, in order; those that follow one another and are of the environment are one group."""
-    found: list[list[int]] = []
-    joined = False
-    for number, step in enumerate(program.steps):
-        of_environment = step.action in ENVIRONMENT
-        if step.action in REPLACEABLE:
-            if joined and of_environment:
-                found[-1].append(number)
-            else:
-                found.append([number])
-        joined = of_environment and step.action in REPLACEABLE
-    return found
-
-
-def _leave_out(numbers: Sequence[int], keep: list[bool], suffices: Callable[[Sequence[bool]], bool]) -> None:
-    """Clear all of `numbers` in `keep` that can be, from the first: together where they can, else half by half.
-
-    What is enough stays enough with more steps, so that this gives what leaving them out one by one does.
-    """
-    for number in numbers:
-        keep[number] = False
-    if suffices(keep):
-        return
-    for number in numbers:
-        keep[number] = True
-    if len(numbers) > 1:
-        half = len(numbers) // 2
-        _leave_out(numbers[:half], keep, suffices)
-        _leave_out(numbers[half:], keep, suffices)
 
 
 def _suffices(
