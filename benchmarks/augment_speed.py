@@ -2,7 +2,7 @@
 
     python benchmarks/augment_speed.py [SOURCE...] [--programs N] [--pairs N]
 
-Processor time; homes, knowledge and reading are not counted, sampling the original's own environment is. The embedded
+Homes, knowledge and reading are not counted, sampling the original's own environment is. The embedded
 corpus, and the release's sample where there is one (HEARTH_REAL_DATA, else ../shared/real).
 """
 
@@ -13,9 +13,8 @@ import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from time import process_time
 
-from measuring import Figure, finish, parser, rate, tell
+from measuring import Figure, Passes, finish, parser, passes, rate, tell
 
 from hearth.grounding.base import prepared
 from hearth.kb.knowledge import default
@@ -30,24 +29,26 @@ from hearth.simulation.homes import catalog
 
 ROOT = Path(__file__).resolve().parents[1]
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real")) / "activityprograms-sample.zip"
-RUNS = 3
 
 GOAL = 400
 """Programs a second on one core."""
 
 
-def measure(programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> tuple[Counter[str], float]:
-    """What became of all pairs, by code (`""` for a new program), and the seconds it took."""
-    outcomes: Counter[str] = Counter()
+def measure(programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> tuple[Counter[str], Passes]:
+    """What became of all pairs, by code (`""` for a new program), and the time it took."""
+    outcomes: dict[int, list[str]] = {}
     options = Options(pairs)
-    began = process_time()
-    for number, script in enumerate(programs):
+
+    def one(number: int) -> None:
+        script = programs[number]
         found = augment(script.program, homes[number % len(homes)], 0, script.program_id, options)
         if isinstance(found, Failure):
-            outcomes[f"not sampled: {found.code}"] += 1
-            continue
-        outcomes.update("" if pair.failure is None else str(pair.failure.code) for pair in found.pairs)
-    return outcomes, process_time() - began
+            outcomes[number] = [f"not sampled: {found.code}"]
+        else:
+            outcomes[number] = ["" if pair.failure is None else str(pair.failure.code) for pair in found.pairs]
+
+    taken = passes(one, range(len(programs)))
+    return Counter(code for codes in outcomes.values() for code in codes), taken
 
 
 def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> list[Figure]:
@@ -55,8 +56,7 @@ def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: 
     measure(programs[:20], homes, pairs)
     gc.collect()
     gc.freeze()
-    found = [measure(programs, homes, pairs) for _ in range(RUNS)]
-    outcomes, taken = found[0][0], [seconds for _, seconds in found]
+    outcomes, taken = measure(programs, homes, pairs)
     sampled = Counter({code: count for code, count in outcomes.items() if not code.startswith("not sampled")})
     repaired = sampled[""] + sampled[str(Code.DUPLICATE)]
     needed = repaired + sum(sampled[str(code)] for code in GIVEN_UP)

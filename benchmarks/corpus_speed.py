@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from random import Random
 
-from measuring import Figure, finish, parser, rate, runs, tell
+from measuring import Figure, finish, parser, passes, rate, runs, tell
 
 from hearth.kb import knowledge
 from hearth.pipelines import corpus, spoken, synthesis
@@ -24,6 +24,9 @@ from hearth.pipelines.readers.crowd import DESCRIPTIONS, PROGRAMS
 from hearth.schemas.program import ObjectRef, Step
 
 OBJECTS = ("couch", "bed", "table", "kitchen", "cup", "milk", "fridge", "television", "sofa", "desk", "book")
+
+SLICE = 400
+"""Programs drawn at a time."""
 
 INGEST = """
 import sys, tempfile, time
@@ -153,9 +156,8 @@ def others() -> Iterator[Figure]:
     words = "".join(as_words(1))
     heard = runs(lambda: [spoken.parse_spoken(words, 0, "", known) for _ in range(1_000)])
     yield rate("programs in words understood", 1_000, heard, "a second")
-    count = synthesis.DEFAULT_COUNT
-    drawn = runs(lambda: list(synthesis.synthesize(count, 0, grammar)))
-    yield rate("programs drawn", count, drawn, "a second", 5_000)
+    drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
+    yield rate("programs drawn", 13 * SLICE, drawn, "a second", 5_000)
     some = list(synthesis.synthesize(5_000, 0, grammar))
     steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
     many = corpus.Corpus(programs=[corpus.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)])

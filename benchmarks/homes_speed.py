@@ -1,7 +1,7 @@
 """Homes and sampling against the clock: `python benchmarks/homes_speed.py [SOURCE] [--homes DIR] [--json FILE]`.
 
-Every figure is the median of several passes in processor time, each pass over all the work: a whole source in all
-homes, with inference, drawing, all checks and the run to the end. What is found out once for a home is told apart.
+Every figure is the median of several passes, each over all the work: a whole source in all homes, with inference,
+drawing, all checks and the run to the end. What is found out once for a home is told apart.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+from statistics import median
 from time import process_time
 
-from measuring import Figure, finish, parser, rate, runs, seconds, tell
+from measuring import Figure, finish, parser, passes, rate, runs, seconds, stalls, tell
 
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
@@ -32,17 +33,6 @@ PUBLISHED = 4.0
 SIZES = (("as they come", Size()), ("of 280 to 300 nodes", Size.about(290)))
 
 
-def yardstick() -> Figure:
-    """A plain loop: how fast this machine is just now. Others that work on it slow everything else down with this."""
-
-    def loop() -> None:
-        total = 0
-        for k in range(1_000_000):
-            total += k & 7
-
-    return rate("yardstick: turns of a plain loop", 1.0, runs(loop, 5), "million/s")
-
-
 def loading() -> Figure:
     """All our homes from their plans, read and parsed anew."""
 
@@ -59,11 +49,8 @@ def loading() -> Figure:
 def drawing_up(count: int = 21) -> Figure:
     """Homes of 3 to 9 rooms in turn drawn up in a second, their graphs included."""
 
-    def draw() -> None:
-        for seed in range(count):
-            scene(generate(3 + seed % 7, seed))
-
-    return rate("procedural homes drawn up, with their graphs", count, runs(draw, 3), "homes/s", 20.0)
+    taken = passes(lambda seed: scene(generate(3 + seed % 7, seed)), range(count))
+    return rate("procedural homes drawn up, with their graphs", count, taken, "homes/s", 20.0)
 
 
 def laying_out(homes: Path) -> Figure:
@@ -75,28 +62,27 @@ def laying_out(homes: Path) -> Figure:
 
 def sampling(programs: list[Script], homes: Homes, label: str, size: Size, times: int) -> Figure:
     """Environments sampled and checked (conditions, soundness, a run) in a second, inference shared by all homes."""
-    done = 0
+    done: dict[str, int] = {}
 
-    def whole() -> None:
-        nonlocal done
-        done = 0
-        for script in programs:
-            conditions = infer(script.program, homes.knowledge)
-            if isinstance(conditions, Failure):
-                continue
-            for name in homes.names():
-                found = sample(script.program, homes.home(name), 0, script.program_id, conditions, size)
-                done += not isinstance(found, Failure)
+    def everywhere(script: Script) -> None:
+        conditions = infer(script.program, homes.knowledge)
+        if isinstance(conditions, Failure):
+            return
+        drawn = [
+            sample(script.program, homes.home(name), 0, script.program_id, conditions, size) for name in homes.names()
+        ]
+        done[script.program_id] = sum(not isinstance(found, Failure) for found in drawn)
 
-    taken = runs(whole, times)
-    per_second = done / sorted(taken)[len(taken) // 2]
-    return rate(f"environments {label}, sampled and checked ({done:,})", done, taken, "environments/s", 1000.0,
+    taken = passes(everywhere, programs, times)
+    count = sum(done.values())
+    per_second = count / median(taken.totals)
+    return rate(f"environments {label}, sampled and checked ({count:,})", count, taken, "environments/s", 1000.0,
                 ratio=per_second / PUBLISHED)  # fmt: skip
 
 
 def figures(source: str, folder: Path | None, limit: int | None, times: int) -> Iterator[Figure]:
     """Every figure."""
-    yield yardstick()
+    yield stalls()
     yield loading()
     yield drawing_up()
     if folder is not None:
@@ -113,7 +99,7 @@ def figures(source: str, folder: Path | None, limit: int | None, times: int) -> 
     gc.freeze()
     for label, size in SIZES:
         yield sampling(programs, homes, label, size, times)
-    yield yardstick()
+    yield stalls()
 
 
 def main() -> None:

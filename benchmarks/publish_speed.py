@@ -1,7 +1,7 @@
 """How fast a published dataset is scored and asked: `python benchmarks/publish_speed.py DATASET`.
 
-Predictions are the dataset's own programs, every second one with a step left out. Seconds are of processor, of one
-process; scoring uses as many as there are cores, so that two cores take half of the time it says.
+Predictions are the dataset's own programs, every second one with a step left out. Everything is done by one process;
+the `score` command uses as many as there are cores.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 try:
-    from benchmarks.measuring import Figure, finish, parser, runs, seconds, tell
+    from benchmarks.measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 except ImportError:
-    from measuring import Figure, finish, parser, runs, seconds, tell
+    from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.judging import judge
@@ -27,7 +27,8 @@ from hearth.scoring.lcs import matrix
 ASKED = 30_000
 """Predictions and executions that the targets are about."""
 
-SCORED = 3_000
+SLICES, SLICE = 12, 25
+"""So many slices of so many predictions are scored, each several times over."""
 
 
 def main() -> None:
@@ -52,33 +53,34 @@ def figures(asked: Namespace) -> Iterator[Figure]:
         print(f"no dataset to score and to ask: {error}")
         return
     with tempfile.TemporaryDirectory() as folder:
-        taken = [each * ASKED / SCORED for each in runs(scoring(dataset, Path(folder)), 1)]
-    yield seconds(f"score of {ASKED:,} predictions, one process", taken, target=120.0)
+        taken = scored(dataset, Path(folder))
+    yield rate("predictions scored by one process", SLICES * SLICE, taken, "predictions/s", ASKED / 120)
     some = dataset.rows("SELECT execution_id FROM executions ORDER BY hash(execution_id) LIMIT 9")[1]
-    names = [name for (name,) in some]
     for macro in ("graph_edges", "graph_nodes"):
         query = f"SELECT * FROM {macro}($id, NULL)"
-        each = [runs(lambda name=name, query=query: dataset.rows(query, id=name), 1)[0] for name in names]
-        yield seconds(f"one graph by SQL, {macro}", each, "ms", 10.0)
+        each = [passes(lambda name, query=query: dataset.rows(query, id=name), one, 9) for one in some]
+        worst = max(each, key=lambda one: one.least)
+        yield seconds(f"one graph by SQL, {macro}, of {len(some)} the slowest", worst, "ms", 10.0)
     executions = dataset.rows("SELECT count(*) FROM executions")[1][0][0]
-    counted = runs(lambda: dataset.rows("SELECT * FROM start_relations"))
-    yield seconds(f"edges per relation over {ASKED:,} executions", [each * ASKED / executions for each in counted],
-                  target=1.0)  # fmt: skip
+    yield seconds(f"edges per relation over {executions:,} executions",
+                  passes(dataset.rows, ["SELECT * FROM start_relations"], 9),
+                  target=executions / ASKED)  # fmt: skip
 
 
-def scoring(dataset: Dataset, folder: Path) -> object:
-    """Scores `SCORED` executions' predictions."""
+def scored(dataset: Dataset, folder: Path) -> Passes:
+    """Scores slices of executions' predictions, each of neighbours, taken all over the dataset."""
+    ids = [name for (name,) in dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
     query = """SELECT execution_id, list_transform(steps, lambda s: step_text(s)) FROM executions JOIN programs
-        USING (program_id) WHERE executable ORDER BY execution_id"""
-    rows = dataset.rows(query)[1]
-    every = max(1, len(rows) // SCORED)
-    file = folder / "predictions.jsonl"
-    chosen = {name for name, _ in rows[::every][:SCORED]}
-    kept = [(name, steps) for name, steps in rows if name in chosen]
-    told = [{"id": name, "predicted": steps[number % 2 :]} for number, (name, steps) in enumerate(kept)]
-    file.write_text("".join(json.dumps(row) + "\n" for row in told))
-    some = _Some(dataset, sorted(chosen))
-    return lambda: judge(some, file)
+        USING (program_id) WHERE executable AND execution_id BETWEEN $first AND $last ORDER BY 1"""
+    slices = []
+    for number in range(SLICES):
+        names = ids[number * len(ids) // SLICES :][:SLICE]
+        kept = dataset.rows(query, first=names[0], last=names[-1])[1]
+        told = [{"id": name, "predicted": steps[place % 2 :]} for place, (name, steps) in enumerate(kept)]
+        file = folder / f"predictions-{number}.jsonl"
+        file.write_text("".join(json.dumps(row) + "\n" for row in told))
+        slices.append((_Some(dataset, names), file))
+    return passes(lambda part: judge(*part), slices)
 
 
 class _Some(Dataset):

@@ -20,6 +20,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+try:
+    from benchmarks.measuring import stalls
+except ImportError:
+    from measuring import stalls
+
 HERE = Path(__file__).resolve().parent
 TABLE, STORED = HERE / "RESULTS.md", HERE / "results.json"
 WORST = 2 / 3
@@ -61,25 +66,28 @@ def _lines(path: str) -> list[str]:
 def document(found: Mapping[str, Sequence[Row]]) -> str:
     """RESULTS.md."""
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
-    load = os.getloadavg()[0]
+    load, still = os.getloadavg()[0], stalls().value
     lines = [
         "# Results",
         "",
         "Written by `make bench`; not edited by hand. Medians of several runs, with the distance of the quartiles.",
+        "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes",
+        "whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
         "",
-        f"- Machine: {machine()}; load {load:.1f}",
+        f"- Machine: {machine()}; load {load:.1f}; it stands still {still:.0f}% of the time",
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, rows in found.items():
-        lines += ["", f"## {name}", "", "| figure | measured | spread | asked | to the plain reference |"]
-        lines += ["|---|---:|---:|---:|---:|", *map(_line, rows)]
+        lines += ["", f"## {name}", "", "| figure | measured | spread | undisturbed | asked | to the plain reference |"]
+        lines += ["|---|---:|---:|---:|---:|---:|", *map(_line, rows)]
     return "\n".join(lines) + "\n"
 
 
 def _line(row: Row) -> str:
     target = "" if row["target"] is None else f"{row['target']:,g} {row['unit']}"
     ratio = "" if row["ratio"] is None else f"{row['ratio']:,.1f} x"
-    return f"| {row['name']} | {row['value']:,.4g} {row['unit']} | {row['spread']:.0%} | {target} | {ratio} |"
+    best = "" if row.get("undisturbed") is None else f"{row['undisturbed']:,.4g}"
+    return f"| {row['name']} | {row['value']:,.4g} {row['unit']} | {row['spread']:.0%} | {best} | {target} | {ratio} |"
 
 
 def fallen(found: Mapping[str, Sequence[Row]], stored: Mapping[str, Sequence[Row]]) -> list[str]:

@@ -34,7 +34,8 @@ def _figure(bench: dict[str, Any], found: dict[str, Any]) -> Figure:
     ratio = other and other["stats"]["median"] / other["extra_info"].get("units", 1) / each
     unit = f"{info.get('unit', 'run')}s/s"
     target = TARGETS.get(bench["name"])
-    return Figure(bench["name"], 1 / each, unit, target, ratio, stats["iqr"] / stats["median"])
+    best = info.get("units", 1) / stats["min"]
+    return Figure(bench["name"], 1 / each, unit, target, ratio, stats["iqr"] / stats["median"], best)
 
 
 def main() -> int:
