@@ -1,4 +1,4 @@
-"""Sequences that are nearly the same, among many, without comparing each with each."""
+"""Sequences and texts that are nearly the same, among many, without comparing each with each."""
 
 from __future__ import annotations
 
@@ -8,46 +8,74 @@ from math import ceil, inf
 
 _ROUNDING = 1e-6
 
+_CHUNK = 512
 
-def near_sequences(
-    rows: Sequence[Sequence[Hashable]], columns: Sequence[Sequence[Hashable]], least: float
-) -> Iterator[tuple[int, int]]:
-    """Places (in rows, in columns), ascending, whose LCS is at least so much of the longer one.
+
+def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator[tuple[int, int]]:
+    """Pairs of places, the smaller first, whose sequences' LCS is at least so much of the longer one.
 
     Exact, and nearly linear where most steps are rare: two such sequences have so many elements in common, order
     aside, that one of the few rarest of the one is among the few rarest of the other (prefix filtering, as in joins of
     similar sets); only pairs that share one are compared.
 
     Args:
-        rows, columns: sequences of hashable elements; may be one and the same.
+        rows: sequences of hashable elements.
         least: from 0 to 1.
     """
     from rapidfuzz.distance import LCSseq
 
-    told, told_columns = _numbered(rows, columns)
-    index: dict[int, list[int]] = defaultdict(list)
-    for number, tokens in enumerate(told_columns):
-        for token in _rarest(tokens, least):
-            index[token].append(number)
-    for number, mine in enumerate(told):
-        found = {other for token in _rarest(mine, least) for other in index.get(token, ())}
-        fewest, most = least * len(mine) - _ROUNDING, (len(mine) + _ROUNDING) / least if least else inf
-        for other in sorted(found):
-            theirs = told_columns[other]
-            if fewest <= len(theirs) <= most and LCSseq.normalized_similarity(mine, theirs) >= least - _ROUNDING:
-                yield number, other
+    told = _numbered(rows)
+    lengths = [len(each) for each in told]
+    seen: dict[int, list[int]] = defaultdict(list)
+    for number in sorted(range(len(told)), key=lambda place: (lengths[place], place)):
+        mine = told[number]
+        rarest = _rarest(mine, least)
+        shortest = least * len(mine) - _ROUNDING
+        for other in sorted({other for token in rarest for other in seen[token] if lengths[other] >= shortest}):
+            if LCSseq.normalized_similarity(mine, told[other], score_cutoff=least - _ROUNDING):
+                yield (other, number) if other < number else (number, other)
+        for token in rarest:
+            seen[token].append(number)
 
 
-def _numbered(
-    rows: Sequence[Sequence[Hashable]], columns: Sequence[Sequence[Hashable]]
-) -> tuple[list[list[int]], list[list[int]]]:
-    """Sequences of numbers instead of elements: the rarer an element, the smaller."""
-    seen = Counter(element for sequence in (*rows, *columns) for element in sequence)
-    number = {element: place for place, (element, _) in enumerate(reversed(seen.most_common()))}
-    return tuple([[number[element] for element in sequence] for sequence in given] for given in (rows, columns))  # type: ignore[return-value]
+def _numbered(rows: Sequence[Sequence[Hashable]]) -> list[str]:
+    """Sequences of characters instead of elements: the rarer an element, the smaller. Texts are compared fastest."""
+    seen = Counter(element for sequence in rows for element in sequence)
+    letter = {element: chr(_FIRST + place) for place, (element, _) in enumerate(reversed(seen.most_common()))}
+    return ["".join(map(letter.__getitem__, sequence)) for sequence in rows]
 
 
-def _rarest(numbers: list[int], least: float) -> set[int]:
+_FIRST = 0xE000
+"""Beyond the surrogates, which are no characters; up to a million different elements."""
+
+
+def _rarest(letters: str, least: float) -> set[str]:
     """So many of the rarest elements that a sequence without any of them is too different; a mark for an empty one."""
-    common = ceil(least * len(numbers) - _ROUNDING)
-    return set(sorted(numbers)[: len(numbers) - common + 1]) or {-1}
+    common = ceil(least * len(letters) - _ROUNDING)
+    return set(sorted(letters)[: len(letters) - common + 1]) or {""}
+
+
+def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
+    """Pairs of places, the smaller first, whose texts' similarity (insertions and deletions) is at least so much.
+
+    Exact: those whose lengths alone keep them apart are not compared.
+
+    Args:
+        texts: any.
+        least: from 0 to 1; twice what two texts have in common, in order, over the sum of their lengths.
+    """
+    import numpy as np
+    from rapidfuzz import fuzz, process
+
+    order = sorted(range(len(texts)), key=lambda place: (len(texts[place]), place))
+    ordered = [texts[place] for place in order]
+    lengths = np.array([len(text) for text in ordered])
+    for start in range(0, len(ordered), _CHUNK):
+        part = ordered[start : start + _CHUNK]
+        longest = len(part[-1]) * (2 / least - 1) if least else inf
+        end = int(np.searchsorted(lengths, longest + _ROUNDING, side="right"))
+        found = process.cdist(part, ordered[start:end], scorer=fuzz.ratio, score_cutoff=100 * (least - _ROUNDING))
+        for one, other in np.argwhere(found >= 100 * (least - _ROUNDING)).tolist():
+            if one < other:
+                a, b = order[start + one], order[start + other]
+                yield (a, b) if a < b else (b, a)

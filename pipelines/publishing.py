@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.kb.knowledge import Knowledge
@@ -257,21 +258,37 @@ def _splits(job: Job) -> list[Row]:
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
-    rows = list(splits.parts(told, runs, job.settings.seed))
-    write_json(job.folder / "splits.json", splits.summary(told, rows, job.settings.seed))
+    likeness = splits.Likeness(told)
+    rows = list(splits.parts(told, runs, job.settings.seed, likeness))
+    write_json(job.folder / "splits.json", splits.summary(told, rows, job.settings.seed, likeness))
     return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
 
 
 def _told_for_splits(folder: Path) -> list[splits.Told]:
-    columns = ["program_id", "activity_id", "split", "parent_id", "steps", "description"]
-    rows = [row for path in sorted((folder / "programs").glob("part-*.parquet")) for row in read_rows(path, columns)]
-    tops = splits.roots({row["program_id"]: row["parent_id"] for row in rows})
-    told = []
-    for row in rows:
-        steps = tuple(" ".join((step["action"], *(ref["name"] for ref in step["objects"]))) for step in row["steps"])
-        name = row["program_id"]
-        told.append(splits.Told(name, row["activity_id"], row["split"], tops[name], steps, row["description"]))
-    return told
+    told: dict[str, list[Any]] = {
+        name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
+    }
+    steps: list[tuple[str, ...]] = []
+    for path in sorted((folder / "programs").glob("part-*.parquet")):
+        table = pq.read_table(path, columns=[*told, "steps"])
+        steps.extend(_step_names(table["steps"].combine_chunks()))
+        for name, values in told.items():
+            values.extend(table[name].to_pylist())
+    tops = splits.roots(dict(zip(told["program_id"], told["parent_id"], strict=True)))
+    rows = zip(told["program_id"], told["activity_id"], told["split"], steps, told["description"], strict=True)
+    return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, mine, text in rows]
+
+
+def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
+    """For each program its steps as action and class names; by columns, since there are hundreds of thousands."""
+    every = steps.flatten()
+    actions, objects = every.field("action"), every.field("objects")
+    names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))
+    texts = pc.binary_join_element_wise(actions, pc.binary_join(names, " "), " ").to_pylist()
+    end = 0
+    for length in pc.list_value_length(steps).to_pylist():
+        yield tuple(texts[end : end + length])
+        end += length
 
 
 def _copy_pictures(job: Job) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hearth.pipelines.alike import near_sequences
+from hearth.pipelines.alike import near_sequences, near_texts
 from hearth.schemas.rng import derive
 
 NEAR = 0.9
@@ -21,8 +21,6 @@ NEAR = 0.9
 
 SHORTEST_TEXT = 20
 """Characters a description needs to count as a text of its own: `Watch TV.` says nothing about who wrote it."""
-
-_CHUNK = 512
 
 Row = dict[str, Any]
 
@@ -68,10 +66,41 @@ def roots(parents: dict[str, str | None]) -> dict[str, str]:
     return found
 
 
-def groups(programs: Sequence[Told]) -> dict[str, str]:
+class Likeness:
+    """Which programs say nearly the same, found once for all programs; a text has to be long enough to say anything."""
+
+    def __init__(self, programs: Iterable[Told]) -> None:
+        programs = list(programs)
+        steps = sorted({each.steps for each in programs if each.steps})
+        texts = sorted({text for each in programs if len(text := worded(each.description)) >= SHORTEST_TEXT})
+        self._steps = _neighbours(steps, near_sequences(steps, NEAR))
+        self._texts = _neighbours(texts, near_texts(texts, NEAR))
+
+    def by_steps(self, program: Told) -> set[Any]:
+        """The steps of programs like it: those whose normalised LCS with its own is at least `NEAR`, its own too."""
+        return self._steps.get(program.steps, set())
+
+    def by_text(self, program: Told) -> set[Any]:
+        """The same for what its description says, case and spaces aside."""
+        return self._texts.get(worded(program.description), set())
+
+
+def _neighbours(values: Sequence[Any], pairs: Iterable[tuple[int, int]]) -> dict[Any, set[Any]]:
+    found = {value: {value} for value in values}
+    for one, other in pairs:
+        found[values[one]].add(values[other])
+        found[values[other]].add(values[one])
+    return found
+
+
+def worded(text: str) -> str:
+    """A text without what people write one way or another: case and spaces."""
+    return " ".join(text.lower().split())
+
+
+def groups(programs: Sequence[Told], likeness: Likeness) -> dict[str, str]:
     """Which group each program belongs to, by id; a group is named by the first of its originals."""
-    ordered = sorted(programs, key=lambda each: each.program_id)
-    leader = {each.root: each.root for each in ordered}
+    leader = {each.root: each.root for each in programs}
 
     def find(name: str) -> str:
         while leader[name] != name:
@@ -79,71 +108,28 @@ def groups(programs: Sequence[Told]) -> dict[str, str]:
             name = leader[name]
         return name
 
-    # Programs with the same steps, or the same text, need comparing once.
-    for same, near in ((_by(ordered, "steps"), near_steps), (_by(ordered, "description"), near_texts)):
-        firsts = [members[0] for members in same]
-        alike = [(firsts[one], firsts[other]) for one, other in near(firsts)]
-        if near is near_steps:
-            alike += [(members[0], other) for members in same for other in members[1:] if other.steps]
-        else:
-            alike += [(members[0], other) for members in same for other in members[1:] if _is_text(other.description)]
-        for one, other in alike:
-            a, b = sorted((find(one.root), find(other.root)))
-            leader[b] = a
+    for near in (likeness.by_steps, likeness.by_text):
+        first: dict[Any, str] = {}
+        for each in programs:
+            for like in near(each):
+                a, b = sorted((find(each.root), find(first.setdefault(like, each.root))))
+                leader[b] = a
     return {each.program_id: find(each.root) for each in programs}
 
 
-def _by(programs: Sequence[Told], field: str) -> list[list[Told]]:
-    found: dict[Any, list[Told]] = {}
-    for each in programs:
-        found.setdefault(getattr(each, field), []).append(each)
-    return list(found.values())
-
-
-def _is_text(description: str) -> bool:
-    return len(_worded(description)) >= SHORTEST_TEXT
-
-
-def near_steps(programs: Sequence[Told], others: Sequence[Told] | None = None) -> Iterator[tuple[int, int]]:
-    """Pairs of programs (places in the sequences) whose normalised LCS over steps is at least `NEAR`."""
-    rows = [each.steps for each in programs]
-    columns = rows if others is None else [each.steps for each in others]
-    found = near_sequences(rows, columns, NEAR)
-    yield from (pair for pair in found if others is not None or pair[0] != pair[1])
-
-
-def near_texts(programs: Sequence[Told], others: Sequence[Told] | None = None) -> Iterator[tuple[int, int]]:
-    """Pairs whose descriptions are nearly the same, case and spaces aside."""
-    import numpy as np
-    from rapidfuzz import fuzz, process
-
-    rows, columns = (
-        [_worded(each.description) for each in given] for given in (programs, programs if others is None else others)
-    )
-    cut = NEAR * 100
-    for start in range(0, len(rows), _CHUNK):
-        part = rows[start : start + _CHUNK]
-        found = process.cdist(part, columns, scorer=fuzz.ratio, score_cutoff=cut - 1e-6, dtype=np.float32)
-        for place, other in np.argwhere(found >= cut - 1e-5).tolist():
-            one = start + place
-            if (others is not None or one != other) and min(len(rows[one]), len(columns[other])) >= SHORTEST_TEXT:
-                yield one, other
-
-
-def _worded(text: str) -> str:
-    return " ".join(text.lower().split())
-
-
-def parts(programs: Sequence[Told], runs: Iterable[tuple[str, str, str]], seed: int) -> Iterator[Row]:
+def parts(
+    programs: Sequence[Told], runs: Iterable[tuple[str, str, str]], seed: int, likeness: Likeness
+) -> Iterator[Row]:
     """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
 
     Args:
         programs: all that are published.
         runs: execution id, program id and home of every execution.
         seed: of the deal.
+        likeness: of these programs.
     """
     known = {each.program_id: each for each in programs}
-    group = groups(programs)
+    group = groups(programs, likeness)
     tested = {group[each.program_id] for each in programs if each.part == "test"}
     runs = sorted(runs)
     homes = sorted({home for _, _, home in runs})
@@ -180,7 +166,7 @@ def _by_home_5(dealt: int, home: int) -> str:
     return "test" if 6 <= home <= 7 else "none"
 
 
-def summary(programs: Sequence[Told], rows: Sequence[Row], seed: int) -> Row:
+def summary(programs: Sequence[Told], rows: Sequence[Row], seed: int, likeness: Likeness) -> Row:
     """What each split means, how many runs and programs its parts have, and how much leaks, as JSON.
 
     `leakage` counts test programs that have in train a program made of the same original (`siblings`), one with
@@ -201,8 +187,8 @@ def summary(programs: Sequence[Told], rows: Sequence[Row], seed: int) -> Row:
             "rule": rule,
             "runs": dict(sorted(Counter(row["part"] for row in mine).items())),
             "programs": {part: len(names) for part, names in sorted(members.items())},
-            "leakage": leakage(train, test),
-            "at_random": leakage(*_at_random([*train, *test], len(test), seed)),
+            "leakage": leakage(train, test, likeness),
+            "at_random": leakage(*_at_random([*train, *test], len(test), seed), likeness),
         }
     return told
 
@@ -212,17 +198,14 @@ def _at_random(programs: list[Told], tested: int, seed: int) -> tuple[list[Told]
     return dealt[tested:], dealt[:tested]
 
 
-def leakage(train: Sequence[Told], test: Sequence[Told]) -> Row:
+def leakage(train: Sequence[Told], test: Sequence[Told], likeness: Likeness) -> Row:
     """How many of the test programs have something of theirs in train, by `siblings`, `steps` and `texts`."""
     known = {each.root for each in train}
-    steps, texts = (
-        {getattr(asked[one], field) for one, _ in near(asked, [each[0] for each in _by(train, field)])}
-        for field, near in (("steps", near_steps), ("description", near_texts))
-        for asked in [[each[0] for each in _by(test, field)]]
-    )
+    steps = {like for each in train for like in likeness.by_steps(each)}
+    texts = {like for each in train for like in likeness.by_text(each)}
     return {
         "programs": len(test),
         "siblings": sum(each.root in known for each in test),
         "steps": sum(each.steps in steps for each in test),
-        "texts": sum(each.description in texts for each in test),
+        "texts": sum(worded(each.description) in texts for each in test),
     }

@@ -1,38 +1,56 @@
-"""Near sequences: the index finds what comparing each with each finds."""
+"""Near duplicates: what is passed over for speed is what comparing each with each finds, too."""
 
 from __future__ import annotations
 
 import random
 
-from hearth.pipelines.alike import near_sequences
+from hearth.pipelines import alike
+from hearth.pipelines.alike import near_sequences, near_texts
 
 
-def plainly(rows, columns, least):
-    """Each with each, by a plain table of longest common subsequences."""
-
-    def common(one, other):
-        before = [0] * (len(other) + 1)
-        for a in one:
-            now = [0]
-            for place, b in enumerate(other):
-                now.append(before[place] + 1 if a == b else max(now[-1], before[place + 1]))
-            before = now
-        return before[-1]
-
-    return [
-        (i, j)
-        for i, one in enumerate(rows)
-        for j, other in enumerate(columns)
-        if common(one, other) >= least * max(len(one), len(other)) - 1e-6
-    ]
+def common(one, other):
+    """Length of the longest common subsequence, by the plain table."""
+    before = [0] * (len(other) + 1)
+    for a in one:
+        now = [0]
+        for place, b in enumerate(other):
+            now.append(before[place] + 1 if a == b else max(now[-1], before[place + 1]))
+        before = now
+    return before[-1]
 
 
-def test_the_index_misses_nothing():
+def plainly(rows, likeness, least):
+    """Each with each."""
+    pairs = ((i, j) for j in range(len(rows)) for i in range(j))
+    return sorted((i, j) for i, j in pairs if likeness(rows[i], rows[j]) >= least - 1e-6)
+
+
+def of_the_longer(one, other):
+    return common(one, other) / max(len(one), len(other)) if one or other else 1.0
+
+
+def of_both(one, other):
+    return 2 * common(one, other) / (len(one) + len(other)) if one or other else 1.0
+
+
+def families(elements, longest, count, dropped):
+    """Rows that are parts of few others, in no order."""
     draw = random.Random(0)
-    families = [[draw.randrange(9) for _ in range(draw.randint(0, 14))] for _ in range(12)]
-    rows = [tuple(number for number in draw.choice(families) if draw.random() > 0.08) for _ in range(70)]
+    wholes = [[draw.choice(elements) for _ in range(draw.randint(0, longest))] for _ in range(12)]
+    return [tuple(each for each in draw.choice(wholes) if draw.random() > dropped) for _ in range(count)]
+
+
+def test_the_index_of_sequences_misses_nothing():
+    rows = families(range(9), 14, 70, 0.08)
     for least in (0.5, 0.9, 1.0):
-        found = list(near_sequences(rows, rows, least))
-        assert found == plainly(rows, rows, least)
+        found = sorted(near_sequences(rows, least))
+        assert found == plainly(rows, of_the_longer, least)
         assert len(found) > len(rows)
-    assert list(near_sequences(rows[:20], rows[20:], 0.9)) == plainly(rows[:20], rows[20:], 0.9)
+
+
+def test_lengths_keep_no_near_texts_apart(monkeypatch):
+    monkeypatch.setattr(alike, "_CHUNK", 16)
+    rows = ["".join(row) for row in families("abcdef ", 40, 90, 0.04)]
+    found = sorted(near_texts(rows, 0.9))
+    assert found == plainly(rows, of_both, 0.9)
+    assert len(found) > len(rows)

@@ -6,7 +6,7 @@ import orjson
 import pytest
 
 import hearth
-from hearth.pipelines.splits import Told, groups, leakage, near_steps, near_texts, parts, roots, summary
+from hearth.pipelines.splits import Likeness, Told, groups, leakage, parts, roots, summary
 
 LONG = "take the milk out of the fridge and put it on the table"
 
@@ -16,17 +16,16 @@ def told(name, steps="a b c d", text="", part="train", root=None):
 
 
 def test_siblings_and_near_duplicates_are_one_group():
-    found = groups(
-        [
-            told("p1", "a b c d e f g h i j"),
-            told("p1+1", "z z z", root="p1"),
-            told("p2", "a b c d e f g h i k"),
-            told("p3", "q r s", LONG),
-            told("p4", "t u v", LONG.upper() + " "),
-            told("p5", "w x y", "Watch TV."),
-            told("p6", "l m n", "Watch TV."),
-        ]
-    )
+    programs = [
+        told("p1", "a b c d e f g h i j"),
+        told("p1+1", "z z z", root="p1"),
+        told("p2", "a b c d e f g h i k"),
+        told("p3", "q r s", LONG),
+        told("p4", "t u v", LONG.upper() + " "),
+        told("p5", "w x y", "Watch TV."),
+        told("p6", "l m n", "Watch TV."),
+    ]
+    found = groups(programs, Likeness(programs))
     assert found == {"p1": "p1", "p1+1": "p1", "p2": "p1", "p3": "p3", "p4": "p3", "p5": "p5", "p6": "p6"}
 
 
@@ -36,14 +35,17 @@ def test_grandchildren_belong_to_the_original():
 
 def test_nearness_is_that_of_the_longer_program():
     programs = [told("p1", "a b c d e f g h i j"), told("p2", "a b c d e f g h i"), told("p3", "a b c d e f g h")]
-    assert sorted(near_steps(programs)) == [(0, 1), (1, 0)]
-    assert list(near_texts(programs)) == []
+    likeness = Likeness(programs)
+    one, other, third = (each.steps for each in programs)
+    assert [likeness.by_steps(each) for each in programs] == [{one, other}, {one, other}, {third}]
+    assert [likeness.by_text(each) for each in programs] == [set(), set(), set()]
 
 
 def test_leakage_is_counted_by_kind():
     train = [told("p1", "a b c", LONG), told("p2", "d e f", "Something of quite another kind.")]
     test = [told("p1+1", "x", root="p1"), told("p3", "a b c"), told("p4", "u v w", LONG + "."), told("p5", "r s t")]
-    assert leakage(train, test) == {"programs": 4, "siblings": 1, "steps": 1, "texts": 1}
+    likeness = Likeness([*train, *test])
+    assert leakage(train, test, likeness) == {"programs": 4, "siblings": 1, "steps": 1, "texts": 1}
 
 
 def many():
@@ -59,9 +61,9 @@ def many():
 
 def test_no_split_leaks_where_random_rows_would():
     programs, runs = many()
-    rows = list(parts(programs, runs, 3))
+    rows = list(parts(programs, runs, 3, Likeness(programs)))
     assert len(rows) == 3 * len(runs)
-    found = summary(programs, rows, 3)["splits"]
+    found = summary(programs, rows, 3, Likeness(programs))["splits"]
     for split in found.values():
         assert split["leakage"]["programs"] > 0
         assert {split["leakage"][kind] for kind in ("siblings", "steps", "texts")} == {0}
@@ -72,7 +74,7 @@ def test_homes_are_where_the_rules_say():
     programs, runs = many()
     home = {execution_id: int(name[1:]) for execution_id, _, name in runs}
     found = {}
-    for row in parts(programs, runs, 3):
+    for row in parts(programs, runs, 3, Likeness(programs)):
         found.setdefault((row["split"], row["part"]), set()).add(home[row["execution_id"]])
     assert found["homes_1_4", "train"] == found["homes_1_4", "test_seen"] == {1, 2, 3, 4}
     assert (found["homes_1_4", "validation"], found["homes_1_4", "test_unseen"]) == ({5}, {5, 6})
@@ -83,7 +85,9 @@ def test_homes_are_where_the_rules_say():
 
 def test_the_deal_does_not_depend_on_order():
     programs, runs = many()
-    assert list(parts(programs, runs, 3)) == list(parts(programs[::-1], runs[::-1], 3))
+    assert list(parts(programs, runs, 3, Likeness(programs))) == list(
+        parts(programs[::-1], runs[::-1], 3, Likeness(programs[::-1]))
+    )
 
 
 @pytest.fixture(scope="module")
