@@ -1,0 +1,158 @@
+"""How long the stages take for a record, and what 30,000 augmented programs take: `python benchmarks/stages_speed.py`.
+
+Builds a small dataset as the tier `full` is built (the embedded corpus and as many synthetic programs, two homes each),
+then runs records drawn from all over each stage's input again and again by themselves; and turns their rows into
+Parquet and back. From the sums it says how long two processors would take for the tier, from sampling to publishing,
+were they never taken away; `scale.py` builds it whole and says how long it took.
+"""
+
+from __future__ import annotations
+
+import gc
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from measuring import Figure, Passes, finish, parser, passes, rate, seconds, tell
+
+from hearth.pipelines.build import stage
+from hearth.pipelines.parts import READ_BATCH, read_rows, write_table
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.stage import Job
+from hearth.pipelines.tiers import TIERS
+
+ROOT = Path(__file__).resolve().parents[1]
+CORPUS = (ROOT / "data_raw/crowd/descriptions.csv", ROOT / "data_raw/crowd/programs.csv")
+STAGES = ("sample", "augment", "publish")
+RECORDS = 60
+TIMES = 7
+
+WHOLE, ALLOWED = 30_000, 120.0
+"""Augmented programs, and the seconds that two processors are allowed for them."""
+
+TARGET = 4_500
+"""Augmented programs of the small dataset: as many to an execution as the tier has, about five to a program."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of a record of one stage: seconds, of processing it and of its rows on their way to disk and back."""
+
+    process: Passes
+    storage: Passes
+    records: int
+
+    @property
+    def undisturbed(self) -> float:
+        """Seconds a record."""
+        return (self.process.least + self.storage.least) / self.records
+
+
+def main() -> None:
+    """Build, measure, print."""
+    arguments = parser(__doc__)
+    arguments.add_argument("--programs", type=int, default=300, help="synthetic programs besides the corpus")
+    arguments.add_argument("--out", type=Path, help="a build's folder, to measure instead of building one")
+    asked = arguments.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        out = asked.out or built(Path(folder), asked.programs)
+        found = []
+        for figure in figures(out, Path(folder)):
+            found.append(figure)
+            print(tell(figure), flush=True)
+    finish(found, asked.json)
+
+
+def built(folder: Path, programs: int) -> Path:
+    """A small dataset of the tier."""
+    more, out = folder / "synthetic.jsonl", folder / "out"
+    words = [
+        ["corpus", "synthesize", programs, "--out", more],
+        ["build", *CORPUS, more, "--out", out, "--tier", "full"],
+    ]
+    for command in words:
+        subprocess.run([sys.executable, ROOT / "cli.py", *map(str, command)], check=True, capture_output=True)
+    return out
+
+
+def figures(out: Path, folder: Path) -> Iterator[Figure]:
+    """A record's cost by stage, and what follows for the whole."""
+    settings = Settings(out=str(out), **{**TIERS["full"], "target": TARGET})
+    costs, counts = {}, {}
+    for name in STAGES:
+        job = Job(stage(name), settings, stage(name).prepare(settings))
+        costs[name] = cost(job, folder)
+        counts[name] = sum(1 for _ in records(job))
+        own = costs[name]
+        yield rate(f"{name}: records processed", own.records, own.process, "records/s")
+        yield rate(f"{name}: their rows written and read", own.records, own.storage, "records/s")
+    augmented = sum(1 for _ in rows(out / "augment"))
+    every = sum(costs[name].undisturbed * counts[name] for name in STAGES)
+    share = Passes([every * WHOLE / augmented / 2], every * WHOLE / augmented / 2)
+    yield seconds(f"{WHOLE:,} augmented programs on two processors, undisturbed", share, target=ALLOWED)
+
+
+def cost(job: Job, folder: Path) -> Cost:
+    """Of records drawn evenly from all of a stage's input."""
+    every = list(records(job))
+    some = every[:: max(1, len(every) // RECORDS)][:RECORDS]
+    context = job.stage.open(job)
+    outputs: list[Any] = []
+    for record in some:
+        outputs.append(list(job.stage.process(record, context)))
+    gc.collect()
+    gc.freeze()
+    process = passes(lambda record: list(job.stage.process(record, context)), some, TIMES)
+    storage = [passes(lambda step: step(), list(steps), TIMES) for steps in stores(job, outputs, folder)]
+    whole = Passes(
+        [sum(totals) for totals in zip(*(part.totals for part in storage), strict=True)], sum(p.least for p in storage)
+    )
+    return Cost(process, whole, len(some))
+
+
+def stores(job: Job, outputs: list[Any], folder: Path) -> Iterator[Iterator[Callable[[], object]]]:
+    """For each table the steps of writing and reading the rows of so many records as the stages do."""
+    for table, schema in job.stage.tables.items():
+        found = [row for output in outputs for to, row in map(_addressed, output) if to == table]
+        if found:
+            yield _stored(found, schema, folder / "rows.parquet")
+
+
+def _addressed(output: Any) -> tuple[str, Any]:
+    if isinstance(output, tuple):
+        return output
+    return ("", output) if isinstance(output, dict) else ("rejected", output)
+
+
+def _stored(found: list[Any], schema: pa.Schema, path: Path) -> Iterator[Callable[[], object]]:
+    shares = [found[at : at + READ_BATCH] for at in range(0, len(found), READ_BATCH)]
+    batches = [pa.RecordBatch.from_pylist(share, schema) for share in shares]
+    table = pa.Table.from_batches(batches)
+    yield from (lambda share=share: pa.RecordBatch.from_pylist(share, schema) for share in shares)
+    yield lambda: write_table(path, table)
+    yield lambda: list(pq.ParquetFile(path).iter_batches(batch_size=READ_BATCH))
+    yield from (batch.to_pylist for batch in batches)
+
+
+def records(job: Job) -> Iterator[Any]:
+    """All records of a stage."""
+    for name in job.stage.reads:
+        for row in rows(job.settings.folder(name)):
+            if job.stage.select(row, job.plan):
+                yield row
+
+
+def rows(folder: Path) -> Iterator[Any]:
+    """All rows of a stage's first table."""
+    for path in sorted(folder.glob("part-*.parquet")):
+        yield from read_rows(path)
+
+
+if __name__ == "__main__":
+    main()
