@@ -1,6 +1,6 @@
-"""`kill -9` at random moments of a build: `python benchmarks/kills.py [--times 200] [--limit 40]`.
+"""`kill -9` at random moments of a build: `python benchmarks/kills.py [--times 200] [--limit N]`.
 
-Builds the first programs of the embedded corpus undisturbed, then again and again in another folder, each time killing
+Builds the tier `mini` undisturbed, then again and again in another folder, each time killing
 all of the build's processes at a random moment; the next build goes on from what is there. Whenever one gets to its end
 its bytes are compared with the undisturbed build's. The status is 1 when they differ or anything half-written is left.
 """
@@ -39,17 +39,15 @@ def started(options: Sequence[str], out: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 
-def finished(options: Sequence[str], out: Path) -> float:
-    """Build to the end; the seconds it took.
+def finished(options: Sequence[str], out: Path) -> None:
+    """Build to the end.
 
     Raises:
         SystemExit: the build failed.
     """
-    began = time.monotonic()
     status = started(options, out).wait()
     if status:
         raise SystemExit(f"a build ended with status {status} in {out}")
-    return time.monotonic() - began
 
 
 def differing(one: Path, other: Path) -> list[str]:
@@ -62,38 +60,64 @@ def differing(one: Path, other: Path) -> list[str]:
 def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple[int, int, list[str]]:
     """Kill builds.
 
+    A moment is drawn as a place among the files that a build makes, not in seconds: machines stand still for longer
+    than a build takes, and every stage is to be hit.
+
     Returns:
         Kills that met a running build, builds that got to their end, and what differed in them.
     """
     whole, out = folder / "undisturbed", folder / "killed"
-    longest = finished(options, whole)
-    moments = random.Random(seed)
+    finished(options, whole)
+    total, moments = made(whole), random.Random(seed)
     kills = ends = 0
     faults: list[str] = []
     while kills < times:
         process = started(options, out)
-        try:
-            process.wait(timeout=moments.uniform(0.05, 1.1) * longest)
-        except subprocess.TimeoutExpired:
+        met = reached(process, out, moments.randint(made(out), total))
+        time.sleep(moments.uniform(0, LATER))
+        if met and process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             kills += 1
             continue
+        if process.wait():
+            raise SystemExit(f"a build ended with status {process.returncode} in {out}")
         ends += 1
         faults += differing(whole, out)
         shutil.rmtree(out)
+        print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", flush=True)
     finished(options, out)
     return kills, ends + 1, faults + differing(whole, out)
+
+
+LATER = 0.3
+"""Seconds at most from a file's appearance to the kill: what is between two files is to be hit, too."""
+
+
+def made(out: Path) -> int:
+    """How many files there are, half-written ones too."""
+    return sum(len(files) for _, _, files in os.walk(out))
+
+
+def reached(process: subprocess.Popen[bytes], out: Path, files: int) -> bool:
+    """Wait until a build has made so many files; False if it ends before."""
+    while made(out) < files:
+        if process.poll() is not None:
+            return False
+        time.sleep(0.01)
+    return True
 
 
 def main() -> int:
     """Kill, and tell."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--times", type=int, default=200)
-    parser.add_argument("--limit", type=int, default=40, help="programs read")
+    parser.add_argument("--limit", type=int, help="programs read; as many as the tier has if not given")
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    options = ["--limit", str(asked.limit), "--home", "maple", "--pictures", "1", "--videos", "0", "--workers", "2"]
+    options = ["--tier", "mini", "--pictures", "1", "--workers", "2"]
+    if asked.limit:
+        options += ["--limit", str(asked.limit)]
     with tempfile.TemporaryDirectory() as folder:
         kills, ends, faults = killed(options, Path(folder), asked.times, asked.seed)
     print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *faults, sep="\n")

@@ -23,7 +23,7 @@ from hearth.schemas.tables import REJECTED
 
 Row = dict[str, Any]
 
-ROW_GROUP = 2_048
+ROW_GROUP = 512
 READ_BATCH = 64
 _META = b"hearth"
 

@@ -17,6 +17,9 @@ from hearth.schemas.tables import ENVIRONMENT, REPAIR, TABLES
 PER_CASE = ("programs", "environments", "executions", "repairs")
 """Tables whose rows come from one case each; the others need all of them."""
 
+GATHER = 2_048
+"""Cases published in one file: whoever asks for one opens every file's footer, so that there should be few."""
+
 _SHARED = {
     "programs": ("program_id", "description_id", "parent_id", "origin", "source", "place", "title", "description",
                  "steps", "rooms", "props", "worker", "platform", "warnings"),
@@ -91,6 +94,7 @@ STAGE = Stage(
     settings=("seed",),
     open=open_context,
     prepare=overlays,
+    gather=GATHER,
     identify=lambda case: str(case["execution_id"]),
     finish=finish,
 )

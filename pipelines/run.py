@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pyarrow as pa
@@ -140,8 +140,30 @@ def _drop_leftovers(folder: Path) -> None:
 
 
 def input_partitions(job: Job) -> Iterator[Partition]:
-    """The parts of the stages that a stage reads, one partition each; of several tables, those of the first."""
+    """The parts of the stages that a stage reads, one partition each, unless it shares or gathers them."""
+    waiting: list[Partition] = []
     number = 0
+    for part in _input_parts(job):
+        if waiting and sum(each.size or 0 for each in waiting) + (part.size or 0) > job.stage.gather:
+            yield _gathered(number, waiting)
+            number += 1
+            waiting = []
+        waiting.append(part)
+    if waiting:
+        yield _gathered(number, waiting)
+
+
+def _gathered(number: int, parts: list[Partition]) -> Partition:
+    if len(parts) == 1:
+        return replace(parts[0], number=number)
+    paths = tuple(path for part in parts for path in part.payload)
+    return Partition(
+        number, value_digest([part.digest for part in parts]), paths, sum(part.size or 0 for part in parts)
+    )
+
+
+def _input_parts(job: Job) -> Iterator[Partition]:
+    """The parts of the stages that a stage reads, or shares of them; of several tables, those of the first."""
     for name in job.stage.reads:
         folder = job.settings.folder(name)
         manifest = read_manifest(folder)
@@ -152,8 +174,7 @@ def input_partitions(job: Job) -> Iterator[Partition]:
             for rows in _shares(part["rows"], job.stage.share):
                 told = digest if rows is None else f"{digest} {rows}"
                 size = part["rows"] if rows is None else rows[1] - rows[0]
-                yield Partition(number, told, str(folder / file), size, rows)
-                number += 1
+                yield Partition(0, told, (str(folder / file),), size, rows)
 
 
 def _shares(rows: int, share: int | None) -> list[tuple[int, int] | None]:

@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +44,8 @@ class Partition:
         payload: what `Stage.records` needs to read it; small and picklable.
         size: how many records, if known.
         rows: of a part that several partitions share, the first row of this one and the one after its last.
+
+    Where the payload is paths of parts, it is a tuple of them.
     """
 
     number: int
@@ -79,6 +81,7 @@ class Stage:
         finish: writes what needs all partitions, before the manifest.
         patience: how many times the usual limit a record may take.
         share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
+        gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
 
     A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
     """
@@ -103,6 +106,7 @@ class Stage:
     finish: Callable[[Job, Counts], None] | None = None
     patience: int = 1
     share: int | None = None
+    gather: int = 0
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
         """Workers get a stage by the module that defines it, as its `STAGE`."""
@@ -178,7 +182,7 @@ def _records(job: Job, partition: Partition) -> Iterable[Record]:
     if stage.records is not None:
         return stage.records(job, partition)
     columns = list(stage.columns) if stage.columns is not None else None
-    rows: Iterable[Record] = read_rows(Path(partition.payload), columns)
+    rows: Iterable[Record] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
     if partition.rows is not None:
         rows = islice(rows, *partition.rows)
     return (row for row in rows if stage.select(row, job.plan))

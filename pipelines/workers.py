@@ -153,7 +153,7 @@ def _run(job: Job, partition: Partition, seen: Seen) -> Counts:
 def _needed(job: Job, partition: Partition) -> list[Path]:
     """The parts that a partition is made from: its own, or all where a stage has partitions of its own kind."""
     if job.stage.partitions is None:
-        return [Path(partition.payload)]
+        return [Path(path) for path in partition.payload]
     manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]
     return [found.folder / file for found in manifests if found for part in found.parts for file in part["files"]]
 

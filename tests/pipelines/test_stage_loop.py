@@ -240,16 +240,17 @@ def test_a_record_that_hangs_costs_only_itself_and_is_tried_again(settings):
     assert not run_stage(stage, settings).fresh
 
 
-def test_parts_are_shared_among_partitions_without_loss(settings):
+def test_parts_are_shared_and_gathered_without_loss(settings):
     run_stage(STAGE, settings)
     source = replace(STAGE, process=lambda record, context: [{**record}] if record["number"] != 40 else [])
     whole = replace(source, name="whole", reads=("count",), partitions=None, records=None)
-    shared = replace(whole, name="shared", share=7)
-    one, other = (run_stage(stage, settings).manifest for stage in (whole, shared))
-    assert other.counts.to_json() == one.counts.to_json()
-    assert len(one.parts) == 4 and len(other.parts) > 12
+    stages = (whole, replace(whole, name="shared", share=7), replace(whole, name="gathered", gather=60))
+    found = [run_stage(stage, settings).manifest for stage in stages]
+    one, shared, gathered = found
+    assert one.counts.to_json() == shared.counts.to_json() == gathered.counts.to_json()
+    assert (len(one.parts), len(gathered.parts)) == (4, 2) and len(shared.parts) > 12
     rows = [
-        [row for part in found.parts for row in pq.read_table(found.folder / part["files"][0]).to_pylist()]
-        for found in (one, other)
+        [row for part in each.parts for row in pq.read_table(each.folder / part["files"][0]).to_pylist()]
+        for each in found
     ]
-    assert rows[0] == rows[1]
+    assert rows[0] == rows[1] == rows[2]
