@@ -6,29 +6,34 @@ the `score` command uses as many as there are cores.
 
 from __future__ import annotations
 
-import json
-import tempfile
 from argparse import Namespace
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from statistics import median
+from typing import Any
 
 try:
     from benchmarks.measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 except ImportError:
     from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
+from hearth.pipelines import judging
+from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.judging import judge
+from hearth.pipelines.rows import bindings_of, program_of
+from hearth.pipelines.surroundings import RULES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
+from hearth.scoring.evaluate import Options, Pair, lcs_of, scored
 from hearth.scoring.lcs import matrix
 
 ASKED = 30_000
 """Predictions and executions that the targets are about."""
 
-SLICES, SLICE = 12, 25
-"""So many slices of so many predictions are scored, each several times over."""
+SHARES, EACH = 8, 25
+"""So many shares of predictions are read, and so many of each share scored."""
 
 
 def main() -> None:
@@ -52,9 +57,7 @@ def figures(asked: Namespace) -> Iterator[Figure]:
     except HearthError as error:
         print(f"no dataset to score and to ask: {error}")
         return
-    with tempfile.TemporaryDirectory() as folder:
-        taken = scored(dataset, Path(folder))
-    yield rate("predictions scored by one process", SLICES * SLICE, taken, "predictions/s", ASKED / 120)
+    yield from scoring(dataset)
     some = dataset.rows("SELECT execution_id FROM executions ORDER BY hash(execution_id) LIMIT 9")[1]
     for macro in ("graph_edges", "graph_nodes"):
         query = f"SELECT * FROM {macro}($id, NULL)"
@@ -67,33 +70,40 @@ def figures(asked: Namespace) -> Iterator[Figure]:
                   target=executions / ASKED)  # fmt: skip
 
 
-def scored(dataset: Dataset, folder: Path) -> Passes:
-    """Scores slices of executions' predictions, each of neighbours, taken all over the dataset."""
+def scoring(dataset: Dataset) -> Iterator[Figure]:
+    """What a prediction costs, read in shares of neighbours as the `score` command does, and scored one by one."""
+    folder = str(dataset.folder)
+    _, homes = judging.opened(folder)
     ids = [name for (name,) in dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
-    query = """SELECT execution_id, list_transform(steps, lambda s: step_text(s)) FROM executions JOIN programs
-        USING (program_id) WHERE executable AND execution_id BETWEEN $first AND $last ORDER BY 1"""
-    slices = []
-    for number in range(SLICES):
-        names = ids[number * len(ids) // SLICES :][:SLICE]
-        kept = dataset.rows(query, first=names[0], last=names[-1])[1]
-        told = [{"id": name, "predicted": steps[place % 2 :]} for place, (name, steps) in enumerate(kept)]
-        file = folder / f"predictions-{number}.jsonl"
-        file.write_text("".join(json.dumps(row) + "\n" for row in told))
-        slices.append((_Some(dataset, names), file))
-    return passes(lambda part: judge(*part), slices)
+    shares = [ids[number * len(ids) // SHARES :][: judging.PART] for number in range(SHARES)]
+    reading = passes(lambda share: list(judging._cases(dataset, share)), shares, 9)
+    cases = {case["execution_id"]: case for share in shares for case in judging._cases(dataset, share[:EACH])}
+    pairs = [
+        judging._filled(Pair(name, predicted(case, place), ()), case)
+        for place, (name, case) in enumerate(cases.items())
+    ]
+    options = Options()
+
+    def score(pair: Pair) -> object:
+        case = cases[pair.id]
+        mine = replace(options, rules=RULES[case["rules"]])
+        (lcs,) = lcs_of([pair], options.instances)
+        return scored(pair, lcs, homes.home(case["home"]).knowledge, start_of(case, homes), mine)
+
+    taken = passes(score, pairs, 9)
+    read = sum(map(len, shares))
+    yield rate("predictions' references read", read, reading, "a second")
+    yield rate("predictions scored", len(pairs), taken, "a second")
+    least, plain = (
+        ASKED * (a / read + b / len(pairs)) / 2
+        for a, b in ((reading.least, taken.least), (median(reading.totals), median(taken.totals)))
+    )
+    yield seconds(f"score of {ASKED:,} predictions by two processors, from these", Passes([plain], least), target=60.0)
 
 
-class _Some(Dataset):
-    """A dataset of which only some executions are asked."""
-
-    def __init__(self, dataset: Dataset, names: list[str]) -> None:
-        super().__init__(dataset.folder, dataset.manifest)
-        self._names = names
-
-    def rows(self, query, limit=None, **parameters):
-        if query.startswith("SELECT execution_id FROM executions WHERE executable"):
-            return ["execution_id"], [(name,) for name in self._names]
-        return super().rows(query, limit, **parameters)
+def predicted(case: dict[str, Any], place: int) -> tuple[Step, ...]:
+    """The case's own program; of every second one the first step is left out."""
+    return program_of(case, bindings_of(case["bindings"])).unbound().steps[place % 2 :]
 
 
 def drawn(number: int) -> list[tuple[Step, ...]]:
