@@ -6,6 +6,7 @@ import orjson
 import pytest
 
 import hearth
+from hearth.pipelines.publishing import _told_for_splits
 from hearth.pipelines.splits import Likeness, Told, groups, leakage, parts, roots, summary
 
 LONG = "take the milk out of the fridge and put it on the table"
@@ -88,6 +89,15 @@ def test_the_deal_does_not_depend_on_order():
     assert list(parts(programs, runs, 3, Likeness(programs))) == list(
         parts(programs[::-1], runs[::-1], 3, Likeness(programs[::-1]))
     )
+
+
+def test_steps_read_by_columns_are_those_of_the_rows(made):
+    folder = made.out / "publish"
+    found = {each.program_id: each.steps for each in _told_for_splits(folder)}
+    for row in hearth.load(made.out).sql("SELECT program_id, steps FROM programs").to_arrow_table().to_pylist():
+        names = [" ".join((step["action"], *(ref["name"] for ref in step["objects"]))) for step in row["steps"]]
+        assert [step.strip() for step in found.pop(row["program_id"])] == names
+    assert not found
 
 
 @pytest.fixture(scope="module")
