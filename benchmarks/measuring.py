@@ -6,7 +6,7 @@ ratio: it holds on other machines, where the figure itself does not.
 
 Virtual processors stand still for tenths of a second while others have their turn, which clocks of processor time count
 as work. `passes` therefore times every item of the work by itself, several times over: the sum of each item's least is
-what an undisturbed machine takes, given beside the median as `undisturbed`.
+what an undisturbed machine takes at the least (caches are warm by then), given beside the median as `undisturbed`.
 """
 
 from __future__ import annotations
