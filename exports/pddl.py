@@ -205,7 +205,9 @@ def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
 
 
 def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
-    """Which of the problem's doors, when closed, part which of its rooms, be it together with others of them."""
+    """Which of the problem's doors, when closed, part which of its rooms, be it together with others of them; and for
+    each door, from where one gets to which room beside it without going through it.
+    """
     home = task.world.home
     there = mask_of(home.index[node] for node in task.objects)
     doors = list(indices(home.doors & there))
@@ -219,6 +221,10 @@ def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
                              and _reached(home, room, mask_of(closed) & ~(1 << door)) >> other & 1)  # fmt: skip
     for door, room, other in sorted(found):
         yield f"(blocks {names[home.ids[door]]} {names[home.ids[room]]} {names[home.ids[other]]})"
+    for door in doors:
+        for room in rooms:
+            for other in indices(home.between[door] & there & _reached(home, room, 1 << door)):
+                yield f"(this-side {names[home.ids[door]]} {names[home.ids[room]]} {names[home.ids[other]]})"
 
 
 _TOGETHER = 3

@@ -6,8 +6,8 @@ start; all actions keep it so, and a room is found without following containers.
 the place that Grab remembers for one of them, and that what is watched must be on, which is an option.
 
 Closed doors stop a walk as in the engine (`Rules.doors`): a problem says by `blocks` which doors part which rooms. To a
-door that is closed between the character and the door's own room it walks on its own side; that is an action of its own
-here, `WalkToDoor`.
+door that is closed between the character and the door's own room it walks on its own side (`this-side`: from where, the
+room); that is an action of its own here, `WalkToDoor`.
 """
 
 from __future__ import annotations
@@ -67,6 +67,7 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
         *(f"    ({name} ?x - object)" for name in unary_predicates(knowledge)),
         *(f"    ({name} ?x - object ?y - object)" for name in binary_predicates()),
         "    (blocks ?d - object ?r - object ?q - object)",
+        "    (this-side ?d - object ?r - object ?q - object)",
         "  )",
         *written,
         ")",
@@ -134,7 +135,7 @@ class _Writer:
         yield from self._written(action, action.name, stopped)
 
     def to_door(self, walk: Action) -> list[str]:
-        """A walk to a closed door with its room behind it, no other in between: it ends in the room where it began."""
+        """A walk to a closed door with its room behind it, no other in between: it ends in the room on this side."""
         self._on_own_side = True
         lines = list(self._written(walk, TO_DOOR, [self._stopped_by_itself()]))
         self._on_own_side = False
@@ -217,7 +218,8 @@ class _Writer:
         """The condition under which a variable is the thing that a function finds."""
         thing = names[term.name]
         if self._on_own_side and term.name == "o":
-            return f"(and (between {thing} {variable}) (inside ?a {variable}))"
+            start = self._fresh("from")
+            return _some(start, f"(and (inside ?a {start}) (this-side {thing} {start} {variable}))")
         return f"(and (is-room {variable}) (or (= {thing} {variable}) (inside {thing} {variable})))"
 
     def _need(self, need: Requirement, subject: str) -> str:

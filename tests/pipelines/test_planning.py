@@ -5,14 +5,18 @@ from __future__ import annotations
 import pytest
 
 import hearth
-from hearth.exports.pddl import object_names, problem, tasks
-from hearth.exports.planning import DISPENSABLE, agreement, executed, helpful
+from hearth.exports.pddl import Task, object_names, problem, tasks
+from hearth.exports.planning import DISPENSABLE, agreement, executed, helpful, solve
 from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.exports.registry import export
 from hearth.kb import knowledge as kb
+from hearth.schemas.graph import Edge
 from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.bits import indices
+from hearth.simulation.edit import extended
 from hearth.simulation.engine import run
+from hearth.simulation.world import World
 
 MILK = "release:batch-1/file1_1"
 
@@ -83,6 +87,36 @@ def test_planner_and_engine_agree(ds):
     pytest.importorskip("up_fast_downward", reason="not installed: pip install up-fast-downward")
     found = agreement(ds, 4)
     assert (found.problems, found.solved, found.ran, found.reached) == (4, 4, 4, 4), found.disagreements
+
+
+def behind_two_doors(maple):
+    """Somebody in the bathroom, the door between bedroom and living room closed, which lies in the living room."""
+    room = {maple.classes[i]: maple.ids[i] for i in range(len(maple)) if maple.rooms >> i & 1}
+    inside = {edge.source: edge for edge in World.start(maple).edges() if edge.relation == "INSIDE"}
+    parted = {maple.index[room["bedroom"]], maple.index[room["living_room"]]}
+    door = next(maple.ids[i] for i in indices(maple.doors) if {*indices(maple.between[i])} == parted)
+    assert inside[door].target == room["living_room"]
+    (character,) = (maple.ids[i] for i in indices(maple.characters))
+    here = Edge(character, "INSIDE", room["bathroom"])
+    home = extended(maple, [], [here], [inside[character]], {door: ["CLOSED", "CLEAN"]})
+    return Task("far", World.start(home), (character, door, *room.values()), ((door, "OPEN", True),), ())
+
+
+def test_a_door_is_walked_to_from_any_room_on_this_side(maple):
+    text = problem(behind_two_doors(maple))
+    told = sorted(line.split() for line in text.splitlines() if "this-side" in line)
+    sides = {(start.rsplit("_", 1)[0], side.rstrip(")").rsplit("_", 1)[0]) for _, _, start, side in told}
+    near = {("bathroom", "bedroom"), ("bedroom", "bedroom")}
+    assert sides == near | {("kitchen", "living_room"), ("living_room", "living_room")}
+
+
+@pytest.mark.tools
+def test_a_plan_opens_a_door_two_rooms_away(maple):
+    pytest.importorskip("unified_planning", reason="not installed: pip install unified-planning up-fast-downward")
+    pytest.importorskip("up_fast_downward", reason="not installed: pip install up-fast-downward")
+    found = solve(behind_two_doors(maple))
+    assert found.plan and found.ran and found.reached, found.failure
+    assert [step.action for step in found.plan] == ["Walk", "Open"]
 
 
 @pytest.mark.tools
