@@ -29,10 +29,12 @@ def plan(dataset: Folder, problems: Problems = 200, as_json: output.Json = False
     """
     from dataclasses import asdict
 
+    from hearth.commands.waiting import bar
     from hearth.exports.planning import agreement
     from hearth.pipelines.dataset import Dataset
 
-    found = agreement(Dataset.open(dataset), problems)
+    with bar("problems") as seen:
+        found = agreement(Dataset.open(dataset), problems, seen)
     if as_json:
         output.emit(asdict(found))
     else:

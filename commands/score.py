@@ -270,12 +270,15 @@ def dataset(
     """
     import os
 
+    from hearth.commands.waiting import bar
     from hearth.pipelines.dataset import Dataset
     from hearth.pipelines.judging import judge
     from hearth.scoring.evaluate import Options
 
     options = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
-    scored = judge(Dataset.open(folder), file, split, part if split else "", options, workers or os.cpu_count() or 1)
+    with bar("shares scored") as seen:
+        count = workers or os.cpu_count() or 1
+        scored = judge(Dataset.open(folder), file, split, part if split else "", options, count, seen)
     if as_json:
         output.emit(_program_json(scored, options, by))
     else:

@@ -25,9 +25,11 @@ def verify(dataset: Folder, workers: Workers = 0, as_json: output.Json = False) 
     """
     import os
 
+    from hearth.commands.waiting import bar
     from hearth.pipelines.verify import verify as checked
 
-    found = checked(dataset, workers or os.cpu_count() or 1)
+    with bar("shares run again") as seen:
+        found = checked(dataset, workers or os.cpu_count() or 1, seen)
     if as_json:
         told = {"files": found.files, "rows": found.rows, "executions": found.executions}
         output.emit({**told, "faults": [output.diagnostic_json(fault) for fault in found.faults]})

@@ -18,6 +18,7 @@ from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.kb import knowledge as kb
 from hearth.pipelines.dataset import Dataset
+from hearth.pipelines.spread import Seen, unseen
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -87,13 +88,17 @@ class Agreement:
     disagreements: tuple[str, ...]
 
 
-def agreement(dataset: Dataset, problems: int) -> Agreement:
-    """Solve problems from all over a dataset and run the plans.
+def agreement(dataset: Dataset, problems: int, seen: Seen = unseen) -> Agreement:
+    """Solve problems from all over a dataset and run the plans; `seen` is told how many of them.
 
     Raises:
         HearthError: MISSING_FILE, when unified-planning or Fast Downward is not installed.
     """
-    return summary([solve(task) for task in chosen(dataset, problems)])
+    outcomes = []
+    for task in chosen(dataset, problems):
+        outcomes.append(solve(task))
+        seen(len(outcomes), problems)
+    return summary(outcomes)
 
 
 def chosen(dataset: Dataset, problems: int) -> Iterator[Task]:

@@ -12,7 +12,7 @@ from hearth.kb.hearing import understand
 from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
-from hearth.pipelines.spread import spread
+from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.pipelines.surroundings import RULES
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -31,7 +31,13 @@ Job = tuple[str, list[Pair], Options]
 
 
 def judge(
-    dataset: Dataset, file: Path, split: str = "", part: str = "", options: Options | None = None, workers: int = 1
+    dataset: Dataset,
+    file: Path,
+    split: str = "",
+    part: str = "",
+    options: Options | None = None,
+    workers: int = 1,
+    seen: Seen = unseen,
 ) -> list[Scored]:
     """Score a file of predictions for executions of a dataset; those without a prediction are missing.
 
@@ -47,6 +53,7 @@ def judge(
         part: of the split; one that begins so counts (`test` is all tests).
         options: how to score; each execution's own rules are used.
         workers: processes; the scores are the same for any number.
+        seen: told how many shares of them are scored.
 
     Returns:
         the scores by id; worlds are not kept.
@@ -59,20 +66,20 @@ def judge(
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
     named = _named(dataset)
     predicted = {pair.id: pair for pair in read_pairs(file, known, read_line, named)}
-    return _in_shares(dataset, [predicted[name] for name in wanted], options, workers)
+    return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
 
 
 def judge_steps(
     dataset: Dataset, predicted: Mapping[str, tuple[Step, ...]], options: Options | None = None
 ) -> list[Scored]:
     """Score programs for executions of a dataset, by execution id, in that order; as `judge`, in this process."""
-    return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted.items()], options, 1)
+    return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted.items()], options, 1, unseen)
 
 
-def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, workers: int) -> list[Scored]:
+def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, workers: int, seen: Seen) -> list[Scored]:
     shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
     jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
-    return [each for done in spread(_judged, jobs, workers) for each in done]
+    return [each for done in spread(_judged, jobs, workers, seen) for each in done]
 
 
 def _judged(job: Job) -> list[Scored]:

@@ -24,14 +24,31 @@ def begin() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def spread(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[Result]:
+Seen = Callable[[int, int], None]
+"""Told how many of how many are done."""
+
+
+def unseen(done: int, total: int) -> None:
+    """Nobody is told."""
+
+
+def spread(
+    function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, seen: Seen = unseen
+) -> Iterator[Result]:
     """The results in the order of the jobs, for any number of workers.
 
     Args:
         function: of a module, so that other processes find it.
         jobs: what it is called with, one after the other.
         workers: processes; below 2, or for a single job, all is done in this one.
+        seen: told how many jobs are done.
     """
+    for done, result in enumerate(_results(function, jobs, workers), 1):
+        seen(done, len(jobs))
+        yield result
+
+
+def _results(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[Result]:
     if workers < 2 or len(jobs) < 2:
         yield from map(function, jobs)
         return

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.spread import spread
+from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.home import Home
@@ -78,11 +78,16 @@ class Verdict:
     faults: tuple[Diagnostic, ...]
 
 
-def verify(path: str | Path, workers: int = 1) -> Verdict:
+def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     """Check a dataset from nothing but its folder; what is found is the same for any number of workers.
 
     Files first: where one is missing or other than the manifest says, or has other columns, nothing further is asked
     of the dataset, for its answers would mean nothing.
+
+    Args:
+        path: of the dataset.
+        workers: processes.
+        seen: told how many shares of the executions are run again.
 
     Raises:
         HearthError: the path is no dataset, or one that a newer version wrote.
@@ -97,7 +102,7 @@ def verify(path: str | Path, workers: int = 1) -> Verdict:
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong))
-    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers)))
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)))
 
 
 def _tables() -> tuple[str, ...]:
@@ -243,9 +248,9 @@ def cases(dataset: Dataset, low: str = "", high: str | None = None) -> Iterator[
             yield from batch.to_pylist()
 
 
-def _replays(dataset: Dataset, workers: int) -> Iterator[Diagnostic]:
+def _replays(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Diagnostic]:
     place, wrong = str(dataset.folder / "executions"), 0
-    for found in _replayed(dataset, workers):
+    for found in _replayed(dataset, workers, seen):
         for execution_id, difference in found:
             wrong += 1
             if wrong <= SHOWN:
@@ -258,12 +263,12 @@ Wrong = list[tuple[str, str]]
 """Executions that run otherwise than their rows say, and how."""
 
 
-def _replayed(dataset: Dataset, workers: int) -> Iterator[Wrong]:
+def _replayed(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Wrong]:
     _, rows = dataset.rows("SELECT execution_id FROM executions ORDER BY 1")
     names = [name for (name,) in rows]
     shares = [names[start : start + SHARE] for start in range(0, len(names), SHARE)]
     jobs = [(str(dataset.folder), share[0], share[-1]) for share in shares]
-    return spread(_replay, jobs, workers)
+    return spread(_replay, jobs, workers, seen)
 
 
 def _replay(job: tuple[str, str, str]) -> Wrong:
