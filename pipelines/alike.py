@@ -26,7 +26,7 @@ def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator
 
     told = _numbered(rows)
     lengths = [len(each) for each in told]
-    seen: dict[int, list[int]] = defaultdict(list)
+    seen: dict[str, list[int]] = defaultdict(list)
     for number in sorted(range(len(told)), key=lambda place: (lengths[place], place)):
         mine = told[number]
         rarest = _rarest(mine, least)
