@@ -135,7 +135,8 @@ def moved(
     acts = step is not None and (GESTURES.get(step.action, Gesture()).near or step.action == "Find")
     if goes or (acts and _gap(actor.spot, pose.box) > ARM):
         there = room_of(graph, what) or room
-        spot = ground.spot_for(pose.box, front, there, actor.spot if there == actor.room else None, others)
+        now = actor.spot if there == actor.room else None
+        spot = ground.spot_for(pose.box, front, there, now, others, outermost(what, places)[0])
         actor = replace(actor, spot=spot or actor.spot, room=there)
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
 
@@ -209,18 +210,24 @@ def _held(graph: EnvironmentGraph, me: int) -> set[str]:
 
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
     """The pose of a thing, and the way one comes at it: its own front, or that of what it is inside."""
-    pose, top = places.poses.get(node_id), node_id
-    inside = False
+    pose = places.poses.get(node_id)
+    top, inside = outermost(node_id, places)
+    outer = places.poses.get(top)
+    if pose is None:
+        return outer, outer.yaw if outer else None
+    return (outer if inside and outer else pose), (outer.yaw if outer else pose.yaw)
+
+
+def outermost(node_id: int, places: Places) -> tuple[int, bool]:
+    """The furniture that a thing is on or in, itself if it is on none; and whether it is inside something."""
+    top, inside = node_id, False
     for _ in range(6):
         spot = places.where.get(top)
         if spot is None or spot.how not in ("on", "inside") or spot.what not in places.poses:
             break
         inside |= spot.how == "inside"
         top = spot.what
-    outer = places.poses.get(top)
-    if pose is None:
-        return outer, outer.yaw if outer else None
-    return (outer if inside and outer else pose), (outer.yaw if outer else pose.yaw)
+    return top, inside
 
 
 def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:

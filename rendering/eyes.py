@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from hearth.kb.knowledge import Knowledge, default
 from hearth.rendering.acting import Actor, cast, posed
 from hearth.rendering.camera import Camera, follow, top_view
-from hearth.rendering.ground import Ground
 from hearth.rendering.modalities import render
 from hearth.rendering.places import Places
 from hearth.rendering.scene import Scene
 from hearth.rendering.snapshots import advanced, check_geometry, scene_at
 from hearth.rendering.staging import stage
+from hearth.rendering.swept import ground_of
 from hearth.rendering.video import FIRST, THIRD, first_person
 from hearth.rendering.viewpoints import home_box
 from hearth.schemas.graph import EnvironmentGraph
@@ -55,7 +55,7 @@ class Eyes:
         check_geometry(home)
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
         self.prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
-        self.ground = Ground.of(self.prepared.rooms.values(), home.nodes)
+        self.ground = ground_of(self.prepared)
         self.places = Places.start(home, self.prepared.knowledge)
         self.actors: tuple[Actor, ...] = ()
         self._scene: Scene | None = None

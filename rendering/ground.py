@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import cos, radians, sin
 from random import Random
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,16 @@ IGNORED = frozenset({"floor", "ceiling", "mat", "carpet", "doorjamb", "window", 
 NEAR, FAR = 0.32, 1.1
 """Metres from a thing at which one likes to stand, and at which one can hardly use it."""
 
+SIDE = 0.26
+"""Metres from a person's middle within which a door touches it."""
+
 Spot = tuple[float, float]
+Points = NDArray[np.floating[Any]]
+
+
+def nothing(node: int) -> Points:
+    """What passes over the floor while a thing without doors opens."""
+    return np.zeros((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,15 +45,17 @@ class Ground:
         centers: (n, 2) x and z of the cells one can stand on, row by row.
         rooms: (n,) id of the room each lies in.
         level: height of the floor.
+        sweeps: gives, for a node's id, (n, 2) x and z of what its doors or drawers pass over.
     """
 
     origin: Spot
     centers: NDArray[np.float64]
     rooms: NDArray[np.int64]
     level: float
+    sweeps: Callable[[int], Points] = nothing
 
     @classmethod
-    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node]) -> Ground:
+    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Points] = nothing) -> Ground:
         """The free floor of rooms with boxes, between things with boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
         if not known:
@@ -61,7 +73,7 @@ class Ground:
         free = eroded(free)
         i, j = np.nonzero(free)
         centers = np.column_stack((low[0] + (i + 0.5) * CELL, low[2] + (j + 0.5) * CELL))
-        return cls((low[0], low[2]), centers, inside[i, j], low[1])
+        return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps)
 
     def spot_in(self, room: int, taken: Iterable[Spot] = ()) -> Spot | None:
         """Where one stands in a room: the free place nearest to the middle of its free floor."""
@@ -82,7 +94,7 @@ class Ground:
         return float(x), float(z)
 
     def spot_for(
-        self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = ()
+        self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
     ) -> Spot | None:
         """Where one stands to use a thing: near it, before its front if it has one, not far from where one is.
 
@@ -92,6 +104,7 @@ class Ground:
             room: only there.
             now: where one is.
             taken: where others are.
+            opens: the node whose doors pass beside one: the thing's, or that of what it is in.
         """
         mine = self.centers[self.rooms == room]
         if not len(mine):
@@ -108,8 +121,16 @@ class Ground:
             cost += np.maximum(np.abs(offset @ np.array((front[1], -front[0]))) - 0.2, 0) * 0.6
         if now is not None:
             cost += np.linalg.norm(mine - np.array(now), axis=1) * 0.08
-        x, z = mine[int((cost + _crowding(mine, taken)).argmin())]
+        x, z = mine[int((cost + _crowding(mine, taken) + self._hit(mine, opens)).argmin())]
         return float(x), float(z)
+
+    def _hit(self, centers: NDArray[np.float64], opens: int) -> NDArray[np.float64]:
+        """A cost for standing where a door would hit one."""
+        passed = self.sweeps(opens)
+        if not len(passed):
+            return np.zeros(len(centers))
+        near = np.linalg.norm(centers[:, None] - passed, axis=2).min(axis=1) < SIDE
+        return np.where(near, 2.0, 0.0)
 
 
 def is_in_the_way(node: Node, floor: float) -> bool:

@@ -20,6 +20,7 @@ from hearth.rendering.retake import Take, take
 from hearth.rendering.scene import Scene
 from hearth.rendering.shot import Shot, shoot
 from hearth.rendering.staging import Stage, stage
+from hearth.rendering.swept import ground_of
 from hearth.rendering.things import Thing
 from hearth.rendering.variation import PLAIN, Variation, scattered
 from hearth.rendering.viewpoints import best_view, home_box, room_views
@@ -176,7 +177,7 @@ def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
 
 def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, how: Variation) -> Iterator[Moment]:
     """The moments of an execution, their scenes made of moving things only."""
-    ground = Ground.of(prepared.rooms.values(), home.nodes)
+    ground = ground_of(prepared)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
     places = Places.start(home, prepared.knowledge)
     actors: tuple[Actor, ...] = ()

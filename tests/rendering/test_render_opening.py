@@ -87,3 +87,14 @@ def test_a_door_turns_about_its_hinge():
         ways.append(high[2])
     assert ways == sorted(ways), "it swings towards where it is when it is open"
     assert high == pytest.approx((2.07, 2.0, 0.9), abs=0.09), "and ends there"
+
+
+def test_nobody_stands_where_a_door_passes_over_the_floor(staged):
+    actor = staged.moments[2].acting
+    for frame in frames(staged, FPS):
+        if frame.tick == 2:
+            corners = placed(frame.scene.find(FRIDGE)).corners.reshape(-1, 3)
+            gaps = np.linalg.norm(corners[corners[:, 1] < 1.7][:, (0, 2)] - actor.spot, axis=1)
+            assert gaps.min() > 0.2, "of the shoulders"
+    front = HOME.nodes[2].box.center[2] + HOME.nodes[2].box.size[2] / 2
+    assert actor.spot[1] - front < 0.6, "yet it is beside the door, not beyond it"
