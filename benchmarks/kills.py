@@ -17,6 +17,8 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from contextlib import suppress
+from math import inf
 from pathlib import Path
 
 CLI = Path(__file__).resolve().parents[1] / "cli.py"
@@ -60,27 +62,30 @@ def differing(one: Path, other: Path) -> list[str]:
 def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple[int, int, list[str]]:
     """Kill builds.
 
-    A moment is drawn as a place among the files that a build makes, not in seconds: machines stand still for longer
-    than a build takes, and every stage is to be hit.
+    A moment is drawn as a number of files written, of those that an undisturbed build writes, not in seconds: machines
+    stand still for longer than a build takes. A build that goes on from others writes less, and so gets to its end.
 
     Returns:
         Kills that met a running build, builds that got to their end, and what differed in them.
     """
     whole, out = folder / "undisturbed", folder / "killed"
-    finished(options, whole)
-    total, moments = made(whole), random.Random(seed)
+    process = started(options, whole)
+    total, moments = written(process, whole), random.Random(seed)
+    if process.wait():
+        raise SystemExit(f"the undisturbed build ended with status {process.returncode}")
     kills = ends = 0
     faults: list[str] = []
     while kills < times:
         process = started(options, out)
-        met = reached(process, out, moments.randint(made(out), total))
-        time.sleep(moments.uniform(0, LATER))
-        if met and process.poll() is None:
+        asked = moments.randint(0, total)
+        if written(process, out, asked) >= asked:
+            time.sleep(moments.uniform(0, LATER))
+        if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             kills += 1
             continue
-        if process.wait():
+        if process.returncode:
             raise SystemExit(f"a build ended with status {process.returncode} in {out}")
         ends += 1
         faults += differing(whole, out)
@@ -94,18 +99,27 @@ LATER = 0.3
 """Seconds at most from a file's appearance to the kill: what is between two files is to be hit, too."""
 
 
-def made(out: Path) -> int:
-    """How many files there are, half-written ones too."""
-    return sum(len(files) for _, _, files in os.walk(out))
-
-
-def reached(process: subprocess.Popen[bytes], out: Path, files: int) -> bool:
-    """Wait until a build has made so many files; False if it ends before."""
-    while made(out) < files:
-        if process.poll() is not None:
-            return False
+def written(process: subprocess.Popen[bytes], out: Path, upto: float = inf) -> int:
+    """How many files a build has written anew, half-written ones too, once it is over or has written so many."""
+    before, number = files(out), 0
+    while number < upto and process.poll() is None:
         time.sleep(0.01)
-    return True
+        now = files(out)
+        number += len(now - before)
+        before = now
+    return number
+
+
+def files(out: Path) -> set[tuple[str, int, int]]:
+    """All files by name, number and time of change."""
+    found = set()
+    for folder, _, names in os.walk(out):
+        for name in names:
+            path = os.path.join(folder, name)  # noqa: PTH118 - thousands a second
+            with suppress(FileNotFoundError):
+                told = os.stat(path)  # noqa: PTH116
+                found.add((path, told.st_ino, told.st_mtime_ns))
+    return found
 
 
 def main() -> int:
