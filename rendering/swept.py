@@ -37,7 +37,7 @@ def ground_of(prepared: Stage) -> Ground:
 def swept(prepared: Stage, node: Node, floor: float) -> Points:
     """(n, 2) x and z of what leaves a thing's box while it opens; in steps of `GRID` metres."""
     assert node.box is not None
-    opened = replace(node, states=frozenset({"OPEN"}))
+    opened = replace(node, states=("OPEN",))
     (x, _, z), (w, _, d) = node.box.center, node.box.size
     parts = []
     for ajar in AJAR:
