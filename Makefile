@@ -35,7 +35,7 @@ SHARED   := version.py $(call tree,schemas) \
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
 
-.PHONY: all full mini frames setup test test-tools test-all lint docs bench lock wheel clean distclean help $(STAGES)
+.PHONY: all full mini frames setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -92,6 +92,9 @@ test-tools: .venv/.tools  ## tests that hold our files up to other people's tool
 
 test-all: .venv/.tools  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
+
+coverage: .venv/.tools  ## which lines and branches the tests of `make test` go through, rendering apart
+	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools" --cov --cov-report=term
 
 lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff check .

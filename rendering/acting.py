@@ -223,7 +223,9 @@ def outermost(node_id: int, places: Places) -> tuple[int, bool]:
     top, inside = node_id, False
     for _ in range(6):
         spot = places.where.get(top)
-        if spot is None or spot.how not in ("on", "inside") or spot.what not in places.poses:
+        if spot is None or spot.how not in ("on", "inside"):
+            break
+        if spot.what not in places.poses or spot.what in places.building:
             break
         inside |= spot.how == "inside"
         top = spot.what

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import cos, radians, sin
 from typing import NamedTuple
 
@@ -53,6 +54,11 @@ class Places:
     where: Mapping[int, Where]
     poses: Mapping[int, Pose]
     knowledge: Knowledge
+
+    @cached_property
+    def building(self) -> frozenset[int]:
+        """Floors, walls and the like, which nobody walks up to for what stands on them."""
+        return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
 
     @classmethod
     def start(cls, home: EnvironmentGraph, knowledge: Knowledge) -> Places:

@@ -19,7 +19,7 @@ from hearth.simulation.engine import run
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
-ROOM, ME, FRIDGE, HALL, JAMB, DOOR = range(1, 7)
+ROOM, ME, FRIDGE, HALL, JAMB, DOOR, FLOOR = range(1, 8)
 FPS = 20.0
 
 
@@ -32,8 +32,9 @@ HOME = EnvironmentGraph(
         node(ROOM, "kitchen", "Rooms", (0, 1.3, 0), (5, 2.6, 4), yaw=None),
         node(ME, "character", "Characters", (1.6, 0.85, 1.4), (0.4, 1.7, 0.4)),
         node(FRIDGE, "fridge", "Appliances", (0, 0.9, -1.6), (0.65, 1.8, 0.65), ("CAN_OPEN",), states=("CLOSED",)),
+        node(FLOOR, "floor", "Floor", (0, 0, 0), (5, 0, 4), yaw=90.0),
     ),
-    (Edge(ME, "INSIDE", ROOM), Edge(FRIDGE, "INSIDE", ROOM)),
+    (Edge(ME, "INSIDE", ROOM), Edge(FRIDGE, "INSIDE", ROOM), Edge(FRIDGE, "ON", FLOOR)),
 )
 
 
