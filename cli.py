@@ -107,7 +107,7 @@ def load(name: str) -> Any:
 
 
 class Commands(TyperGroup):
-    """The commands of `COMMANDS`, each loaded when it is called; turns bad input into messages and status 1."""
+    """The commands of `COMMANDS`, each loaded when it is called; turns bad input into messages and a status."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Every name, in the order of the table."""
@@ -138,7 +138,7 @@ class Commands(TyperGroup):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; bad input is printed and ends with status 1."""
+        """Run the command; bad input is printed and ends with status 1, a name that nothing has with status 2."""
         try:
             return super().invoke(ctx)
         except (BrokenPipeError, typer.Abort, typer.Exit):
@@ -179,7 +179,12 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
         output.emit({"errors": [output.diagnostic_json(fault) for fault in faults]})
     else:
         output.report(faults)
-    raise typer.Exit(output.BAD_INPUT) from error
+    asked = all(fault.code in NAMED and not fault.file for fault in faults)
+    raise typer.Exit(output.USAGE if asked else output.BAD_INPUT) from error
+
+
+NAMED = (Code.UNKNOWN_HOME, Code.UNKNOWN_ID, Code.UNSUPPORTED_FILE)
+"""What is wrong with a name that an option was given, when no file is at fault."""
 
 
 def _of_the_machine(error: OSError) -> Diagnostic:

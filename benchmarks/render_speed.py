@@ -35,7 +35,7 @@ from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.simulation.homes import catalog
 
 Picture = Callable[[int, Scene], object]
-PASSES, PIECED = 4, 12
+PASSES, PIECED = 3, 8
 """How often pictures are taken by all threads, and piece by piece."""
 SIZE, SMALL = (640, 480), (320, 240)
 OBJECTS = 10

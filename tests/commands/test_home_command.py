@@ -61,7 +61,7 @@ def test_convert_writes_graphs_and_ids(tmp_path):
 )
 def test_bad_input_is_one_clear_error(arguments, code):
     result = run(*arguments, "--json")
-    assert result.exit_code == 1
+    assert result.exit_code == (2 if code == "UNKNOWN_HOME" else 1)
     assert [fault["code"] for fault in json.loads(result.stdout)["errors"]] == [code]
 
 
@@ -121,7 +121,7 @@ def _copied(tmp_path):
 )
 def test_orders_that_make_no_sense_are_refused(tmp_path, order, code):
     result = run("edit", "maple", *order, "--out", tmp_path / "x.json", "--json")
-    assert result.exit_code == 1
+    assert result.exit_code == (2 if code == "UNKNOWN_ID" else 1)
     (fault,) = json.loads(result.stdout)["errors"]
     assert fault["code"] == code and fault["suggestion"]
     assert not (tmp_path / "x.json").exists()

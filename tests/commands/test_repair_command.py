@@ -53,7 +53,7 @@ def test_json_says_the_same(monkeypatch):
 
 def test_an_unknown_kind_is_told_with_those_there_are():
     result = repair(GOLDEN / "watch_tv.txt", "--perturb", "colour")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "there is no perturbation `colour`" in result.output
     assert "at_reach" in result.output
 

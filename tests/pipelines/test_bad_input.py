@@ -114,13 +114,13 @@ def test_special_blocks_that_are_known_are_replaced(write, built):
 
 def test_a_home_that_there_is_not(write, tmp_path):
     result = invoke("build", write("a.txt", PROGRAM), "--out", tmp_path / "out", "-j", 1, "--home", "mapel")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "did you mean `maple`?" in result.output
 
 
 def test_a_stage_that_there_is_not(tmp_path):
     result = invoke("build", "--out", tmp_path / "out", "--only", "polish")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "stages are ingest" in result.output
 
 

@@ -1,0 +1,100 @@
+"""Commands that read a published dataset, as users give them: what they print, their JSON, and their exit status."""
+
+import json
+import shutil
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth import cli
+
+SQL = "SELECT origin, count(*) AS n FROM programs GROUP BY origin ORDER BY origin"
+
+
+def run(*words):
+    return CliRunner().invoke(cli.app, [str(word) for word in words], catch_exceptions=True)
+
+
+def told(*words):
+    result = run(*words, "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+@pytest.fixture(scope="module")
+def dataset(made):
+    return made.out / "publish"
+
+
+@pytest.fixture
+def changed(dataset, tmp_path):
+    return shutil.copytree(dataset, tmp_path / "changed")
+
+
+def test_a_question_is_answered_as_a_table_and_for_machines(dataset):
+    rows = told("query", dataset, SQL)
+    assert {row["origin"] for row in rows} >= {"crowd", "augmented"}
+    shown = run("query", dataset, SQL)
+    assert shown.exit_code == 0
+    assert all(str(row["n"]) in shown.stdout for row in rows)
+
+
+def test_only_so_many_rows_are_printed_and_that_is_said(dataset):
+    shown = run("query", dataset, "SELECT program_id FROM programs ORDER BY ALL", "--rows", "1")
+    assert shown.exit_code == 0
+    assert "more" in shown.output or "of" in shown.output
+
+
+@pytest.mark.parametrize("sql", ["SELECT nothing FROM programs", "CREATE TABLE t (a INT)", "COPY programs TO 'x.csv'"])
+def test_a_wrong_or_a_writing_question_is_refused(dataset, sql):
+    assert run("query", dataset, sql).exit_code in (1, 2)
+
+
+def test_a_dataset_is_as_it_says(dataset):
+    assert told("verify", dataset, "-j", "1")["faults"] == []
+    assert run("verify", dataset, "-j", "1").exit_code == 0
+
+
+def test_a_changed_byte_is_named(changed):
+    part = next((changed / "executions").glob("*.parquet"))
+    content = bytearray(part.read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    part.write_bytes(content)
+    result = run("verify", changed, "-j", "1")
+    assert result.exit_code == 1
+    assert part.name in result.output
+
+
+def test_two_datasets_that_are_the_same_differ_in_nothing(dataset, changed):
+    assert run("diff", dataset, changed).exit_code == 0
+    assert not any(table["changed"] or table["added"] or table["removed"] for table in told("diff", dataset, changed))
+
+
+def test_what_was_augmented_is_told_beside_the_thesis(dataset, tmp_path):
+    figures = told("augmented", dataset)
+    assert figures
+    shown = run("augmented", dataset, "--out", tmp_path / "figures")
+    assert shown.exit_code == 0
+    assert "13.26" in shown.stdout, "table 5.1"
+    assert any((tmp_path / "figures").iterdir())
+
+
+@pytest.mark.parametrize("form", ["jsonl", "code", "nl"])
+def test_a_dataset_is_exported(dataset, tmp_path, form):
+    result = run("export", dataset, "--format", form, "--out", tmp_path / form, "--limit", "3")
+    assert result.exit_code == 0, result.output
+    assert any(path.is_file() for path in (tmp_path / form).rglob("*"))
+
+
+def test_an_unknown_format_is_refused_with_those_there_are(dataset, tmp_path):
+    result = run("export", dataset, "--format", "nothing", "--out", tmp_path / "x")
+    assert result.exit_code == 2
+    assert "jsonl" in result.output
+
+
+@pytest.mark.parametrize("command", ["query", "verify", "augmented", "report"])
+def test_no_dataset_is_said_to_be_none(tmp_path, command):
+    more = ["SELECT 1"] if command == "query" else []
+    result = run(command, tmp_path / "nowhere", *more)
+    assert result.exit_code in (1, 2)
+    assert "nowhere" in result.output + str(result.exception)
