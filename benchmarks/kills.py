@@ -18,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import pairwise
 from math import inf
 from pathlib import Path
 
@@ -60,39 +61,48 @@ def differing(one: Path, other: Path) -> list[str]:
 
 
 def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple[int, int, list[str]]:
-    """Kill builds.
+    """Kill builds, `CHAIN` times on the way of each to its end.
 
-    A moment is drawn as a number of files written, of those that an undisturbed build writes, not in seconds: machines
-    stand still for longer than a build takes. A build that goes on from others writes less, and so gets to its end.
+    Moments are numbers of files written, of those that an undisturbed build writes, not seconds: machines stand still
+    for longer than a build takes. Those of one build are spread over all of it.
 
     Returns:
         Kills that met a running build, builds that got to their end, and what differed in them.
     """
     whole, out = folder / "undisturbed", folder / "killed"
     process = started(options, whole)
-    total, moments = written(process, whole), random.Random(seed)
+    total, numbers = written(process, whole), random.Random(seed)
     if process.wait():
         raise SystemExit(f"the undisturbed build ended with status {process.returncode}")
     kills = ends = 0
     faults: list[str] = []
     while kills < times:
-        process = started(options, out)
-        asked = moments.randint(0, total)
-        if written(process, out, asked) >= asked:
-            time.sleep(moments.uniform(0, LATER))
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-            kills += 1
-            continue
-        if process.returncode:
-            raise SystemExit(f"a build ended with status {process.returncode} in {out}")
+        moments = [0, *sorted(numbers.randint(0, total) for _ in range(min(CHAIN, times - kills)))]
+        kills += sum(hit(options, out, after - before, numbers) for before, after in pairwise(moments))
+        finished(options, out)
         ends += 1
         faults += differing(whole, out)
         shutil.rmtree(out)
         print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", flush=True)
-    finished(options, out)
-    return kills, ends + 1, faults + differing(whole, out)
+    return kills, ends, faults
+
+
+CHAIN = 5
+"""How often a build is killed before it may go on to its end."""
+
+
+def hit(options: Sequence[str], out: Path, files: int, numbers: random.Random) -> bool:
+    """Kill a build once it has written so many files, or a moment later; gives whether it was still at work."""
+    process = started(options, out)
+    if written(process, out, files) >= files:
+        time.sleep(numbers.uniform(0, LATER))
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return True
+    if process.returncode:
+        raise SystemExit(f"a build ended with status {process.returncode} in {out}")
+    return False
 
 
 LATER = 0.3

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hearth.rendering.meshes.look import Look, Recipe
 from hearth.rendering.meshes.mesh import Mesh, join, shift, stretch, turn
 from hearth.rendering.meshes.paint import BRIGHT_COLORS, DARK, OAK, SOFT_COLORS, STEEL, Paint
-from hearth.rendering.meshes.shapes import arc, block, box, cushion, cylinder, lathe, rod, tube
+from hearth.rendering.meshes.shapes import arc, block, box, cushion, cylinder, lathe, prism, rod, tube
 from hearth.rendering.meshes.storage import bottom
 
 STRAW = Paint("#d8b45a", "wood", 8.0)
@@ -68,29 +68,18 @@ def duster(look: Look) -> Mesh:
 
 
 def dustpan(look: Look) -> Mesh:
-    """A dustpan with its mouth towards -z."""
+    """A dustpan with its mouth towards +z, and its brush lying in it."""
     w, h, d = look.size
     paint = look.tint(Paint(shine=0.3), BRIGHT_COLORS)
-    deep = d * 0.6
-    z0 = -d / 2
-    parts = [
-        block(-w / 2, w / 2, 0, 0.006, z0, z0 + deep, paint),
-        block(-w / 2, w / 2, 0, h * 0.8, z0 + deep - 0.01, z0 + deep, paint),
-        *(
-            block(
-                s * w / 2 - (0.006 if s > 0 else 0),
-                s * w / 2 + (0.006 if s < 0 else 0),
-                0,
-                h * 0.5,
-                z0,
-                z0 + deep,
-                paint,
-            )
-            for s in (-1, 1)
-        ),
-        rod((0, h * 0.5, z0 + deep), (0, h * 0.9, d / 2 - 0.01), 0.014, paint, sides=8),
-    ]
-    return join(parts)
+    back, front, thin = -d * 0.12, d / 2, 0.006
+    outline = [(back, 0), (front, 0), (front, thin * 2), (back + d * 0.2, h * 0.55), (back, h * 0.6)]
+    wall = turn(prism(outline, thin, paint), "y", -90)
+    sides = [shift(wall, x=s * (w / 2 - thin / 2)) for s in (-1, 1)]
+    pan = block(-w / 2, w / 2, 0, thin, back, front, paint) + block(-w / 2, w / 2, 0, h * 0.6, back, back + thin, paint)
+    grip = rod((0, h * 0.4, back), (0, h * 0.6, -d / 2 + 0.012), 0.012, paint, sides=8)
+    wood = block(-w * 0.36, w * 0.36, h * 0.45, h * 0.7, d * 0.12, d * 0.2, OAK)
+    hair = block(-w * 0.34, w * 0.34, thin, h * 0.45, d * 0.11, d * 0.23, Paint("#2f2f33", "carpet", 20.0))
+    return join([pan, *sides, grip, wood, hair])
 
 
 def sponge(look: Look) -> Mesh:

@@ -231,20 +231,19 @@ def shredder(look: Look) -> Mesh:
 
 
 def headset(look: Look) -> Mesh:
-    """Headphones lying down: a band and two pads."""
+    """Headphones lying down: a band in a bow towards -z, and an ear cup at each of its ends."""
     w, h, d = look.size
-    band = tube(arc((0, h * 0.5, 0), w * 0.42, 0, 180, "xz"), h * 0.12, DARK, 6)
-    band = shift(band, z=-d * 0.2)
-    pads = [
-        cushion(
-            (s * w * 0.42, h * 0.5, -d * 0.15),
-            (w * 0.16, h, d * 0.4),
-            look.tint(BLACK, ("#26282c", "#c8463c", "#e6e6e4")),
-            0.9,
-        )
-        for s in (-1, 1)
-    ]
-    return turn(join([band, *pads]), "y", 180)
+    thick = min(h * 0.2, 0.012)
+    r = min(w / 2, d * 0.62) - thick
+    front = d / 2 - r * 0.35
+    band = tube(arc((0, h * 0.5, front), r, 180, 360, "xz", 12), thick, DARK, 6)
+    paint = look.tint(BLACK, ("#26282c", "#c8463c", "#e6e6e4"))
+    cups = []
+    for side in (-1, 1):
+        cup = turn(cylinder((0, 0, 0), min(h * 0.5, r * 0.42), r * 0.22, paint, sides=16), "z", 90 * side)
+        ear = turn(cylinder((0, 0, 0), min(h * 0.4, r * 0.34), r * 0.3, DARK, sides=16), "z", 90 * side)
+        cups += [shift(cup, side * (r + thick), h * 0.5, front), shift(ear, side * (r - thick), h * 0.5, front)]
+    return join([band, *cups])
 
 
 def wall_switch(look: Look) -> Mesh:

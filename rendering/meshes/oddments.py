@@ -21,7 +21,7 @@ from hearth.rendering.meshes.paint import (
     WOODS,
     Paint,
 )
-from hearth.rendering.meshes.shapes import arc, ball, block, box, cushion, cylinder, lathe, panel, rod, tube
+from hearth.rendering.meshes.shapes import arc, ball, block, box, cushion, cylinder, lathe, panel, prism, rod, tube
 from hearth.rendering.meshes.storage import bottom
 
 
@@ -62,18 +62,21 @@ def suitcase(look: Look) -> Mesh:
 
 
 def coat_rack(look: Look) -> Mesh:
-    """A stand with hooks and a coat."""
+    """A stand on four feet with hooks around its top, and a coat on one of them."""
     w, h, d = look.size
     r = min(w, d) / 2
-    pole = cylinder((0, 0, 0), r * 0.8, 0.03, OAK) + cylinder((0, 0.03, 0), 0.02, h - 0.03, OAK, sides=8)
-    hooks = [turn(rod((0, h * 0.9, 0), (0, h * 0.97, r * 0.8), 0.01, OAK, sides=6), "y", 60 * k) for k in range(6)]
-    coat = cushion(
-        (0, h * 0.66, r * 0.55),
-        (r * 1.1, h * 0.5, r * 0.5),
-        look.tint(Paint("#ffffff", "fabric", 4.0), FABRIC_COLORS),
-        0.7,
-    )
-    return join([pole, *hooks, coat])
+    pole = cylinder((0, 0.05, 0), 0.022, h - 0.07, OAK, sides=8) + ball((0, h - 0.025, 0), 0.025, OAK, steps=3)
+    feet = [turn(rod((0, 0.12, 0), (0, 0.015, r * 0.95), 0.016, OAK, sides=6), "y", 45 + 90 * k) for k in range(4)]
+    hook = tube([(0, h * 0.9, 0), (0, h * 0.89, r * 0.5), (0, h * 0.95, r * 0.85)], 0.011, OAK, 6)
+    hooks = [turn(hook, "y", 60 * k) for k in range(6)]
+    paint = look.tint(Paint("#ffffff", "fabric", 4.0), FABRIC_COLORS)
+    hang, wide = r * 0.62, min(r * 0.95, 0.2)
+    half = [(wide, h * 0.36), (wide * 0.62, h * 0.8), (0.03, h * 0.89)]
+    body = [*half, *((-x, y) for x, y in reversed(half))]
+    arms = [
+        rod((s * wide * 0.6, h * 0.79, hang), (s * wide * 1.02, h * 0.5, hang), 0.035, paint, sides=8) for s in (-1, 1)
+    ]
+    return join([pole, *feet, *hooks, shift(prism(body, 0.1, paint), z=hang), *arms])
 
 
 def saucepan(look: Look) -> Mesh:
