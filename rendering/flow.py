@@ -11,8 +11,10 @@ from hearth.rendering.camera import Camera
 from hearth.rendering.maps import HORIZON, motion
 from hearth.rendering.meshes.mesh import rotation
 from hearth.rendering.scene import Scene
-from hearth.rendering.shot import Shot, shoot_after
+from hearth.rendering.shading import chunks
+from hearth.rendering.shot import Shot, everywhere, shoot_after
 from hearth.rendering.things import Thing, placed
+from hearth.rendering.threads import each
 
 Floats = NDArray[np.floating[Any]]
 
@@ -27,13 +29,18 @@ def flow(shot: Shot, after: Shot) -> Floats:
         shot: a picture.
         after: the next one, of any camera of the same size.
     """
-    ids, later = (_ids(one) for one in (shot, after))
+    ids, later = each(_ids, (shot, after))
     far = np.where(after.hits.triangle >= 0, after.distance, np.float32(HORIZON))
     out = np.empty((len(shot.rays), 2), np.float32)
     size = (shot.camera.width, shot.camera.height)
-    shifts, first = _shifts(shot, after), shot.geometry.first
+    shifts, first, frame = _shifts(shot, after), shot.geometry.first, _frame(after.camera)
     distance, triangle, u, v = shot.hits
-    motion(shot.rays, distance, triangle, u, v, shifts, first, _frame(after.camera), *size, ids, later, far, out)
+
+    def work(chunk: NDArray[np.int32]) -> None:
+        part = int(chunk[0]), int(chunk[-1]) + 1
+        motion(shot.rays, distance, triangle, u, v, shifts, first, frame, *size, *part, ids, later, far, out)
+
+    each(work, chunks(everywhere(len(out))))
     return shot.image(out)
 
 

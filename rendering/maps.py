@@ -63,9 +63,11 @@ TOLERANCE = np.float32(0.02)
 @kernel
 def motion(
     rays: Floats, distance: Floats, triangle: Ints, u: Floats, v: Floats, shifts: Floats, first: int, frame: Floats,
-    width: int, height: int, ids: Ints, later: Ints, far: Floats, out: Floats,
+    width: int, height: int, start: int, stop: int, ids: Ints, later: Ints, far: Floats, out: Floats,
 ) -> None:  # fmt: skip
     """Fill in (N, 2) by how many pixels points move right and down; NaN where they are not seen afterwards.
+
+    Only the pixels from `start` to `stop` are filled in.
 
     Args:
         rays, distance, triangle, u, v: of the first picture.
@@ -77,7 +79,7 @@ def motion(
         out: filled.
     """
     focal = frame[12]
-    for i in range(len(triangle)):
+    for i in range(start, stop):
         t, away = triangle[i], HORIZON
         if t >= 0:
             away = distance[i]
