@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import connection
 from multiprocessing.context import BaseContext
 from typing import TypeVar
 
@@ -20,8 +23,19 @@ def context() -> BaseContext:
 
 
 def begin() -> None:
-    """Let a worker end without a word when its build is stopped at the keyboard: the build itself says what to do."""
+    """Let a worker end with its build: without a word when that is stopped at the keyboard, since the build itself says
+    what to do, and at once when it is killed.
+    """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Workers wait for work on a pipe that each of them holds open: nothing else tells them that none will come."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        connection.wait([parent.sentinel])
+        os._exit(1)
 
 
 Seen = Callable[[int, int], None]

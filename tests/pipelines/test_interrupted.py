@@ -57,6 +57,43 @@ def test_a_worker_that_is_killed_is_named_and_its_partition_made_again(tmp_path,
         assert run_stage(stage, settings, workers).manifest.counts.through == 100
 
 
+ORPHANS = """
+import os, sys, time
+from pathlib import Path
+from hearth.pipelines.spread import spread
+
+def work(name):
+    Path(name).write_text(str(os.getpid()))
+    time.sleep(600)
+
+if __name__ == "__main__":
+    list(spread(work, sys.argv[1:], 2))
+"""
+
+
+def test_workers_end_with_a_build_that_is_killed(tmp_path):
+    (tmp_path / "orphans.py").write_text(ORPHANS)
+    told = [tmp_path / "one", tmp_path / "two"]
+    build = subprocess.Popen([sys.executable, str(tmp_path / "orphans.py"), *map(str, told)])
+    assert soon(lambda: all(path.exists() and path.read_text() for path in told))
+    build.kill()
+    build.wait()
+    assert soon(lambda: not any(alive(int(path.read_text())) for path in told))
+
+
+def soon(holds):
+    """Whether something comes true within a minute."""
+    return any(holds() or time.sleep(0.05) for _ in range(1200))
+
+
+def alive(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 @pytest.mark.slow
 def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
     homes = ["--homes", made.settings.homes_folder, "--home", "cabin"]
