@@ -216,10 +216,13 @@ def visible(
     Example:
       python cli.py render-visible --count 30 --seed 7
     """
+    from hearth.commands.waiting import bar, counted
     from hearth.rendering.visibility import shares
 
     found, missed, programs = [], [], 0
-    for execution, looks in _looked(sources or [], count, seed):
+    with bar("programs looked at") as seen:
+        looked = list(counted(_looked(sources or [], count, seed), seen, count))
+    for execution, looks in looked:
         programs += 1
         found += looks
         classes = {node.id: node.class_name for node in execution.worlds[0].graph().nodes}

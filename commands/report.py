@@ -29,10 +29,12 @@ def report(dataset: Folder, out: Out = _OUT, workers: Workers = 0, as_json: outp
     """
     import os
 
+    from hearth.commands.waiting import bar
     from hearth.pipelines.dataset import Dataset
     from hearth.report.write import write_report
 
-    programs = write_report(Dataset.open(dataset), out, workers or os.cpu_count() or 1)
+    with bar("shares of programs told") as seen:
+        programs = write_report(Dataset.open(dataset), out, workers or os.cpu_count() or 1, seen)
     if as_json:
         output.emit({"out": str(out), "programs": programs})
     else:

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
+
+T = TypeVar("T")
+Seen = Callable[[int, int | None], None]
+"""Told how many are done, and of how many if that is known."""
+
+
+def counted(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
+    """The same items; `seen` is told of each."""
+    for number, item in enumerate(items, 1):
+        seen(number, total)
+        yield item
 
 
 @contextmanager
-def bar(what: str) -> Iterator[Callable[[int, int], None]]:
+def bar(what: str) -> Iterator[Seen]:
     """A bar on the terminal's error stream, gone when it is over; nothing where that is no terminal.
 
     Args:
@@ -29,7 +41,7 @@ def bar(what: str) -> Iterator[Callable[[int, int], None]]:
     with Progress(*columns, rate, TimeRemainingColumn(), console=Console(stderr=True), transient=True) as shown:
         task, began = shown.add_task(what, total=None, rate=0.0), time.monotonic()
 
-        def seen(done: int, total: int) -> None:
+        def seen(done: int, total: int | None) -> None:
             rate = done / max(time.monotonic() - began, 1e-3)
             shown.update(task, completed=done, total=total, rate=rate)
 

@@ -13,7 +13,7 @@ from typing import Any
 import orjson
 
 from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.spread import spread
+from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.report.figures import figures
 from hearth.report.plans import plans
 from hearth.report.stories import DRAWN, Stories
@@ -28,11 +28,12 @@ Row = dict[str, Any]
 _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
 
 
-def write_report(dataset: Dataset, to: Path, workers: int = 1) -> int:
+def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen) -> int:
     """Write the report of a dataset into a folder; the same files for any number of workers.
 
     `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so that data comes in
-    scripts: `data/programs.js` has a short row a program, `data/stories-N.js` what their pages show.
+    scripts: `data/programs.js` has a short row a program, `data/stories-N.js` what their pages show. `seen` is told
+    how many shares of these are written.
 
     Returns:
         how many programs it has.
@@ -46,7 +47,7 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1) -> int:
     (to / "data").mkdir(parents=True, exist_ok=True)
     rows = _rows(dataset)
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
-    _write_stories(dataset, to, workers)
+    _write_stories(dataset, to, workers, seen)
     for name in ("app.js", "page.js", "style.css"):
         (to / name).write_bytes((files("hearth.report") / "assets" / name).read_bytes())
     (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
@@ -81,14 +82,14 @@ def _rows(dataset: Dataset) -> list[list[Any]]:
 _LISTED = ("program_id", "title", "origin", "split", "steps", "homes", "repairs", "code")
 
 
-def _write_stories(dataset: Dataset, to: Path, workers: int) -> None:
+def _write_stories(dataset: Dataset, to: Path, workers: int, seen: Seen) -> None:
     """Stories by program id, `SHARD` a file; shares of files go to processes."""
     names = [name for (name,) in dataset.rows("SELECT program_id FROM programs ORDER BY 1")[1]]
     shards = [names[start : start + SHARD] for start in range(0, len(names), SHARD)]
     told = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
     jobs = [(str(dataset.folder), str(to), told[start : start + _SHARE]) for start in range(0, len(told), _SHARE)]
     _opened.cache_clear()
-    for _ in spread(_write_share, jobs, workers):
+    for _ in spread(_write_share, jobs, workers, seen):
         pass
 
 

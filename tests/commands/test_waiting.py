@@ -7,7 +7,7 @@ import pty
 import subprocess
 import sys
 
-from hearth.commands.waiting import bar
+from hearth.commands.waiting import bar, counted
 from hearth.pipelines.spread import spread
 
 SCRIPT = """
@@ -54,3 +54,9 @@ def test_jobs_are_counted_as_they_are_done():
     told = []
     assert list(spread(abs, [-1, 2, -3], 1, lambda done, total: told.append((done, total)))) == [1, 2, 3]
     assert told == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_items_are_counted_as_they_come_by():
+    told = []
+    assert list(counted("ab", lambda done, total: told.append((done, total)))) == ["a", "b"]
+    assert told == [(1, None), (2, None)]
