@@ -1,0 +1,98 @@
+"""What a second worker brings, and what a partition costs of which nothing is to be done.
+
+    python benchmarks/workers_speed.py [--rounds N] [--json FILE]
+
+Programs of the embedded corpus are augmented as in the tier `full`, by one worker and by two in turn, whose processes are there
+before; the figure is the median of the rounds' ratios. Where the processors are taken away from time to time, each is
+by itself, so that single rounds are far apart.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+
+import pyarrow as pa
+from measuring import Figure, finish, parser, spread, tell
+
+from hearth.pipelines.build import stage
+from hearth.pipelines.run import run_stage
+from hearth.pipelines.settings import Settings
+from hearth.pipelines.stage import Job, Partition, Record, Stage
+from hearth.pipelines.tiers import TIERS
+from hearth.pipelines.workers import Workers
+
+ROOT = Path(__file__).resolve().parents[1]
+CORPUS = tuple(str(ROOT / "data_raw/crowd" / name) for name in ("descriptions.csv", "programs.csv"))
+PROGRAMS, PARTITIONS = 60, 200
+
+
+def main() -> None:
+    """Print a table."""
+    known = parser(__doc__)
+    known.add_argument("--rounds", type=int, default=5)
+    asked = known.parse_args()
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for figure in (*speedup(Path(folder) / "corpus", asked.rounds), empty(Path(folder) / "empty", asked.rounds)):
+            found.append(figure)
+            print(tell(figure), flush=True)
+    finish(found, asked.json)
+
+
+def speedup(out: Path, rounds: int) -> Iterator[Figure]:
+    """Seconds of one worker over those of two, for the same programs."""
+    settings = Settings(CORPUS, str(out), **{**TIERS["full"], "target": 0, "limit": PROGRAMS})
+    with Workers(1) as one, Workers(2) as two:
+        for name in ("ingest", "validate", "sample", "augment"):
+            run_stage(stage(name), settings, two)
+        taken: dict[Workers, list[float]] = {one: [], two: []}
+        for _ in range(rounds):
+            for workers, times in taken.items():
+                shutil.rmtree(out / "augment")
+                began = time.perf_counter()
+                run_stage(stage("augment"), settings, workers)
+                times.append(time.perf_counter() - began)
+    ratios = [a / b for a, b in zip(taken[one], taken[two], strict=True)]
+    yield Figure("augment: two workers against one", median(ratios), "times", 1.7, spread=spread(ratios))
+
+
+SCHEMA = pa.schema([("program_id", pa.string())])
+
+
+def partitions(job: Job) -> Iterator[Partition]:
+    """Many, with nothing in them."""
+    return (Partition(number, str(number), (), 0) for number in range(PARTITIONS))
+
+
+def records(job: Job, partition: Partition) -> Iterator[Record]:
+    """None."""
+    return iter(())
+
+
+def process(record: Record, context: object) -> list[Record]:
+    """Never called."""
+    return [record]
+
+
+EMPTY = Stage("empty", {"": SCHEMA}, process, partitions=partitions, records=records)
+
+
+def empty(out: Path, rounds: int) -> Figure:
+    """Milliseconds that one of many empty partitions costs one worker: to look, to write, to sync."""
+    settings = Settings((CORPUS[0],), str(out))
+    taken = []
+    for _ in range(rounds):
+        shutil.rmtree(out, ignore_errors=True)
+        began = time.perf_counter()
+        run_stage(EMPTY, settings, Workers(1))
+        taken.append(1e3 * (time.perf_counter() - began) / PARTITIONS)
+    return Figure("a partition of no work", median(taken), "ms", 20.0, spread=spread(taken), undisturbed=min(taken))
+
+
+if __name__ == "__main__":
+    main()
