@@ -2,9 +2,9 @@
 
     python benchmarks/workers_speed.py [--rounds N] [--json FILE]
 
-Programs of the embedded corpus are augmented as in the tier `full`, by one worker and by two in turn, whose processes are there
-before; the figure is the median of the rounds' ratios. Where the processors are taken away from time to time, each is
-by itself, so that single rounds are far apart.
+Programs of the embedded corpus are augmented as in the tier `full`, by one worker and by two in turn, whose processes
+are there before; the figure is the median of the rounds' ratios. Where the processors are taken away from time to time,
+each is by itself, so that single rounds are far apart.
 """
 
 from __future__ import annotations
