@@ -81,13 +81,16 @@ def test_export_writes_other_forms(tmp_path):
         (("action", "Opne"), "`Opne` is no action"),
         (("find", "--in", "frige"), "`frige` is no object"),
         (("path", "cup", "frige"), "`frige` is no object"),
-        (("export", "yaml"), "`yaml` is no form"),
         (("mine", "nowhere"), "no programs table here"),
         (("diff", "nowhere"), "is not a directory of knowledge files"),
     ],
 )
 def test_bad_input_is_one_message_and_status_1(arguments, message):
     assert message in run(*arguments, status=1)
+
+
+def test_a_form_that_there_is_not_is_wrong_usage():
+    assert "`yaml` is no form" in run("export", "yaml", status=2)
 
 
 @pytest.mark.parametrize("command", ["show", "action", "find", "path", "lint", "diff", "mine", "export"])
