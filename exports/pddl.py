@@ -50,6 +50,7 @@ class Task:
         objects: node ids that are part of the problem.
         states: (node, state, whether it is to hold).
         edges: (edge, whether it is to hold).
+        program_id: of the program that was executed.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Task:
     objects: tuple[int, ...]
     states: tuple[tuple[int, str, bool], ...]
     edges: tuple[tuple[Edge, bool], ...]
+    program_id: str = ""
 
     def reached(self, final: World) -> bool:
         """Whether a world is as wanted."""
@@ -90,7 +92,8 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
         if states or edges:
             world = start_of(run.row, homes)
             named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
-            yield Task(run.row["execution_id"], world, tuple(_objects(world, named)), states, edges)
+            objects = tuple(_objects(world, named))
+            yield Task(run.row["execution_id"], world, objects, states, edges, run.row["program_id"])
 
 
 def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:

@@ -6,7 +6,7 @@ import pytest
 
 import hearth
 from hearth.exports.pddl import Task, object_names, problem, tasks
-from hearth.exports.planning import DISPENSABLE, agreement, executed, helpful, solve
+from hearth.exports.planning import DISPENSABLE, STEP, agreement, chosen, executed, helpful, solve
 from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.exports.registry import export
@@ -29,6 +29,15 @@ def ds(made):
 @pytest.fixture(scope="module")
 def task(ds):
     return next(iter(tasks(ds, Wanted((MILK,)))))
+
+
+def test_one_problem_a_program_is_chosen_from_all_over_a_dataset(ds, monkeypatch):
+    names = list(ds)
+    spread = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
+    found = [task for name in spread for task in list(tasks(ds, Wanted((name,))))[:1]]
+    for asked in (1, 3, 1_000):
+        monkeypatch.setattr("hearth.exports.planning.ASKED", asked)
+        assert [task.name for task in chosen(ds, 7)] == [task.name for task in found[:7]]
 
 
 def test_every_execution_that_changes_something_gets_a_problem(ds, tmp_path):
