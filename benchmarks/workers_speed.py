@@ -22,7 +22,8 @@ from measuring import Figure, finish, parser, spread, tell
 from hearth.pipelines.build import stage
 from hearth.pipelines.run import run_stage
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Partition, Record, Stage
+from hearth.pipelines.spread import unseen
+from hearth.pipelines.stage import Job, Partition, Record, Stage, run_partition
 from hearth.pipelines.tiers import TIERS
 from hearth.pipelines.workers import Workers
 
@@ -38,7 +39,7 @@ def main() -> None:
     asked = known.parse_args()
     found = []
     with tempfile.TemporaryDirectory() as folder:
-        for figure in (*speedup(Path(folder) / "corpus", asked.rounds), empty(Path(folder) / "empty", asked.rounds)):
+        for figure in (*speedup(Path(folder) / "corpus", asked.rounds), empty(Path(folder) / "empty")):
             found.append(figure)
             print(tell(figure), flush=True)
     finish(found, asked.json)
@@ -82,15 +83,15 @@ def process(record: Record, context: object) -> list[Record]:
 EMPTY = Stage("empty", {"": SCHEMA}, process, partitions=partitions, records=records)
 
 
-def empty(out: Path, rounds: int) -> Figure:
-    """Milliseconds that one of many empty partitions costs one worker: to look, to write, to sync."""
-    settings = Settings((CORPUS[0],), str(out))
+def empty(out: Path) -> Figure:
+    """Milliseconds that each of many empty partitions costs: to look, to write, to sync."""
+    job = Job(EMPTY, Settings((CORPUS[0],), str(out)), {})
+    job.folder.mkdir(parents=True)
     taken = []
-    for _ in range(rounds):
-        shutil.rmtree(out, ignore_errors=True)
+    for partition in partitions(job):
         began = time.perf_counter()
-        run_stage(EMPTY, settings, Workers(1))
-        taken.append(1e3 * (time.perf_counter() - began) / PARTITIONS)
+        run_partition(job, partition, unseen)
+        taken.append(1e3 * (time.perf_counter() - began))
     return Figure("a partition of no work", median(taken), "ms", 20.0, spread=spread(taken), undisturbed=min(taken))
 
 

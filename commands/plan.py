@@ -13,9 +13,10 @@ Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folde
 Problems = Annotated[
     int, typer.Option("--problems", "-n", metavar="N", min=1, help="How many executions to ask about.")
 ]
+Workers = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")]
 
 
-def plan(dataset: Folder, problems: Problems = 200, as_json: output.Json = False) -> None:
+def plan(dataset: Folder, problems: Problems = 200, workers: Workers = 0, as_json: output.Json = False) -> None:
     """Solve planning problems of a dataset with Fast Downward, and run the plans in the engine.
 
     Problems are those of `export --format pddl`, of executions from all over the dataset. Each is read by
@@ -27,6 +28,7 @@ def plan(dataset: Folder, problems: Problems = 200, as_json: output.Json = False
     Example:
       python cli.py plan data_out --problems 20
     """
+    import os
     from dataclasses import asdict
 
     from hearth.commands.waiting import bar
@@ -34,7 +36,7 @@ def plan(dataset: Folder, problems: Problems = 200, as_json: output.Json = False
     from hearth.pipelines.dataset import Dataset
 
     with bar("problems") as seen:
-        found = agreement(Dataset.open(dataset), problems, seen)
+        found = agreement(Dataset.open(dataset), problems, workers or os.cpu_count() or 1, seen)
     if as_json:
         output.emit(asdict(found))
     else:

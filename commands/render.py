@@ -216,12 +216,12 @@ def visible(
     Example:
       python cli.py render-visible --count 30 --seed 7
     """
-    from hearth.commands.waiting import bar, counted
+    from hearth.commands.waiting import bar, watched
     from hearth.rendering.visibility import shares
 
     found, missed, programs = [], [], 0
     with bar("programs looked at") as seen:
-        looked = list(counted(_looked(sources or [], count, seed), seen, count))
+        looked = list(watched(_looked(sources or [], count, seed), seen, count))
     for execution, looks in looked:
         programs += 1
         found += looks

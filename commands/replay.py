@@ -38,14 +38,14 @@ def replay(
     """
     from itertools import islice
 
-    from hearth.commands.waiting import bar, counted
+    from hearth.commands.waiting import bar, watched
     from hearth.kb.knowledge import default
     from hearth.pipelines.replay import replay as run_all
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     found = islice(run_all(release, default(), DEFAULT if default_rules else REPLAY), limit)
     with bar("programs run") as seen:
-        results = list(counted(found, seen, limit))
+        results = list(watched(found, seen, limit))
     summary = _summary(results)
     inexact = [one for one in results if not one.exact]
     if as_json:

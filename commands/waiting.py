@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
+from hearth.pipelines.spread import Seen, unseen
+
 T = TypeVar("T")
-Seen = Callable[[int, int | None], None]
-"""Told how many are done, and of how many if that is known."""
 
 
-def counted(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
+def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
     """The same items; `seen` is told of each."""
     for number, item in enumerate(items, 1):
         seen(number, total)
@@ -31,7 +31,7 @@ def bar(what: str) -> Iterator[Seen]:
         what is to be told how many of how many are done.
     """
     if not sys.stderr.isatty():
-        yield lambda done, total: None
+        yield unseen
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn

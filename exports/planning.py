@@ -18,7 +18,7 @@ from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.kb import knowledge as kb
 from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.spread import Seen, unseen
+from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -88,24 +88,20 @@ class Agreement:
     disagreements: tuple[str, ...]
 
 
-def agreement(dataset: Dataset, problems: int, seen: Seen = unseen) -> Agreement:
-    """Solve problems from all over a dataset and run the plans; `seen` is told how many of them.
+def agreement(dataset: Dataset, problems: int, workers: int = 1, seen: Seen = unseen) -> Agreement:
+    """Solve problems from all over a dataset in so many processes and run the plans; `seen` is told how many of them.
 
     Raises:
         HearthError: MISSING_FILE, when unified-planning or Fast Downward is not installed.
     """
-    outcomes = []
-    for task in chosen(dataset, problems):
-        outcomes.append(solve(task))
-        seen(len(outcomes), problems)
-    return summary(outcomes)
+    return summary(list(spread(solve, list(chosen(dataset, problems)), workers, seen)))
 
 
 def chosen(dataset: Dataset, problems: int) -> Iterator[Task]:
     """So many tasks, one a program: of every `STEP`-th program first, then of those after them."""
     names = list(dataset)
-    spread = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
-    found = (task for start in range(0, len(spread), ASKED) for task in _firsts(dataset, spread[start : start + ASKED]))
+    apart = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
+    found = (task for start in range(0, len(apart), ASKED) for task in _firsts(dataset, apart[start : start + ASKED]))
     return islice(found, problems)
 
 

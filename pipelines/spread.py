@@ -38,11 +38,11 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-Seen = Callable[[int, int], None]
-"""Told how many of how many are done."""
+Seen = Callable[[int, int | None], None]
+"""Told how many are done, and of how many if that is known."""
 
 
-def unseen(done: int, total: int) -> None:
+def unseen(done: int, total: int | None) -> None:
     """Nobody is told."""
 
 

@@ -49,7 +49,9 @@ class Diagnostic:
 
 
 class HearthError(Exception):
-    """Bad input, with every fault that was found. The command line prints it and exits with status 1."""
+    """Bad input, with every fault that was found. The command line prints it and exits with status 1,
+    or with status 2 where a name on the command line is at fault.
+    """
 
     def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:
         found = (diagnostics,) if isinstance(diagnostics, Diagnostic) else tuple(diagnostics)

@@ -7,7 +7,7 @@ import pty
 import subprocess
 import sys
 
-from hearth.commands.waiting import bar, counted
+from hearth.commands.waiting import bar, watched
 from hearth.pipelines.spread import spread
 
 SCRIPT = """
@@ -58,5 +58,5 @@ def test_jobs_are_counted_as_they_are_done():
 
 def test_items_are_counted_as_they_come_by():
     told = []
-    assert list(counted("ab", lambda done, total: told.append((done, total)))) == ["a", "b"]
+    assert list(watched("ab", lambda done, total: told.append((done, total)))) == ["a", "b"]
     assert told == [(1, None), (2, None)]

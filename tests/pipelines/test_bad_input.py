@@ -1,4 +1,5 @@
-"""Bad input from the command line: rejects with code and place, or one clear error and status 1; never a traceback."""
+"""Bad input from the command line: rejects with code and place, or one clear error and status 1 (2 where
+the command itself is wrong); never a traceback."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def test_plans_are_judged_by_the_engine(task):
 def test_planner_and_engine_agree(ds):
     pytest.importorskip("unified_planning", reason="not installed: pip install unified-planning up-fast-downward")
     pytest.importorskip("up_fast_downward", reason="not installed: pip install up-fast-downward")
-    found = agreement(ds, 4)
+    found = agreement(ds, 4, workers=2)
     assert (found.problems, found.solved, found.ran, found.reached) == (4, 4, 4, 4), found.disagreements
 
 
