@@ -1,4 +1,4 @@
-"""`kill -9` at random moments of a build: `python benchmarks/kills.py [--times 200] [--limit N]`.
+"""`kill -9` at random moments of a build: `python benchmarks/kills.py [--times 200] [--chain 5] [--limit N]`.
 
 Builds the tier `mini` undisturbed, then again and again in another folder, each time killing
 all of the build's processes at a random moment; the next build goes on from what is there. Whenever one gets to its end
@@ -60,8 +60,8 @@ def differing(one: Path, other: Path) -> list[str]:
     return [name for name in names if expected.get(name) != found.get(name)]
 
 
-def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple[int, int, list[str]]:
-    """Kill builds, `CHAIN` times on the way of each to its end.
+def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: int = 5) -> tuple[int, int, list[str]]:
+    """Kill builds, `chain` times on the way of each to its end.
 
     Moments are numbers of files written, of those that an undisturbed build writes, not seconds: machines stand still
     for longer than a build takes. Those of one build are spread over all of it.
@@ -77,7 +77,7 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple
     kills = ends = 0
     faults: list[str] = []
     while kills < times:
-        moments = [0, *sorted(numbers.randint(0, total) for _ in range(min(CHAIN, times - kills)))]
+        moments = [0, *sorted(numbers.randint(0, total) for _ in range(min(chain, times - kills)))]
         kills += sum(hit(options, out, after - before, numbers) for before, after in pairwise(moments))
         finished(options, out)
         ends += 1
@@ -85,10 +85,6 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int) -> tuple
         shutil.rmtree(out)
         print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", flush=True)
     return kills, ends, faults
-
-
-CHAIN = 5
-"""How often a build is killed before it may go on to its end."""
 
 
 def hit(options: Sequence[str], out: Path, files: int, numbers: random.Random) -> bool:
@@ -136,6 +132,7 @@ def main() -> int:
     """Kill, and tell."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--times", type=int, default=200)
+    parser.add_argument("--chain", type=int, default=5, help="kills before a build may go on to its end")
     parser.add_argument("--limit", type=int, help="programs read; as many as the tier has if not given")
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
@@ -143,7 +140,7 @@ def main() -> int:
     if asked.limit:
         options += ["--limit", str(asked.limit)]
     with tempfile.TemporaryDirectory() as folder:
-        kills, ends, faults = killed(options, Path(folder), asked.times, asked.seed)
+        kills, ends, faults = killed(options, Path(folder), asked.times, asked.seed, asked.chain)
     print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *faults, sep="\n")
     return 1 if faults else 0
 
