@@ -19,6 +19,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     """Rehearse and print; with `strict` the status is 1 if a pair ran neither and is not proven impossible."""
     from itertools import islice
 
+    from hearth.commands.waiting import bar, watched
     from hearth.grounding.sampling import Size
     from hearth.pipelines.rehearsal import rehearse, scripts
     from hearth.pipelines.settings import Settings
@@ -27,7 +28,8 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     homes = Homes(Settings(**settings))
     programs = islice(scripts(map(str, sources), homes.knowledge), limit)
     wanted = Size() if size is None else Size.about(size)
-    found = rehearse(programs, homes, homes.names(), settings["seed"], wanted)
+    with bar("programs tried") as seen:
+        found = rehearse(watched(programs, seen, limit), homes, homes.names(), settings["seed"], wanted)
     if as_json:
         told = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
         output.emit({**found.summary(), **told})

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import chdir
 from dataclasses import dataclass
 from itertools import islice
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from hearth.exports.pddl import Task, object_names, problem, tasks
@@ -144,7 +146,8 @@ def solve(task: Task) -> Outcome:
     get_environment().credits_stream = None
     parsed = PDDLReader().parse_problem_string(planning_domain(kb.default(), helpful(task), loose=False), problem(task))
     options = {"fast_downward_search_time_limit": f"{LIMIT}s"}
-    with OneshotPlanner(name="fast-downward", params=options) as planner:
+    # Fast Downward writes its `output.sas` where it is started: two at once would read each other's.
+    with OneshotPlanner(name="fast-downward", params=options) as planner, TemporaryDirectory() as own, chdir(own):
         result = planner.solve(parsed)
     status = PlanGenerationResultStatus(result.status).name
     return Outcome(task, status) if result.plan is None else executed(task, status, steps_of(task, result.plan))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import hearth
@@ -96,6 +98,15 @@ def test_planner_and_engine_agree(ds):
     pytest.importorskip("up_fast_downward", reason="not installed: pip install up-fast-downward")
     found = agreement(ds, 4, workers=2)
     assert (found.problems, found.solved, found.ran, found.reached) == (4, 4, 4, 4), found.disagreements
+
+
+@pytest.mark.tools
+def test_the_planner_works_in_a_folder_of_its_own(task, tmp_path, monkeypatch):
+    pytest.importorskip("up_fast_downward", reason="not installed: pip install up-fast-downward")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "output.sas").mkdir()
+    assert solve(task).reached
+    assert Path.cwd() == tmp_path
 
 
 def behind_two_doors(maple):
