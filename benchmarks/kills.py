@@ -81,9 +81,10 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: i
         kills += sum(hit(options, out, after - before, numbers) for before, after in pairwise(moments))
         finished(options, out)
         ends += 1
-        faults += differing(whole, out)
+        found = differing(whole, out)
         shutil.rmtree(out)
-        print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", flush=True)
+        faults += found
+        print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *found, flush=True)
     return kills, ends, faults
 
 

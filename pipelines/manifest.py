@@ -46,6 +46,10 @@ class Manifest:
         """Digest of all that the stage wrote."""
         return value_digest(self.content["files"])
 
+    def write(self) -> None:
+        """Say that the stage is complete: the last of its files, since nobody looks for what a later one left."""
+        write_json(self.folder / NAME, self.content)
+
     def intact(self) -> bool:
         """Every file is there with the length it had."""
         return all(_length(self.folder / name) == entry["bytes"] for name, entry in self.content["files"].items())
@@ -59,8 +63,8 @@ def read_manifest(folder: Path) -> Manifest | None:
     return Manifest(folder, content)
 
 
-def write_manifest(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: str, **facts: Any) -> Manifest:
-    """Describe a stage whose other files are all in place; this file comes last."""
+def describe(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: str, **facts: Any) -> Manifest:
+    """Describe a stage whose other files are all in place; that it is complete is only said by `write`."""
     content = {
         "format": FORMAT,
         "version": VERSION,
@@ -71,7 +75,6 @@ def write_manifest(folder: Path, asked: dict[str, Any], inputs: dict[str, str], 
         **facts,
         "files": dict(_files(folder)),
     }
-    write_json(folder / NAME, content)
     return Manifest(folder, content)
 
 

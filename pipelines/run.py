@@ -15,7 +15,7 @@ import pyarrow.parquet as pq
 from hearth.pipelines.engines import Engine
 from hearth.pipelines.files import is_temporary, value_digest, write_json
 from hearth.pipelines.lock import locked
-from hearth.pipelines.manifest import NAME, TIMING, Manifest, read_manifest, write_manifest
+from hearth.pipelines.manifest import NAME, TIMING, Manifest, describe, read_manifest
 from hearth.pipelines.parts import Counts, part_path, part_state, rejects_path, write_table
 from hearth.pipelines.progress import Progress, Quiet
 from hearth.pipelines.settings import Settings
@@ -85,12 +85,11 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     if stage.finish:
         stage.finish(job, counts)
     counts.check(stage.name)
-    manifest = write_manifest(
-        folder, job.asked(), inputs, key, counts=counts.to_json(), parts=list(_parts(job, numbers))
-    )
-    _drop_gathered(folder)
+    manifest = describe(folder, job.asked(), inputs, key, counts=counts.to_json(), parts=list(_parts(job, numbers)))
     seconds = time.monotonic() - began
     write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
+    manifest.write()
+    _drop_gathered(folder)
     if elsewhere:
         elsewhere.end(stage.name)
     progress.end(stage.name, counts, seconds, fresh=True)

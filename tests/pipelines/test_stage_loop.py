@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -102,6 +103,21 @@ def test_a_record_of_which_nothing_comes_is_rejected(settings):
 def test_counts_that_do_not_add_up_are_an_error():
     with pytest.raises(AssertionError, match="3 records in, 1 through, 1 rejected"):
         Counts(records_in=3, through=1, rejected=1).check("somewhere")
+
+
+def test_the_manifest_is_written_last(settings, monkeypatch):
+    written = []
+    replaced = Path.replace
+
+    def replace_and_note(path, target):
+        written.append(Path(target).name)
+        return replaced(path, target)
+
+    monkeypatch.setattr(Path, "replace", replace_and_note)
+    run_stage(STAGE, settings)
+    assert written.count("manifest.json") == 1
+    assert "timing.json" in written
+    assert written[-1] == "manifest.json"
 
 
 def test_what_is_up_to_date_is_not_done_again(settings):
