@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -269,11 +270,13 @@ def _told_for_splits(folder: Path) -> list[splits.Told]:
         name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
     }
     steps: list[tuple[str, ...]] = []
+    # Programs made of one another say most things alike, which is kept once.
+    same: dict[Any, Any] = {}
     for path in sorted((folder / "programs").glob("part-*.parquet")):
         table = pq.read_table(path, columns=[*told, "steps"])
-        steps.extend(_step_names(table["steps"].combine_chunks()))
+        steps.extend(same.setdefault(each, each) for each in _step_names(table["steps"].combine_chunks()))
         for name, values in told.items():
-            values.extend(table[name].to_pylist())
+            values.extend(same.setdefault(each, each) for each in table[name].to_pylist())
     tops = splits.roots(dict(zip(told["program_id"], told["parent_id"], strict=True)))
     rows = zip(told["program_id"], told["activity_id"], told["split"], steps, told["description"], strict=True)
     return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, mine, text in rows]
@@ -284,7 +287,9 @@ def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
     every = steps.flatten()
     actions, objects = every.field("action"), every.field("objects")
     names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))
-    texts = pc.binary_join_element_wise(actions, pc.binary_join(names, " "), " ").to_pylist()
+    texts = [
+        sys.intern(text) for text in pc.binary_join_element_wise(actions, pc.binary_join(names, " "), " ").to_pylist()
+    ]
     end = 0
     for length in pc.list_value_length(steps).to_pylist():
         yield tuple(texts[end : end + length])
