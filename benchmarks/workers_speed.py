@@ -29,7 +29,10 @@ from hearth.pipelines.workers import Workers
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = tuple(str(ROOT / "data_raw/crowd" / name) for name in ("descriptions.csv", "programs.csv"))
-PROGRAMS, PARTITIONS = 60, 200
+PROGRAMS = 240
+"""Enough for several partitions: sixty make one, which a second worker can do nothing about."""
+
+PARTITIONS = 200
 
 
 def main() -> None:
