@@ -74,7 +74,8 @@ def document(found: Mapping[str, Sequence[Row]]) -> str:
         "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes, at",
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
         "",
-        f"- Machine: {machine()}; load {load:.1f}; it stands still {still:.0f}% of the time",
+        f"- Machine: {machine()}",
+        f"- When this was last written (sections may be older): load {load:.1f}, standing still {still:.0f}% of the time",
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, rows in found.items():
