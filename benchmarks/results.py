@@ -75,7 +75,7 @@ def document(found: Mapping[str, Sequence[Row]]) -> str:
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
         "",
         f"- Machine: {machine()}",
-        f"- When this was last written (sections may be older): load {load:.1f}, standing still {still:.0f}% of the time",
+        f"- Last written (sections may be older) at load {load:.1f}, standing still {still:.0f}% of the time",
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, rows in found.items():
