@@ -1,20 +1,23 @@
 """Does the cost stay linear and the memory flat? `python benchmarks/scale.py [--sizes 3000 30000] [--workers 2]`.
 
 Builds datasets of so many augmented programs, from sampling to publishing, from the embedded corpus and synthetic
-programs, and prints for each: wall and processor seconds a program, the largest process, bytes on disk. 300,000 take a
-while; `--seed` draws others.
+programs, and prints for each: wall and processor seconds a program, the largest process, bytes on disk, and which stage
+took how much of them. `--seed` draws others. 300,000 take hours: with `--keep FOLDER` what was built stays there, and
+the same command goes on with it after it was stopped (the times are then those of the last run only).
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from measuring import Figure, finish, tell
@@ -22,6 +25,7 @@ from measuring import Figure, finish, tell
 CLI = Path(__file__).resolve().parents[1] / "cli.py"
 EACH = 6
 """Augmented programs of an execution, about; so many pairs are asked for."""
+STAGES = ("ingest", "validate", "sample", "augment", "publish")
 
 
 def main() -> None:
@@ -30,36 +34,57 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=[3_000, 30_000])
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="build below this folder and leave it there")
     parser.add_argument("--json", type=Path, metavar="FILE")
     asked = parser.parse_args()
     figures = []
     for size in asked.sizes:
-        with tempfile.TemporaryDirectory() as folder:
-            found = measured(size, asked.workers, asked.seed, Path(folder))
+        with place(asked.keep, size) as folder:
+            found = measured(size, asked.workers, asked.seed, folder)
         print(*map(tell, found), sep="\n", flush=True)
         figures += found
     finish(figures, asked.json)
 
 
+@contextlib.contextmanager
+def place(keep: Path | None, size: int) -> Iterator[Path]:
+    """The folder of one build: one that goes away, or the one for this size below `keep`."""
+    if keep is None:
+        with tempfile.TemporaryDirectory() as folder:
+            yield Path(folder)
+        return
+    (keep / str(size)).mkdir(parents=True, exist_ok=True)
+    yield keep / str(size)
+
+
 def measured(size: int, workers: int, seed: int, folder: Path) -> list[Figure]:
     """One build of about `size` augmented programs."""
     programs, corpus = folder / "synthetic.jsonl", CLI.parent / "data_raw/crowd"
-    run("corpus", "synthesize", max(50, size // 6), "--seed", seed, "--out", programs)
+    if not programs.exists():
+        run("corpus", "synthesize", max(50, size // 6), "--seed", seed, "--out", programs)
     given = [corpus / "descriptions.csv", corpus / "programs.csv", programs]
     options = ["--seed", seed, "--workers", workers, "--homes-each", 2, "--per-program", EACH, "--target", size]
-    began = time.monotonic()
     with Watch() as watch:
         run("build", *given, "--out", folder / "out", *options, "--pictures", 0, "--videos", 0)
-    seconds = time.monotonic() - began
+    whole = watch.between(0, float("inf"))
     count = augmented(folder / "out")
     bytes_ = sum(file.stat().st_size for file in (folder / "out/publish").rglob("*.parquet"))
     name = f"{count:,} augmented programs, {workers} workers"
-    shutil.rmtree(folder / "out")
     return [
-        Figure(f"{name}: build", seconds, "s", 120 * size / 30_000),
-        Figure(f"{name}: processor a program", 1e3 * watch.seconds / count, "ms"),
-        Figure(f"{name}: largest process", watch.bytes / 1e6, "MB", 2_000),
+        Figure(f"{name}: build", whole.seconds, "s", 120 * size / 30_000),
+        Figure(f"{name}: processor a program", 1e3 * whole.spent / count, "ms"),
+        Figure(f"{name}: largest process", whole.bytes / 1e6, "MB", 2_000),
         Figure(f"{name}: published on disk, a program", bytes_ / count, "bytes", 2_000),
+        *(figure for stage, used in by_stage(watch, folder / "out") for figure in of_stage(stage, used, count)),
+    ]
+
+
+def of_stage(stage: str, used: Used, count: int) -> list[Figure]:
+    """What one stage took."""
+    return [
+        Figure(f"  {stage}: wall", used.seconds, "s"),
+        Figure(f"  {stage}: processor a program", 1e3 * used.spent / count, "ms"),
+        Figure(f"  {stage}: largest process", used.bytes / 1e6, "MB", 2_000),
     ]
 
 
@@ -79,6 +104,15 @@ def augmented(out: Path) -> int:
     return sum(pq.read_metadata(file).num_rows for file in (out / "augment").glob("part-*.parquet"))
 
 
+@dataclass(frozen=True)
+class Used:
+    """Seconds on the clock, seconds of processor of all processes, and bytes in memory of the largest."""
+
+    seconds: float
+    spent: float
+    bytes: int
+
+
 class Watch:
     """Watches the processes below this one, every half second: the memory of the largest, the processor time of all.
 
@@ -87,15 +121,10 @@ class Watch:
     """
 
     def __init__(self) -> None:
-        self.bytes = 0
+        self._looks: list[tuple[float, float, int]] = []
         self._spent: dict[int, float] = {}
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
-
-    @property
-    def seconds(self) -> float:
-        """Of processor, of all processes seen."""
-        return sum(self._spent.values())
 
     def __enter__(self) -> Watch:
         self._thread.start()
@@ -105,11 +134,31 @@ class Watch:
         self._over.set()
         self._thread.join()
 
+    def between(self, start: float, end: float) -> Used:
+        """What was used between two times of the clock (seconds since 1970); zeros where nobody looked."""
+        looks = [look for look in self._looks if start <= look[0] < end]
+        if not looks:
+            return Used(0.0, 0.0, 0)
+        (first, before, _), (last, after, _) = looks[0], looks[-1]
+        return Used(last - first, after - before, max(size for _, _, size in looks))
+
     def _watch(self) -> None:
         while not self._over.wait(0.5):
-            for process, spent in below().items():
-                self._spent[process] = spent
-                self.bytes = max(self.bytes, resident(process))
+            found = below()
+            self._spent.update(found)
+            largest = max(map(resident, found), default=0)
+            self._looks.append((time.time(), sum(self._spent.values()), largest))
+
+
+def by_stage(watch: Watch, out: Path) -> Iterator[tuple[str, Used]]:
+    """Each stage that was run while we watched: a stage's manifest is the last file it writes."""
+    start = 0.0
+    for stage in STAGES:
+        end = (out / stage / "manifest.json").stat().st_mtime
+        used = watch.between(start, end)
+        if used.bytes:
+            yield stage, used
+        start = end
 
 
 _TICKS = os.sysconf("SC_CLK_TCK")
