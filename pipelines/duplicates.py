@@ -92,32 +92,39 @@ class _Recent:
     def __init__(self, most: int) -> None:
         self._most = most
         self._kept: dict[int, tuple[str, array[int], tuple[int, ...]]] = {}
-        self._by_key: dict[int, list[int]] = {}
+        self._by_key: dict[int, int | tuple[int, ...]] = {}
         self._next = 0
 
     def among(self, keys: Iterable[int]) -> Iterator[tuple[str, Sequence[int]]]:
         """Names and contents of those that share a key, each once."""
-        numbers = dict.fromkeys(number for key in keys for number in self._by_key.get(key, ()))
-        for number in numbers:
+        for number in dict.fromkeys(number for key in keys for number in self._numbers(key)):
             name, content, _ = self._kept[number]
             yield name, content
 
     def keep(self, name: str, content: Sequence[int], keys: Iterable[int]) -> None:
         """Keep one more, and forget the oldest."""
-        own = tuple(key for key in keys if len(self._by_key.get(key, ())) < _MOST_CANDIDATES)
+        own = tuple(key for key in keys if len(self._numbers(key)) < _MOST_CANDIDATES)
         self._kept[self._next] = (name, array("I", content), own)
         for key in own:
-            self._by_key.setdefault(key, []).append(self._next)
+            self._put(key, (*self._numbers(key), self._next))
         self._next += 1
         if len(self._kept) > self._most:
             self._forget(self._next - 1 - self._most)
 
     def _forget(self, number: int) -> None:
         for key in self._kept.pop(number)[2]:
-            numbers = self._by_key[key]
-            numbers.remove(number)
-            if not numbers:
-                del self._by_key[key]
+            self._put(key, tuple(other for other in self._numbers(key) if other != number))
+
+    def _numbers(self, key: int) -> tuple[int, ...]:
+        found = self._by_key.get(key, ())
+        return (found,) if isinstance(found, int) else found
+
+    def _put(self, key: int, numbers: tuple[int, ...]) -> None:
+        # Nearly every key has one answer: bare, its number takes a third of the memory.
+        if numbers:
+            self._by_key[key] = numbers if len(numbers) > 1 else numbers[0]
+        else:
+            del self._by_key[key]
 
 
 def pasted(items: Iterable[Item]) -> frozenset[int]:
