@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, tell
 
 from hearth.grounding.base import prepared
@@ -63,9 +64,10 @@ def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: 
     told = ", ".join(f"{code} {count}" for code, count in outcomes.most_common() if code)
     print(f"{name}: {len(programs)} programs, {sampled.total()} pairs; new programs {sampled['']}; {told or '-'}")
     return [
-        rate(f"{name}: pairs placed, perturbed, run, repaired", sampled.total(), taken, "pairs/s", GOAL),
+        rate(f"{name}: pairs placed, perturbed, run, repaired", sampled.total(), taken, "pairs/s", GOAL,
+             plain.rehearsal().ratio(sampled.total(), taken)),
         Figure(f"{name}: repaired of those that need it", 100 * repaired / max(1, needed), "%", 98),
-    ]
+    ]  # fmt: skip
 
 
 def main() -> None:

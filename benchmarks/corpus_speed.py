@@ -16,7 +16,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from random import Random
 
-from measuring import Figure, finish, parser, passes, rate, runs, tell
+import plain
+from measuring import Figure, finish, parser, passes, rate, runs, seconds, tell
 
 from hearth.kb import knowledge
 from hearth.pipelines import corpus, spoken, synthesis
@@ -128,12 +129,16 @@ def whole_ingest(folder: Path, programs: int) -> Iterator[Figure]:
     file = folder / "plain.txt"
     with file.open("w") as out:
         out.writelines(as_text(programs))
+    yardstick = plain.read_text(list(as_text(2_000)), folder / "plain.jsonl")
     taken = [ingested(file)[1] for _ in range(3)]
-    yield rate("programs of text ingested, read to Parquet", programs, taken, "a second", 20_000)
+    yield rate(
+        "programs of text ingested, read to Parquet", programs, taken, "a second", 20_000,
+        yardstick.ratio(programs, taken),
+    )  # fmt: skip
     with zipfile.ZipFile(folder / "plain.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.write(file, "plain.txt")
     taken = [ingested(folder / "plain.zip")[1] for _ in range(3)]
-    yield rate("the same inside a zip", programs, taken, "a second", 20_000)
+    yield rate("the same inside a zip", programs, taken, "a second", 20_000, yardstick.ratio(programs, taken))
 
 
 def memory(folder: Path) -> Iterator[Figure]:
@@ -154,15 +159,18 @@ def others() -> Iterator[Figure]:
     known = knowledge.default()
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
+    split = plain.split_words([words] * 1_000)
     heard = runs(lambda: [spoken.parse_spoken(words, 0, "", known) for _ in range(1_000)])
-    yield rate("programs in words understood", 1_000, heard, "a second")
+    yield rate("programs in words understood", 1_000, heard, "a second", ratio=split.ratio(1_000, heard))
     drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
-    yield rate("programs drawn", 13 * SLICE, drawn, "a second", 5_000)
+    ratio = plain.drawn_steps().ratio(13 * SLICE, drawn)
+    yield rate("programs drawn", 13 * SLICE, drawn, "a second", 5_000, ratio)
     some = list(synthesis.synthesize(5_000, 0, grammar))
     steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
     many = corpus.Corpus(programs=[corpus.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)])
     taken = runs(lambda: corpus.similarities(many, workers=1))
-    yield Figure("all pairs of 5,000 programs compared and sorted", sorted(taken)[2], "s", 2.0)
+    ratio = plain.textbook_lcs(steps).ratio(len(steps) ** 2, taken)
+    yield seconds("all pairs of 5,000 programs compared and sorted", taken, "s", 2.0, ratio)
 
 
 def main() -> int:

@@ -11,9 +11,9 @@ import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
-from statistics import median
 from time import process_time
 
+import plain
 from measuring import Figure, finish, parser, passes, rate, runs, seconds, stalls, tell
 
 from hearth.grounding.preconditions import infer
@@ -28,8 +28,6 @@ from hearth.simulation.homes.graph_layout import lay_out
 from hearth.simulation.homes.scene import scene
 
 CORPUS = Path(__file__).resolve().parents[1] / "data_raw" / "crowd"
-PUBLISHED = 4.0
-"""Environments a second of the published tools on one core of this kind of machine."""
 SIZES = (("as they come", Size()), ("of 280 to 300 nodes", Size.about(290)))
 
 
@@ -43,14 +41,17 @@ def loading() -> Figure:
             catalog.load_graph(name)
 
     names = catalog.names()
-    return seconds(f"one of {len(names)} designed homes, read and built", [s / len(names) for s in runs(load, 3)], "ms")
+    taken = [s / len(names) for s in runs(load, 3)]
+    ratio = plain.written_home().ratio(1, taken)
+    return seconds(f"one of {len(names)} designed homes, read and built", taken, "ms", ratio=ratio)
 
 
 def drawing_up(count: int = 21) -> Figure:
     """Homes of 3 to 9 rooms in turn drawn up in a second, their graphs included."""
 
     taken = passes(lambda seed: scene(generate(3 + seed % 7, seed)), range(count))
-    return rate("procedural homes drawn up, with their graphs", count, taken, "homes/s", 20.0)
+    ratio = plain.written_home().ratio(count, taken)
+    return rate("procedural homes drawn up, with their graphs", count, taken, "homes/s", 20.0, ratio)
 
 
 def laying_out(homes: Path) -> Figure:
@@ -75,9 +76,8 @@ def sampling(programs: list[Script], homes: Homes, label: str, size: Size, times
 
     taken = passes(everywhere, programs, times)
     count = sum(done.values())
-    per_second = count / median(taken.totals)
-    return rate(f"environments {label}, sampled and checked ({count:,})", count, taken, "environments/s", 1000.0,
-                ratio=per_second / PUBLISHED)  # fmt: skip
+    ratio = plain.rehearsal().ratio(count, taken)
+    return rate(f"environments {label}, sampled and checked ({count:,})", count, taken, "environments/s", 1000.0, ratio)
 
 
 def figures(source: str, folder: Path | None, limit: int | None, times: int) -> Iterator[Figure]:

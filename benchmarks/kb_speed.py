@@ -5,11 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 import timeit
+from pathlib import Path
 
+import plain
 from measuring import Figure, finish, parser, seconds, tell
 
 from hearth.kb.knowledge import Knowledge, default
 
+KB = Path(__file__).resolve().parents[1] / "kb"
 LOAD = 150
 """Milliseconds that were asked for."""
 
@@ -42,16 +45,19 @@ def lookups(knowledge: Knowledge, number: int = 20_000) -> list[Figure]:
         'affords("Grab", 0, "cup")': lambda: knowledge.affords("Grab", 0, "cup"),
         'default_states("fridge")': lambda: knowledge.default_states("fridge"),
     }
-    return [
-        seconds(name, [taken / number for taken in timeit.repeat(case, number=number, repeat=5)], "us")
-        for name, case in cases.items()
-    ]
+    scan = plain.found_by_scanning(knowledge.objects)
+    taken = {
+        name: [each / number for each in timeit.repeat(case, number=number, repeat=5)] for name, case in cases.items()
+    }
+    return [seconds(name, each, "us", ratio=scan.ratio(1, each)) for name, each in taken.items()]
 
 
 def main() -> None:
     """Measure and print."""
     asked = parser(__doc__).parse_args()
-    found = [seconds("load the knowledge, importing included", cold_loads(), "ms", LOAD), *lookups(default())]
+    loads = cold_loads()
+    ratio = plain.read_yaml(KB).ratio(1, loads)
+    found = [seconds("load the knowledge, importing included", loads, "ms", LOAD, ratio), *lookups(default())]
     for figure in found:
         print(tell(figure))
     finish(found, asked.json)

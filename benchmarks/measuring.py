@@ -102,6 +102,11 @@ def spread(values: list[float]) -> float:
 Taken = list[float] | Passes
 
 
+def least(taken: Taken) -> float:
+    """The least seconds: of each item, where items were timed by themselves, else of a run."""
+    return taken.least if isinstance(taken, Passes) else min(taken)
+
+
 def seconds(
     name: str, taken: Taken, unit: str = "s", target: float | None = None, ratio: float | None = None
 ) -> Figure:

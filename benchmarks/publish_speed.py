@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
+from time import perf_counter
 from typing import Any
 
-try:
-    from benchmarks.measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
-except ImportError:
-    from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
+import plain
+from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
 from hearth.pipelines import judging
 from hearth.pipelines.cases import start_of
@@ -28,6 +27,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.scoring.evaluate import Options, Pair, lcs_of, scored
 from hearth.scoring.lcs import matrix
+from hearth.simulation.homes import catalog
 
 ASKED = 30_000
 """Predictions and executions that the targets are about."""
@@ -50,29 +50,40 @@ def main() -> None:
 def figures(asked: Namespace) -> Iterator[Figure]:
     """Every figure, in turn."""
     programs = drawn(5_000)
-    yield seconds("LCS of 5,000 x 5,000 programs, one thread", runs(lambda: matrix(programs, programs, workers=1), 3),
-                  target=4.0)  # fmt: skip
+    textbook = plain.textbook_lcs(programs)
+    for workers, target in ((1, 4.0), (2, 2.0)):
+        taken = runs(lambda workers=workers: matrix(programs, programs, workers=workers), 5, perf_counter)
+        yield seconds(f"LCS of 5,000 x 5,000 programs, by {workers}", taken, target=target,
+                      ratio=textbook.ratio(len(programs) ** 2, taken))  # fmt: skip
     try:
         dataset = Dataset.open(asked.dataset)
     except HearthError as error:
         print(f"no dataset to score and to ask: {error}")
         return
     yield from scoring(dataset)
+    read, counted = yardsticks()
     some = dataset.rows("SELECT execution_id FROM executions ORDER BY hash(execution_id) LIMIT 9")[1]
     for macro in ("graph_edges", "graph_nodes"):
         query = f"SELECT * FROM {macro}($id, NULL)"
         each = [passes(lambda name, query=query: dataset.rows(query, id=name), one, 9) for one in some]
         worst = max(each, key=lambda one: one.least)
-        yield seconds(f"one graph by SQL, {macro}, of {len(some)} the slowest", worst, "ms", 10.0)
+        yield seconds(f"one graph by SQL, {macro}, of {len(some)} the slowest", worst, "ms", 10.0, read.ratio(1, worst))
     run_of = {name: next(run for run in dataset[name.split("@")[0]].runs if run.row["execution_id"] == name)
               for (name,) in some}  # fmt: skip
     each = [passes(lambda run: run.final, [run], 9) for run in run_of.values()]
     worst = max(each, key=lambda one: one.least)
-    yield seconds(f"one graph by the library, of {len(some)} the slowest, rows read before", worst, "ms", 10.0)
+    yield seconds(f"one graph by the library, of {len(some)} the slowest, rows read before", worst, "ms", 10.0,
+                  read.ratio(1, worst))  # fmt: skip
     executions = dataset.rows("SELECT count(*) FROM executions")[1][0][0]
-    yield seconds(f"edges per relation over {executions:,} executions",
-                  passes(dataset.rows, ["SELECT * FROM start_relations"], 9),
-                  target=executions / ASKED)  # fmt: skip
+    counting = passes(dataset.rows, ["SELECT * FROM start_relations"], 9)
+    yield seconds(f"edges per relation over {executions:,} executions", counting, target=executions / ASKED,
+                  ratio=counted.ratio(executions, counting))  # fmt: skip
+
+
+def yardsticks() -> tuple[plain.Yardstick, plain.Yardstick]:
+    """Reading a graph from JSON, and counting relations in one."""
+    graphs = [plain.as_dicts(catalog.load_graph(name)) for name in catalog.names()]
+    return plain.read_graph(graphs), plain.counted_relations(graphs)
 
 
 def scoring(dataset: Dataset) -> Iterator[Figure]:
@@ -99,11 +110,13 @@ def scoring(dataset: Dataset) -> Iterator[Figure]:
     read = sum(map(len, shares))
     yield rate("predictions' references read", read, reading, "a second")
     yield rate("predictions scored", len(pairs), taken, "a second")
-    least, plain = (
+    least, usual = (
         ASKED * (a / read + b / len(pairs)) / 2
         for a, b in ((reading.least, taken.least), (median(reading.totals), median(taken.totals)))
     )
-    yield seconds(f"score of {ASKED:,} predictions by two processors, from these", Passes([plain], least), target=60.0)
+    whole = Passes([usual], least)
+    yield seconds(f"score of {ASKED:,} predictions by two processors, from these", whole, target=60.0,
+                  ratio=plain.rehearsal().ratio(ASKED / 2, whole))  # fmt: skip
 
 
 def predicted(case: dict[str, Any], place: int) -> tuple[Step, ...]:

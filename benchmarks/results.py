@@ -2,8 +2,9 @@
 
     python benchmarks/results.py [--only NAME] [--check]
 
-A ratio to plain reference code, measured in the same run, holds on any machine: one that has fallen by a third against
-the results.json that is committed fails the run (status 1). With `--check` nothing is written.
+A ratio to plain reference code (`plain.py`, `reference.py`), measured in the same run, holds on any machine: one that
+has fallen by a third against the results.json that is committed fails the run (status 1). With `--check` nothing is
+written. Each benchmark tells when it was run and how busy the machine was: a section may be older than another.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -31,7 +33,26 @@ WORST = 2 / 3
 """What must be left of a ratio."""
 
 LIBRARIES = ("numpy", "pyarrow", "duckdb", "open3d-cpu", "opencv-python-headless", "numba", "rapidfuzz")
+HEAD = (
+    "| figure | measured | spread | undisturbed | asked | to the plain reference |",
+    "|---|---:|---:|---:|---:|---:|",
+)
 Row = dict[str, Any]
+Section = dict[str, Any]
+"""`day`, `load` and `still` (percent of the time) of a benchmark's run, and its `figures`."""
+
+
+def section(name: str) -> Section:
+    """One benchmark, and what the machine was doing."""
+    before = stalls().value
+    figures = measured(HERE / f"{name}_speed.py")
+    still = (before + stalls().value) / 2
+    return {
+        "day": datetime.now(UTC).date().isoformat(),
+        "load": round(os.getloadavg()[0], 1),
+        "still": round(still),
+        "figures": figures,
+    }
 
 
 def measured(script: Path) -> list[Row]:
@@ -63,24 +84,32 @@ def _lines(path: str) -> list[str]:
         return []
 
 
-def document(found: Mapping[str, Sequence[Row]]) -> str:
+def document(found: Mapping[str, Section]) -> str:
     """RESULTS.md."""
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
-    load, still = os.getloadavg()[0], stalls().value
     lines = [
         "# Results",
         "",
         "Written by `make bench`; not edited by hand. Medians of several runs, with the distance of the quartiles.",
         "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes, at",
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
+        "The plain reference does the heart of the same work in plain Python (`plain.py`, `reference.py`), often less",
+        "than we do; ratios compare the least times. One that falls by a third fails `make bench`.",
         "",
         f"- Machine: {machine()}",
-        f"- Last written (sections may be older) at load {load:.1f}, standing still {still:.0f}% of the time",
         f"- Python {platform.python_version()}, {libraries}",
     ]
-    for name, rows in found.items():
-        lines += ["", f"## {name}", "", "| figure | measured | spread | undisturbed | asked | to the plain reference |"]
-        lines += ["|---|---:|---:|---:|---:|---:|", *map(_line, rows)]
+    for name, one in found.items():
+        told = f"Measured on {one['day']} at load {one['load']}; the machine stood still {one['still']}% of the time."
+        lines += [
+            "",
+            f"## {name}",
+            "",
+            told,
+            "",
+            "| figure | measured | spread | undisturbed | asked | to the plain reference |",
+        ]
+        lines += ["|---|---:|---:|---:|---:|---:|", *map(_line, one["figures"])]
     return "\n".join(lines) + "\n"
 
 
@@ -91,10 +120,10 @@ def _line(row: Row) -> str:
     return f"| {row['name']} | {row['value']:,.4g} {row['unit']} | {row['spread']:.0%} | {best} | {target} | {ratio} |"
 
 
-def fallen(found: Mapping[str, Sequence[Row]], stored: Mapping[str, Sequence[Row]]) -> list[str]:
+def fallen(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[str]:
     """Ratios that have fallen by a third or are gone."""
-    then = {(name, row["name"]): row["ratio"] for name, rows in stored.items() for row in rows if row["ratio"]}
-    now = {(name, row["name"]): row["ratio"] for name, rows in found.items() for row in rows}
+    then = {key: ratio for key, ratio in _ratios(stored).items() if ratio}
+    now = _ratios(found)
     return [
         f"{name}: {figure}: {before:,.1f} times the plain reference before, {now.get((name, figure)) or 0:,.1f} now"
         for (name, figure), before in then.items()
@@ -102,7 +131,11 @@ def fallen(found: Mapping[str, Sequence[Row]], stored: Mapping[str, Sequence[Row
     ]
 
 
-def _stored() -> dict[str, list[Row]]:
+def _ratios(sections: Mapping[str, Section]) -> dict[tuple[str, str], float | None]:
+    return {(name, row["name"]): row["ratio"] for name, one in sections.items() for row in one["figures"]}
+
+
+def _stored() -> dict[str, Section]:
     return dict(json.loads(STORED.read_text("utf-8"))) if STORED.exists() else {}
 
 
@@ -116,7 +149,7 @@ def main(words: Iterable[str] | None = None) -> int:
     found = {}
     for name in names:
         print(f"--- {name}", flush=True)
-        found[name] = measured(HERE / f"{name}_speed.py")
+        found[name] = section(name)
     stored = _stored()
     worse = fallen(found, stored)
     if not asked.check and not worse:

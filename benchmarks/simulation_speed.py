@@ -31,10 +31,10 @@ def _figure(bench: dict[str, Any], found: dict[str, Any]) -> Figure:
     info, stats = bench["extra_info"], bench["stats"]
     each = stats["median"] / info.get("units", 1)
     other = found.get(info.get("against", ""))
-    ratio = other and other["stats"]["median"] / other["extra_info"].get("units", 1) / each
+    best = info.get("units", 1) / stats["min"]
+    ratio = other and other["stats"]["min"] / other["extra_info"].get("units", 1) * best
     unit = f"{info.get('unit', 'run')}s/s"
     target = TARGETS.get(bench["name"])
-    best = info.get("units", 1) / stats["min"]
     return Figure(bench["name"], 1 / each, unit, target, ratio, stats["iqr"] / stats["median"], best)
 
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import plain
 import pyarrow as pa
 import pyarrow.parquet as pq
 from measuring import Figure, Passes, finish, parser, passes, rate, seconds, tell
@@ -42,10 +43,14 @@ TARGET = 4_500
 
 @dataclass(frozen=True)
 class Cost:
-    """Of a record of one stage: seconds, of processing it and of its rows on their way to disk and back."""
+    """Of a record of one stage: seconds, of processing it and of its rows on their way to disk and back.
+
+    `written` is the yardstick of the latter: the same rows as lines of JSON.
+    """
 
     process: Passes
     storage: Passes
+    written: plain.Yardstick
     records: int
 
     @property
@@ -85,13 +90,16 @@ def figures(out: Path, folder: Path) -> Iterator[Figure]:
     """A record's cost by stage, and what follows for the whole."""
     settings = Settings(out=str(out), **{**TIERS["full"], "target": TARGET})
     costs, counts = {}, {}
+    rehearsal = plain.rehearsal()
     for name in STAGES:
         job = Job(stage(name), settings, stage(name).prepare(settings))
         costs[name] = cost(job, folder)
         counts[name] = sum(1 for _ in records(job))
         own = costs[name]
-        yield rate(f"{name}: records processed", own.records, own.process, "records/s")
-        yield rate(f"{name}: their rows written and read", own.records, own.storage, "records/s")
+        ratio = rehearsal.ratio(own.records, own.process)
+        yield rate(f"{name}: records processed", own.records, own.process, "records/s", ratio=ratio)
+        ratio = own.written.ratio(1, own.storage)
+        yield rate(f"{name}: their rows written and read", own.records, own.storage, "records/s", ratio=ratio)
     augmented = sum(1 for _ in rows(out / "augment"))
     every = sum(costs[name].undisturbed * counts[name] for name in STAGES)
     share = Passes([every * WHOLE / augmented / 2], every * WHOLE / augmented / 2)
@@ -113,7 +121,8 @@ def cost(job: Job, folder: Path) -> Cost:
     whole = Passes(
         [sum(totals) for totals in zip(*(part.totals for part in storage), strict=True)], sum(p.least for p in storage)
     )
-    return Cost(process, whole, len(some))
+    written = plain.lines_of_json([row for output in outputs for row in output])
+    return Cost(process, whole, written, len(some))
 
 
 def stores(job: Job, outputs: list[Any], folder: Path) -> Iterator[Iterator[Callable[[], object]]]:

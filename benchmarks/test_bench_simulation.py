@@ -5,6 +5,7 @@ Each benchmark says how many units one run of it is, so that rates are printed b
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import cases
@@ -15,7 +16,9 @@ from reference_world import Options
 from reference_world import World as PlainWorld
 
 from hearth.grounding.binding import Binding, bind
+from hearth.kb.knowledge import default
 from hearth.schemas.graph import Edge, Node, from_release
+from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.edit import extended
 from hearth.simulation.engine import final, run
 from hearth.simulation.home import Home
@@ -96,8 +99,15 @@ def test_steps_keeping_every_state_reference(benchmark, corpus):
 @pytest.mark.benchmark(group="making worlds")
 def test_world_from_known_home(benchmark):
     home = Home.from_graph(cases.own()[0][0])
-    note(benchmark, "world")
+    note(benchmark, "world", against="test_world_reference")
     benchmark(World.start, home)
+
+
+@pytest.mark.benchmark(group="making worlds")
+def test_world_reference(benchmark):
+    graph = cases.own()[0][0]
+    note(benchmark, "world")
+    benchmark(PlainWorld, graph)
 
 
 @pytest.mark.benchmark(group="making worlds")
@@ -107,7 +117,7 @@ def test_environment_of_twenty_more_things(benchmark):
     nodes = [Node(2000 + i, "cup", "Props", ("GRABBABLE", "RECIPIENT"), ("CLEAN",)) for i in range(20)]
     edges = [Edge(n.id, r, t) for n in nodes for r, t in (("INSIDE", room), ("ON", place), ("CLOSE", place))]
     states = {home.ids[i]: ("CLEAN",) for i in range(10, 20)}
-    note(benchmark, "environment")
+    note(benchmark, "environment", against="test_world_reference")
     benchmark(lambda: World.start(extended(home, nodes, edges, (), states)))
 
 
@@ -116,7 +126,7 @@ def test_parse_and_build_release_graph(benchmark):
     graph = max((graph for graph, _ in _release()), key=lambda g: len(g["edges"]))
     data = orjson.dumps(graph)
     benchmark.extra_info["size"] = f"{len(graph['nodes'])} nodes, {len(graph['edges'])} edges, {len(data)} bytes"
-    note(benchmark, "home")
+    note(benchmark, "home", against="test_parse_and_build_reference")
     benchmark(lambda: World.start(Home.from_release(orjson.loads(data))))
 
 
@@ -132,7 +142,7 @@ def test_parse_and_build_reference(benchmark):
 def test_bind_and_run(benchmark):
     items = cases.unbound()
     assert len(items) > 50
-    note(benchmark, "program", len(items))
+    note(benchmark, "program", len(items), "test_bind_and_run_reference")
 
     def go() -> None:
         for world, program in items:
@@ -143,19 +153,65 @@ def test_bind_and_run(benchmark):
     benchmark(go)
 
 
+@pytest.mark.benchmark(group="binding and running programs of 12 steps")
+def test_bind_and_run_reference(benchmark):
+    """The first of each class, without a search, and the world copied for each run."""
+    items = [(PlainWorld(graph), graph, program) for graph, program in cases.own()]
+    note(benchmark, "program", len(items))
+
+    def go() -> None:
+        for world, graph, program in items:
+            nodes = {node.class_name: node.id for node in reversed(graph.nodes)}
+            steps = tuple(replace(s, objects=tuple(replace(o, node=nodes[o.name]) for o in s.objects))
+                          for s in program.steps)  # fmt: skip
+            reference.run(world.copy(), replace(program, steps=steps), OPTIONS["own homes"][1])
+
+    benchmark(go)
+
+
 @pytest.mark.parametrize("limits", [{}, {"only_visible": True}, {"only_reachable": True}], ids=str)
 @pytest.mark.benchmark(group="what an agent may do and sees")
 def test_legal(benchmark, limits):
     worlds = [world for start, program in started("own homes") for world in run(start, program).worlds[::6]]
-    note(benchmark, "world", len(worlds))
+    note(benchmark, "world", len(worlds), "test_legal_reference")
     benchmark(lambda: [legal(world, **limits) for world in worlds])
+
+
+@pytest.mark.benchmark(group="what an agent may do and sees")
+def test_legal_reference(benchmark):
+    """Every action that takes one thing is tried on everything, all in one copy of the world."""
+    worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes")[::4], cases.own()[::4], strict=True)]
+    single = [name for name, action in default().actions.items() if action.arity == 1 and name in reference.ACTIONS]
+    note(benchmark, "world", len(worlds))
+
+    def go() -> None:
+        for start, graph in worlds:
+            world = start.copy()
+            for name in single:
+                for node in graph.nodes:
+                    tried = Step(name, (ObjectRef(node.class_name, 1, node.id),))
+                    reference.step(world, tried, OPTIONS["own homes"][1])
+
+    benchmark.pedantic(go, rounds=5)
 
 
 @pytest.mark.benchmark(group="what an agent may do and sees")
 def test_partial_view_as_ids(benchmark):
     worlds = [world for start, program in started("own homes") for world in run(start, program).worlds[::6]]
-    note(benchmark, "world", len(worlds))
+    note(benchmark, "world", len(worlds), "test_partial_view_reference")
     benchmark(lambda: [view(world).ids for world in worlds])
+
+
+@pytest.mark.benchmark(group="what an agent may do and sees")
+def test_partial_view_reference(benchmark):
+    worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes"), cases.own(), strict=True)]
+    note(benchmark, "world", len(worlds))
+
+    def seen(world: PlainWorld, ids: list[int]) -> list[int]:
+        room = world.room(world.me)
+        return [one for one in ids if world.room(one) == room and not world.hidden(one)]
+
+    benchmark(lambda: [seen(world, [node.id for node in graph.nodes]) for world, graph in worlds])
 
 
 SIZES = [300, 3_000, 30_000]

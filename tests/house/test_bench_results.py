@@ -14,18 +14,23 @@ def row(name, ratio=None, value=1.0, target=None):
     return {"name": name, "value": value, "unit": "steps/s", "target": target, "ratio": ratio, "spread": 0.1}
 
 
+def section(*figures):
+    return {"day": "2026-01-02", "load": 0.5, "still": 3, "figures": figures}
+
+
 def test_a_ratio_that_fell_by_a_third_is_named(results):
-    stored = {"engine": [row("run", 9.0), row("kept", 9.0), row("rate")], "other": [row("x", 5.0)]}
-    found = {"engine": [row("run", 6.1), row("kept", 5.9), row("rate", value=0.1)]}
+    stored = {"engine": section(row("run", 9.0), row("kept", 9.0), row("rate")), "other": section(row("x", 5.0))}
+    found = {"engine": section(row("run", 6.1), row("kept", 5.9), row("rate", value=0.1))}
     (told,) = results.fallen(found, stored)
     assert "kept" in told and "9.0" in told and "5.9" in told
 
 
 def test_a_ratio_that_is_gone_has_fallen(results):
-    assert results.fallen({"engine": []}, {"engine": [row("run", 9.0)]})
+    assert results.fallen({"engine": section()}, {"engine": section(row("run", 9.0))})
 
 
 def test_the_document_says_target_ratio_and_spread(results):
-    text = results.document({"engine": [row("run", 4.5, 290_000.0, 250_000)]})
+    text = results.document({"engine": section(row("run", 4.5, 290_000.0, 250_000))})
     assert "| run | 2.9e+05 steps/s | 10% |  | 250,000 steps/s | 4.5 x |" in text
     assert "Python 3" in text and "cores" in text
+    assert "2026-01-02 at load 0.5; the machine stood still 3% of the time" in text
