@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterator, Sequence
 from math import ceil, inf
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 _ROUNDING = 1e-6
-
-_CHUNK = 512
 
 
 def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator[tuple[int, int]]:
@@ -58,24 +61,48 @@ def _rarest(letters: str, least: float) -> set[str]:
 def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
     """Pairs of places, the smaller first, whose texts' similarity (insertions and deletions) is at least so much.
 
-    Exact: those whose lengths alone keep them apart are not compared.
+    Exact: only those are compared that their lengths, and how often each has which characters, do not keep apart (an
+    insertion changes one such count by one). Still each is held against each of about its length, but by sums of a few
+    small numbers.
 
     Args:
         texts: any.
         least: from 0 to 1; twice what two texts have in common, in order, over the sum of their lengths.
     """
     import numpy as np
-    from rapidfuzz import fuzz, process
+    from rapidfuzz import fuzz
 
     order = sorted(range(len(texts)), key=lambda place: (len(texts[place]), place))
     ordered = [texts[place] for place in order]
     lengths = np.array([len(text) for text in ordered])
-    for start in range(0, len(ordered), _CHUNK):
-        part = ordered[start : start + _CHUNK]
-        longest = len(part[-1]) * (2 / least - 1) if least else inf
+    counts = _character_counts(ordered)
+    few = counts.reshape(_FEW, _KINDS // _FEW, len(ordered)).sum(1, dtype=np.int32)
+    for one, text in enumerate(ordered):
+        longest = len(text) * (2 / least - 1) if least else inf
         end = int(np.searchsorted(lengths, longest + _ROUNDING, side="right"))
-        found = process.cdist(part, ordered[start:end], scorer=fuzz.ratio, score_cutoff=100 * (least - _ROUNDING))
-        for one, other in np.argwhere(found >= 100 * (least - _ROUNDING)).tolist():
-            if one < other:
-                a, b = order[start + one], order[start + other]
+        allowed = (1 - least) * (len(text) + lengths[one + 1 : end]) + _ROUNDING
+        near = one + 1 + np.flatnonzero(_apart(few[:, one + 1 : end], few[:, one]) <= allowed)
+        near = near[_apart(counts[:, near], counts[:, one]) <= allowed[near - one - 1]]
+        for other in near.tolist():
+            if fuzz.ratio(text, ordered[other], score_cutoff=100 * (least - _ROUNDING)):
+                a, b = order[one], order[other]
                 yield (a, b) if a < b else (b, a)
+
+
+_KINDS, _FEW = 32, 8
+"""Characters are counted in so many kinds, and for a first look in fewer."""
+
+
+def _apart(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(texts,) insertions and deletions at the least, from (kinds, texts) counts to those of one text."""
+    found: NDArray[np.int32] = abs(counts - mine[:, None]).sum(0, dtype=counts.dtype)
+    return found
+
+
+def _character_counts(texts: Sequence[str]) -> NDArray[np.int32]:
+    """(_KINDS, texts) how often each has characters of each kind."""
+    import numpy as np
+
+    codes = (np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32) % _KINDS for text in texts)
+    counts = [np.bincount(each, minlength=_KINDS) for each in codes]
+    return np.array(counts, np.int32).reshape(-1, _KINDS).T.copy()

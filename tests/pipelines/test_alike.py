@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 
-from hearth.pipelines import alike
 from hearth.pipelines.alike import near_sequences, near_texts
 
 
@@ -48,9 +47,13 @@ def test_the_index_of_sequences_misses_nothing():
         assert len(found) > len(rows)
 
 
-def test_lengths_keep_no_near_texts_apart(monkeypatch):
-    monkeypatch.setattr(alike, "_CHUNK", 16)
-    rows = ["".join(row) for row in families("abcdef ", 40, 90, 0.04)]
-    found = sorted(near_texts(rows, 0.9))
-    assert found == plainly(rows, of_both, 0.9)
-    assert len(found) > len(rows)
+def test_lengths_and_counted_characters_keep_no_near_texts_apart():
+    rows = ["".join(row) for row in families("abcdef \u00e9\U0001f600", 40, 90, 0.04)]
+    for least in (0.5, 0.9, 1.0):
+        found = sorted(near_texts(rows, least))
+        assert found == plainly(rows, of_both, least)
+        assert len(found) > len(rows) / 4
+
+
+def test_nothing_is_near_nothing():
+    assert list(near_texts([], 0.9)) == list(near_sequences([], 0.9)) == []
