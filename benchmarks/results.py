@@ -100,7 +100,8 @@ def document(found: Mapping[str, Section]) -> str:
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, one in found.items():
-        told = f"Measured on {one['day']} at load {one['load']}; the machine stood still {one['still']}% of the time."
+        busy = f"at load {one['load']}; the machine stood still {one['still']}% of the time"
+        told = f"Measured on {one['day']}, {busy if one['load'] is not None else 'on a busy machine'}."
         lines += [
             "",
             f"## {name}",

@@ -33,4 +33,4 @@ def test_the_document_says_target_ratio_and_spread(results):
     text = results.document({"engine": section(row("run", 4.5, 290_000.0, 250_000))})
     assert "| run | 2.9e+05 steps/s | 10% |  | 250,000 steps/s | 4.5 x |" in text
     assert "Python 3" in text and "cores" in text
-    assert "2026-01-02 at load 0.5; the machine stood still 3% of the time" in text
+    assert "2026-01-02, at load 0.5; the machine stood still 3% of the time" in text
