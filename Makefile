@@ -101,7 +101,7 @@ lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff format --check .
 	@MYPYPATH=.types $(PY) -m mypy -p hearth
 
-bench: $(READY)  ## measure everything into benchmarks/RESULTS.md; fails where a ratio to plain code fell by a third
+bench: full  ## measure everything into benchmarks/RESULTS.md; fails where a ratio to plain code fell by a third
 	@$(PY) benchmarks/results.py
 
 docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, commands and knowledge

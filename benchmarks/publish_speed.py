@@ -39,7 +39,7 @@ SHARES, EACH = 8, 25
 def main() -> None:
     """Measure and print."""
     arguments = parser(__doc__)
-    arguments.add_argument("dataset", type=Path, nargs="?", default=Path("data_out"), help="a build's folder")
+    arguments.add_argument("dataset", type=Path, nargs="?", default=Path("data_out/full"), help="a build's folder")
     asked = arguments.parse_args()
     found = list(figures(asked))
     for figure in found:

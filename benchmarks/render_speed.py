@@ -83,7 +83,7 @@ def measured(
             picture(number, scene)
             each += [time.perf_counter() - began] if number else []
     best = undisturbed(films, make)
-    return replace(rate(name, 1, each, "frames/s", target), undisturbed=best, ratio=best * yardstick.each)
+    return replace(rate(name, 1, each, "frames/s", target), undisturbed=best, ratio=yardstick.ratio(1, [1 / best]))
 
 
 def undisturbed(films: list[Scene], make: Callable[[], Picture]) -> float:

@@ -101,7 +101,6 @@ def document(found: Mapping[str, Section]) -> str:
     ]
     for name, one in found.items():
         busy = f"at load {one['load']}; the machine stood still {one['still']}% of the time"
-        busy = busy if one["load"] is not None else "how busy the machine was is not recorded"
         told = f"Measured on {one['day']}, {busy}."
         lines += [
             "",

@@ -71,7 +71,7 @@ def measured(size: int, workers: int, seed: int, folder: Path) -> list[Figure]:
     bytes_ = sum(file.stat().st_size for file in (folder / "out/publish").rglob("*.parquet"))
     name = f"{count:,} augmented programs, {workers} workers"
     return [
-        Figure(f"{name}: build", whole.seconds, "s", 120 * size / 30_000),
+        Figure(f"{name}: build", whole.seconds, "s", 120 * count / 30_000),
         Figure(f"{name}: processor a program", 1e3 * whole.spent / count, "ms"),
         Figure(f"{name}: largest process", whole.bytes / 1e6, "MB", 2_000),
         Figure(f"{name}: published on disk, a program", bytes_ / count, "bytes", 2_000),

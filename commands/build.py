@@ -192,6 +192,9 @@ def sample(
     """
     folder = next((Path(text) for text in homes or () if text != _ALL), None)
     if not sources:
+        if size is not None or limit is not None:
+            raise typer.BadParameter("only for programs of a SOURCE, which are tried and not written",
+                                     param_hint="--nodes, --limit")  # fmt: skip
         _run(None, out, workers, "sample", _options(seed, None, home, folder, kb, None), strict, as_json)
         return
     from hearth.commands import rehearsal

@@ -58,6 +58,12 @@ def test_the_command_names_the_two_steps(folder):
     assert [step["line"] for step in one["steps"]] == [7, 8]
 
 
+@pytest.mark.parametrize("option", ["--nodes", "--limit"])
+def test_what_only_a_rehearsal_heeds_is_refused_without_one(tmp_path, option):
+    done = CliRunner().invoke(app, ["sample", "--out", str(tmp_path), option, "100"])
+    assert done.exit_code == 2 and option in done.stderr and "SOURCE" in done.stderr
+
+
 def test_the_releases_graphs_are_not_read(real_data, homes):
     """Reading them all would take minutes."""
     found = scripts([str(real_data / "activityprograms-sample.zip")], homes.knowledge)
