@@ -168,7 +168,7 @@ def others() -> Iterator[Figure]:
     some = list(synthesis.synthesize(5_000, 0, grammar))
     steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
     many = corpus.Corpus(programs=[corpus.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)])
-    taken = runs(lambda: corpus.similarities(many, workers=1))
+    taken = runs(lambda: corpus.similarities(many, workers=1), 9)
     ratio = plain.textbook_lcs(steps).ratio(len(steps) ** 2, taken)
     yield seconds("all pairs of 5,000 programs compared and sorted", taken, "s", 2.0, ratio)
 

@@ -16,7 +16,7 @@ import platform
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -122,14 +122,30 @@ def _line(row: Row) -> str:
 
 
 def fallen(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[str]:
-    """Ratios that have fallen by a third or are gone."""
-    then = {key: ratio for key, ratio in _ratios(stored).items() if ratio}
-    now = _ratios(found)
+    """Ratios that have fallen by a third, or that a figure has no more."""
     return [
-        f"{name}: {figure}: {before:,.1f} times the plain reference before, {now.get((name, figure)) or 0:,.1f} now"
-        for (name, figure), before in then.items()
-        if name in found and (now.get((name, figure)) or 0) < WORST * before
+        f"{name}: {figure}: {before:,.1f} times the plain reference before, {now:,.1f} now"
+        for name, figure, before, now in _before_and_now(found, stored)
+        if now is not None and now < WORST * before
     ]
+
+
+def unmeasured(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[str]:
+    """Ratios that were not measured this time: what they are of may need data that are not here."""
+    return [
+        f"{name}: {figure}: {before:,.1f} times the plain reference before, not measured now"
+        for name, figure, before, now in _before_and_now(found, stored)
+        if now is None
+    ]
+
+
+def _before_and_now(
+    found: Mapping[str, Section], stored: Mapping[str, Section]
+) -> Iterator[tuple[str, str, float, float | None]]:
+    now = _ratios(found)
+    for (name, figure), before in _ratios(stored).items():
+        if name in found and before:
+            yield name, figure, before, (now[name, figure] or 0.0) if (name, figure) in now else None
 
 
 def _ratios(sections: Mapping[str, Section]) -> dict[tuple[str, str], float | None]:
@@ -157,7 +173,7 @@ def main(words: Iterable[str] | None = None) -> int:
         whole = dict(sorted({**stored, **found}.items()))
         STORED.write_text(json.dumps(whole, indent=1) + "\n", encoding="utf-8")
         TABLE.write_text(document(whole), encoding="utf-8")
-    print(*worse, sep="\n")
+    print(*unmeasured(found, stored), *worse, sep="\n")
     return 1 if worse else 0
 
 

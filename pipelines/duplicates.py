@@ -86,13 +86,17 @@ class Copies:
         return ""
 
 
+_SHARES = 64
+
+
 class _Recent:
     """The last so many answers, found by any of their keys; under each key the first few that are still kept."""
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._kept: dict[int, tuple[str, array[int], tuple[int, ...]]] = {}
-        self._by_key: dict[int, int | tuple[int, ...]] = {}
+        # One dictionary of all keys would be copied whole each time it has had to grow.
+        self._by_key: tuple[dict[int, int | tuple[int, ...]], ...] = tuple({} for _ in range(_SHARES))
         self._next = 0
 
     def among(self, keys: Iterable[int]) -> Iterator[tuple[str, Sequence[int]]]:
@@ -116,15 +120,16 @@ class _Recent:
             self._put(key, tuple(other for other in self._numbers(key) if other != number))
 
     def _numbers(self, key: int) -> tuple[int, ...]:
-        found = self._by_key.get(key, ())
+        found = self._by_key[key % _SHARES].get(key, ())
         return (found,) if isinstance(found, int) else found
 
     def _put(self, key: int, numbers: tuple[int, ...]) -> None:
         # Nearly every key has one answer: bare, its number takes a third of the memory.
+        share = self._by_key[key % _SHARES]
         if numbers:
-            self._by_key[key] = numbers if len(numbers) > 1 else numbers[0]
+            share[key] = numbers if len(numbers) > 1 else numbers[0]
         else:
-            del self._by_key[key]
+            del share[key]
 
 
 def pasted(items: Iterable[Item]) -> frozenset[int]:

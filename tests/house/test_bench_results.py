@@ -25,8 +25,17 @@ def test_a_ratio_that_fell_by_a_third_is_named(results):
     assert "kept" in told and "9.0" in told and "5.9" in told
 
 
-def test_a_ratio_that_is_gone_has_fallen(results):
-    assert results.fallen({"engine": section()}, {"engine": section(row("run", 9.0))})
+def test_a_ratio_that_a_figure_has_no_more_has_fallen(results):
+    stored = {"engine": section(row("run", 9.0))}
+    assert results.fallen({"engine": section(row("run"))}, stored)
+    assert not results.unmeasured({"engine": section(row("run"))}, stored)
+
+
+def test_what_was_not_measured_is_named_and_has_not_fallen(results):
+    stored = {"engine": section(row("run", 9.0)), "other": section(row("x", 5.0))}
+    assert not results.fallen({"engine": section()}, stored)
+    (told,) = results.unmeasured({"engine": section()}, stored)
+    assert "run" in told and "not measured" in told
 
 
 def test_the_document_says_target_ratio_and_spread(results):
