@@ -45,9 +45,8 @@ def _figure(name: str, found: dict[str, list[dict[str, Any]]]) -> Figure:
     other = found.get(info.get("against", ""))
     best = 1 / _least(found[name])
     unit = f"{info.get('unit', 'run')}s/s"
-    return Figure(
-        name, info.get("units", 1) / median(medians), unit, TARGETS.get(name), other and _least(other) * best, spread, best
-    )
+    ratio = other and _least(other) * best
+    return Figure(name, info.get("units", 1) / median(medians), unit, TARGETS.get(name), ratio, spread, best)
 
 
 def _least(benches: Sequence[dict[str, Any]]) -> float:
