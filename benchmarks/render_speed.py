@@ -87,10 +87,11 @@ def measured(
 
 
 def undisturbed(films: list[Scene], make: Callable[[], Picture]) -> float:
-    """Frames a second of a machine that never stands still, if its processors share what threads do.
+    """Frames a second of a machine that never stands still, by one thread of ours (a cast uses all processors).
 
-    A picture takes longer than such a machine goes on for at a time: its pieces are timed one by one, by one thread,
-    and the least times of each piece are added up.
+    A picture takes longer than a machine that others share goes on for at a time: its pieces are timed one by one and
+    the least times of each piece are added up. What our threads gain over that is left out: casts hold the
+    interpreter's lock, so that it is little.
     """
     pieces, runs = Pieces(), [list[tuple[float, list[float]]]() for _ in films]
     pool, threads._pool = threads._pool, lambda process: pieces
@@ -123,9 +124,9 @@ class Pieces:
 
 
 def shared(runs: list[tuple[float, list[float]]]) -> float:
-    """Seconds that a picture takes at least, by runs of it: what is done alone, and its pieces by all processors."""
+    """Seconds that a picture takes at least, by runs of it: its pieces and what is done between them."""
     pieces = [min(times) for times in zip(*(times for _, times in runs), strict=True)]
-    return min(alone for alone, _ in runs) + max(sum(pieces) / threads.count(), max(pieces, default=0.0))
+    return min(alone for alone, _ in runs) + sum(pieces)
 
 
 class Stayed:

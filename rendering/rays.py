@@ -82,7 +82,8 @@ NO_TRIANGLE = 0xFFFFFFFF
 class Caster:
     """Triangles that rays can be cast at. Rays are (N, 6) float32: origins x, y, z and directions x, y, z.
 
-    Casts use the thread they are called from, and let other threads go on.
+    A cast is shared among all processors by Embree itself: it holds the interpreter's lock, so that threads of ours
+    would cast one after the other.
     """
 
     count: int
@@ -105,7 +106,7 @@ class Caster:
         if not self.count or not size:
             nothing = np.full(size, NO_TRIANGLE, np.uint32)
             return np.full(size, np.inf, np.float32), nothing, np.zeros((size, 2), np.float32)
-        answer = self.scene.cast_rays(engine().core.Tensor.from_numpy(rays), 1)
+        answer = self.scene.cast_rays(engine().core.Tensor.from_numpy(rays), ALL)
         return answer["t_hit"].numpy(), answer["primitive_ids"].numpy(), answer["primitive_uvs"].numpy()
 
     def cast(self, rays: Floats) -> Hits:
@@ -118,9 +119,12 @@ class Caster:
         if not self.count or not len(rays):
             return np.zeros(len(rays), np.bool_)
         tensor = engine().core.Tensor.from_numpy(rays)
-        found: NDArray[np.bool_] = self.scene.test_occlusions(tensor, 0.0, far, 1).numpy()
+        found: NDArray[np.bool_] = self.scene.test_occlusions(tensor, 0.0, far, ALL).numpy()
         return found
 
+
+ALL = 0
+"""As many threads as there are processors, in open3d's words."""
 
 SMALL = 20_000
 """Triangles up to which the tree over them is built by one thread."""

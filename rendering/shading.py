@@ -29,7 +29,7 @@ Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 
-CHUNK = 16384
+CHUNK = 65536
 """Pixels that are worked on together."""
 
 SUN = 0

@@ -1,4 +1,4 @@
-"""A few threads for work that lets go of the interpreter: casts and compiled loops."""
+"""A few threads for work that lets go of the interpreter: compiled loops."""
 
 from __future__ import annotations
 
