@@ -21,6 +21,7 @@ from hearth.pipelines import judging
 from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
+from hearth.pipelines.stored_cases import stored_cases
 from hearth.pipelines.surroundings import RULES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.program import ObjectRef, Step
@@ -92,8 +93,8 @@ def scoring(dataset: Dataset) -> Iterator[Figure]:
     _, homes = judging.opened(folder)
     ids = [name for (name,) in dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
     shares = [ids[number * len(ids) // SHARES :][: judging.PART] for number in range(SHARES)]
-    reading = passes(lambda share: list(judging._cases(dataset, share)), shares, 9)
-    cases = {case["execution_id"]: case for share in shares for case in judging._cases(dataset, share[:EACH])}
+    reading = passes(lambda share: list(stored_cases(dataset, share)), shares, 9)
+    cases = {case["execution_id"]: case for share in shares for case in stored_cases(dataset, share[:EACH])}
     pairs = [
         judging._filled(Pair(name, predicted(case, place), ()), case)
         for place, (name, case) in enumerate(cases.items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.spread import Seen, spread, unseen
+from hearth.pipelines.stored_cases import stored_cases
 from hearth.pipelines.surroundings import RULES
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -85,7 +86,7 @@ def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, wor
 def _judged(job: Job) -> list[Scored]:
     folder, pairs, options = job
     dataset, homes = opened(folder)
-    cases = {case["execution_id"]: case for case in _cases(dataset, [pair.id for pair in pairs])}
+    cases = {case["execution_id"]: case for case in stored_cases(dataset, [pair.id for pair in pairs])}
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
     found = []
     for pair, lcs in zip(filled, lcs_of(filled, options.instances), strict=True):
@@ -144,37 +145,6 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
         suggestion = f"there are {', '.join(name for (name,) in there)}"
         raise HearthError.of(Code.UNKNOWN_ID, message, file=str(dataset.folder), suggestion=suggestion)
     return found
-
-
-_RUNS = """SELECT execution_id, home, rules, bindings, environment_id, program_id FROM executions
-    SEMI JOIN (SELECT unnest($ids) AS execution_id) USING (execution_id) WHERE execution_id BETWEEN $low AND $high"""
-
-_ENVIRONMENTS = """SELECT environment_id, added_nodes, removed_nodes, added, removed, set_states, cleared_states
-    FROM environments SEMI JOIN (SELECT unnest($ids) AS environment_id) USING (environment_id)
-    WHERE environment_id BETWEEN $low AND $high"""
-
-_PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM programs
-    SEMI JOIN (SELECT unnest($ids) AS program_id) USING (program_id) WHERE program_id BETWEEN $low AND $high"""
-
-
-def _cases(dataset: Dataset, names: list[str]) -> Iterator[dict[str, Any]]:
-    """What scoring asks of executions; their ticks are not read.
-
-    Three questions, each within its own range of ids: of a join, DuckDB would read whole tables, share after share.
-    """
-
-    def asked(query: str, ids: list[str]) -> list[dict[str, Any]]:
-        bounds = {"ids": ids, "low": min(ids), "high": max(ids)}
-        found: list[dict[str, Any]] = dataset.connection.sql(query, params=bounds).to_arrow_table().to_pylist()
-        return found
-
-    runs = asked(_RUNS, names)
-    environments, programs = (
-        {row[key]: row for row in asked(query, sorted({run[key] for run in runs}))}
-        for query, key in ((_ENVIRONMENTS, "environment_id"), (_PROGRAMS, "program_id"))
-    )
-    for run in runs:
-        yield {**run, **programs[run["program_id"]], "environment": environments[run["environment_id"]]}
 
 
 def read_line(line: str) -> tuple[Step, ...] | Diagnostic:

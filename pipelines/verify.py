@@ -10,11 +10,11 @@ from typing import Any
 
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.spread import Seen, spread, unseen
+from hearth.pipelines.stored_cases import stored_cases
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.home import Home
 
-BATCH = 256
 SHARE = 1_000
 """Executions that a process runs again at a time."""
 
@@ -223,31 +223,6 @@ class StoredHomes:
         return self._built[name]
 
 
-CASES = """
-    SELECT e.execution_id, e.home, e.rules, e.bindings, e.ticks, e.failure, p.title, p.description, p.steps,
-        {{'added_nodes': v.added_nodes, 'removed_nodes': v.removed_nodes, 'added': v.added, 'removed': v.removed,
-         'set_states': v.set_states, 'cleared_states': v.cleared_states}} AS environment
-    FROM (SELECT * FROM executions{within}) e JOIN environments v USING (environment_id)
-        JOIN programs p ON p.program_id = e.program_id
-    ORDER BY e.execution_id
-"""
-
-
-def cases(dataset: Dataset, low: str = "", high: str | None = None) -> Iterator[dict[str, Any]]:
-    """Executions with their programs and environments, as far as running them needs it.
-
-    Args:
-        dataset: where they are.
-        low, high: the ids of the first and the last of them; all without.
-    """
-    within = "" if high is None else " WHERE execution_id BETWEEN $low AND $high"
-    asked = None if high is None else {"low": low, "high": high}
-    # A cursor of its own: a connection has one open result, and homes are read meanwhile.
-    with dataset.connection.cursor() as cursor:
-        for batch in cursor.sql(CASES.format(within=within), params=asked).to_arrow_reader(BATCH):
-            yield from batch.to_pylist()
-
-
 def _replays(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Diagnostic]:
     place, wrong = str(dataset.folder / "executions"), 0
     for found in _replayed(dataset, workers, seen):
@@ -264,20 +239,19 @@ Wrong = list[tuple[str, str]]
 
 
 def _replayed(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Wrong]:
-    _, rows = dataset.rows("SELECT execution_id FROM executions ORDER BY 1")
-    names = [name for (name,) in rows]
-    shares = [names[start : start + SHARE] for start in range(0, len(names), SHARE)]
-    jobs = [(str(dataset.folder), share[0], share[-1]) for share in shares]
+    # In the order of the files, which is the same for environments and programs: a share is in few row groups of each.
+    names = [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
+    jobs = [(str(dataset.folder), names[start : start + SHARE]) for start in range(0, len(names), SHARE)]
     return spread(_replay, jobs, workers, seen)
 
 
-def _replay(job: tuple[str, str, str]) -> Wrong:
+def _replay(job: tuple[str, list[str]]) -> Wrong:
     from hearth.pipelines.cases import difference_on_replay
 
-    folder, low, high = job
+    folder, names = job
     dataset, homes = opened(folder)
     wrong: Wrong = []
-    for case in cases(dataset, low, high):
+    for case in stored_cases(dataset, names, ("ticks", "failure")):
         try:
             difference = difference_on_replay(case, homes)
         except (HearthError, KeyError, ValueError, TypeError) as error:
