@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from array import array
 from hashlib import blake2b
 from typing import Any
@@ -59,5 +60,9 @@ class Tally:
 
 def digest(value: Any) -> int:
     """A number that stands for a JSON value, the same in every process."""
-    data = orjson.dumps(value, option=orjson.OPT_SORT_KEYS)
+    try:
+        data = orjson.dumps(value, option=orjson.OPT_SORT_KEYS)
+    except TypeError:
+        # Bytes that are no text are read as lone surrogates, which JSON in UTF-8 cannot hold.
+        data = json.dumps(value, sort_keys=True).encode()
     return int.from_bytes(blake2b(data, digest_size=8).digest(), "little")

@@ -49,3 +49,9 @@ def test_one_answer_for_many_descriptions_is_refused_every_time():
     same = [written(number, STEPS, described=f"D{number}") for number in range(1, 31)]
     assert refused([*same, written(31, STEPS, worker="V")]) == [f"p{number}" for number in range(1, 31)]
     assert refused(same[:2]) == []
+
+
+def test_answers_that_are_no_text_are_compared_too():
+    broken = [*STEPS, "[Find] <caf\udce9> (1)"]
+    assert refused([written(number, broken, described=f"D{number}") for number in range(1, 4)]) == ["p1", "p2", "p3"]
+    assert refused([told(1, f"{WORDS} \udce9"), told(2, f"{WORDS} \udce9", worker="V")]) == ["d2"]
