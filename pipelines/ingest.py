@@ -17,6 +17,7 @@ from hearth.pipelines.repeated import Repeated
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import labelled, salt
 from hearth.pipelines.stage import BATCH, Job, Partition, Record, Stage
+from hearth.schemas.failures import Code
 from hearth.schemas.tables import INGESTED
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
@@ -73,10 +74,16 @@ def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
 
 def _scanned(entry: Recognised) -> Iterator[Item]:
     """What a reader finds; where a packed file breaks off, what came before is kept and the break is refused."""
+    found = False
     try:
-        yield from SCANNERS[entry.reader](entry.path, entry.inside)
+        for item in SCANNERS[entry.reader](entry.path, entry.inside):
+            found = True
+            yield item
     except DamagedError as error:
+        found = True
         yield refused(entry.inside, Reject.because([f.at(entry.inside) for f in error.diagnostics]), f"{entry.inside}~")
+    if not found:
+        yield refused(entry.inside, Reject.of(Code.EMPTY, "no records in it", file=entry.inside))
 
 
 def partitions(job: Job) -> Iterator[Partition]:

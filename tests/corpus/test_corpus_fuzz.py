@@ -9,7 +9,8 @@ from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.pipelines import fuzzing
-from hearth.pipelines.ingest import READERS
+from hearth.pipelines.ingest import READERS, items
+from hearth.pipelines.sources import labelled
 
 
 def test_good_seeds_give_rows_in_every_reader(knowledge, tmp_path):
@@ -44,3 +45,11 @@ def test_the_command(seed):
     result = CliRunner().invoke(app, ["corpus", "fuzz", "--cases", "24", "--seed", str(seed), "--json"])
     assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["cases"] == 24
+
+
+@pytest.mark.parametrize("text", ["[]", "[ ]\n", "", "\n\n"])
+def test_a_file_without_records_is_refused_not_lost(tmp_path, text):
+    file = tmp_path / "steps.json"
+    file.write_text(text)
+    (found,) = items(labelled([str(file)]))
+    assert found[1].reader == "refused"
