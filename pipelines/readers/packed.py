@@ -60,7 +60,7 @@ class DamagedError(HearthError):
 def _archive(path: str, changed: int) -> zipfile.ZipFile:
     try:
         return zipfile.ZipFile(path)
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError) as error:
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, ValueError) as error:
         message = f"a damaged or truncated archive: {error}"
         raise HearthError.of(Code.BAD_ARCHIVE, message, file=path, suggestion="download it again") from error
 

@@ -60,6 +60,9 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[dict[str, Any]
                 lacking = sorted({*columns} - {*source.schema_arrow.names})
                 if lacking:
                     raise ValueError(f"it lacks the column{'s' * (len(lacking) > 1)} {', '.join(lacking)}")
+                bytes_ = [name for name in columns if pa.types.is_binary(source.schema_arrow.field(name).type)]
+                if bytes_:
+                    raise ValueError(f"bytes instead of text in {', '.join(bytes_)}")
                 for batch in source.iter_batches(_ROWS, columns=columns):
                     yield from batch.to_pylist()
         except (pa.ArrowException, OSError, ValueError) as error:

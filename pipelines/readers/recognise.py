@@ -191,7 +191,7 @@ def _archive(path: Path, place: str) -> Iterator[Recognised]:
     try:
         with zipfile.ZipFile(path) as archive:
             infos = members(archive)
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError) as error:
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, ValueError) as error:
         message = f"a damaged or truncated archive: {error}"
         reject = Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion="download it again")
         yield Recognised(path, place, "", reject)

@@ -53,3 +53,11 @@ def test_a_file_without_records_is_refused_not_lost(tmp_path, text):
     file.write_text(text)
     (found,) = items(labelled([str(file)]))
     assert found[1].reader == "refused"
+
+
+@pytest.mark.parametrize("number", [111784, 237133])
+def test_cases_that_once_made_a_traceback(tmp_path, knowledge, number):
+    name, data = fuzzing.case(11, number)
+    report = fuzzing.Report()
+    fuzzing._attempt(fuzzing.placed(tmp_path, name, data), knowledge, report)
+    assert not report.crashes
