@@ -60,9 +60,7 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[dict[str, Any]
                 lacking = sorted({*columns} - {*source.schema_arrow.names})
                 if lacking:
                     raise ValueError(f"it lacks the column{'s' * (len(lacking) > 1)} {', '.join(lacking)}")
-                bytes_ = [name for name in columns if pa.types.is_binary(source.schema_arrow.field(name).type)]
-                if bytes_:
-                    raise ValueError(f"bytes instead of text in {', '.join(bytes_)}")
+                _check_text(source.schema_arrow, columns)
                 for batch in source.iter_batches(_ROWS, columns=columns):
                     yield from batch.to_pylist()
         except (pa.ArrowException, OSError, ValueError) as error:
@@ -70,6 +68,17 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[dict[str, Any]
             message = f"not to be read as a table of a dataset: {error}"
             suggestion = "`verify` says whether a dataset is whole; copy it again"
             raise DamagedError.of(Code.DAMAGED_FILE, message, file=name, suggestion=suggestion) from error
+
+
+def _check_text(schema: Any, columns: list[str]) -> None:
+    """ValueError where the rows' id, the first column, is not text, or anything is bytes."""
+    import pyarrow.types as kind
+
+    for name in columns:
+        found = schema.field(name).type
+        text = kind.is_string(found) or kind.is_large_string(found)
+        if kind.is_binary(found) or kind.is_large_binary(found) or (name == columns[0] and not text):
+            raise ValueError(f"{name} is {found}, not text")
 
 
 def read(item: Item) -> dict[str, Any] | Reject:

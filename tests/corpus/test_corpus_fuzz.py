@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import zipfile
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
@@ -11,6 +14,8 @@ from hearth.cli import app
 from hearth.pipelines import fuzzing
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.sources import labelled
+from hearth.schemas.errors import HearthError
+from hearth.schemas.failures import Code
 
 
 def test_good_seeds_give_rows_in_every_reader(knowledge, tmp_path):
@@ -55,9 +60,23 @@ def test_a_file_without_records_is_refused_not_lost(tmp_path, text):
     assert found[1].reader == "refused"
 
 
-@pytest.mark.parametrize("number", [111784, 237133])
-def test_cases_that_once_made_a_traceback(tmp_path, knowledge, number):
-    name, data = fuzzing.case(11, number)
-    report = fuzzing.Report()
-    fuzzing._attempt(fuzzing.placed(tmp_path, name, data), knowledge, report)
-    assert not report.crashes
+def test_an_archive_whose_names_are_no_text_is_refused(tmp_path):
+    file = tmp_path / "plain.zip"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("caf\u00e9.txt", "Tea\nA cup.\n\n\n[Walk] <cup> (1)\n")
+    file.write_bytes(file.read_bytes().replace("\u00e9".encode(), b"\xe9\xe9"))
+    with pytest.raises(HearthError) as caught:
+        list(items(labelled([str(file)])))
+    assert caught.value.diagnostics[0].code is Code.BAD_ARCHIVE
+
+
+@pytest.mark.parametrize("kind", [pa.binary(), pa.int64()])
+def test_a_dataset_whose_ids_are_no_text_is_refused(tmp_path, kind):
+    folder = fuzzing.placed(tmp_path, fuzzing.DATASET, fuzzing.SEEDS[fuzzing.DATASET]())
+    (file,) = (folder / "programs").glob("*.parquet")
+    table = pq.read_table(file)
+    place = table.schema.get_field_index("program_id")
+    ids = pa.array([b"1" if kind == pa.binary() else 1] * table.num_rows, kind)
+    pq.write_table(table.set_column(place, "program_id", ids), file)
+    found = [item for _, item in items(labelled([str(folder)]))]
+    assert found and found[-1].reader == "refused"
