@@ -18,7 +18,7 @@ import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, tell
 
 from hearth.grounding.base import prepared
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.pipelines.augment_figures import GIVEN_UP
 from hearth.pipelines.augmenting import Options, augment
 from hearth.pipelines.build import corpus

@@ -15,7 +15,7 @@ import orjson
 
 from hearth.grounding.binding import Binding, bind
 from hearth.kb import grammar
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step

@@ -19,7 +19,7 @@ from random import Random
 import plain
 from measuring import Figure, finish, parser, passes, rate, runs, seconds, tell
 
-from hearth.kb import knowledge
+from hearth.kb.loading import default
 from hearth.pipelines import corpus, spoken, synthesis
 from hearth.pipelines.readers.crowd import DESCRIPTIONS, PROGRAMS
 from hearth.schemas.program import ObjectRef, Step
@@ -156,7 +156,7 @@ def memory(folder: Path) -> Iterator[Figure]:
 
 
 def others() -> Iterator[Figure]:
-    known = knowledge.default()
+    known = default()
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
     split = plain.split_words([words] * 1_000)

@@ -10,7 +10,8 @@ from pathlib import Path
 import plain
 from measuring import Figure, finish, parser, seconds, tell
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 
 KB = Path(__file__).resolve().parents[1] / "kb"
 LOAD = 150
@@ -19,7 +20,7 @@ LOAD = 150
 COLD = """
 import time
 started = time.perf_counter()
-from hearth.kb.knowledge import load
+from hearth.kb.loading import load
 load()
 print(time.perf_counter() - started)
 """

@@ -16,7 +16,7 @@ from reference_world import Options
 from reference_world import World as PlainWorld
 
 from hearth.grounding.binding import Binding, bind
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.graph import Edge, Node, from_release
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.edit import extended

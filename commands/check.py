@@ -63,9 +63,9 @@ def check(
       python cli.py check morning.txt evening.txt
       python cli.py check --fix morning.txt
     """
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default, load
 
-    known = knowledge.load(overlay=kb) if kb else knowledge.default()
+    known = load(overlay=kb) if kb else default()
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}
     checked = [
         replace(check_file(file, known, affordances=affordances, lint=lint), diff=diffs.get(file, "")) for file in files

@@ -203,10 +203,10 @@ def fuzz(
     Example:
       python cli.py corpus fuzz --seconds 60 --seed 7
     """
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default
     from hearth.pipelines import fuzzing
 
-    report = fuzzing.fuzz(knowledge.default(), seconds, seed, most)
+    report = fuzzing.fuzz(default(), seconds, seed, most)
     if as_json:
         output.emit(report)
     else:
@@ -254,13 +254,13 @@ def sheet(
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
     """Some valid programs, the same for the same seed."""
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default
     from hearth.pipelines import corpus as numbers
     from hearth.pipelines.build import corpus as embedded
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng
 
-    found = numbers.gather([str(path) for path in sources or embedded()], knowledge.default())
+    found = numbers.gather([str(path) for path in sources or embedded()], default())
     chosen = rng(seed, "ratings").sample(found.programs, min(count, len(found.programs)))
     return [(p.program_id, Program(p.title, found.descriptions.get(p.description_id, ""), p.steps)) for p in chosen]
 
@@ -282,11 +282,11 @@ def completeness(
       python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
     """
     from hearth.commands.inputs import read_home
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default
     from hearth.pipelines import ratings
     from hearth.schemas.failures import Failure
 
-    known = knowledge.default()
+    known = default()
     place = read_home(home, None, None, known)
     guessed = {name: ratings.estimate(one, place, known, seed) for name, one in _drawn(sources, count, seed)}
     estimated = {name: found for name, found in guessed.items() if not isinstance(found, Failure)}

@@ -78,7 +78,7 @@ def rules(source: Source, limit: Limit = None, as_json: output.Json = False) -> 
     """
     from itertools import islice
 
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.pipelines.agreement import agreement
     from hearth.pipelines.rehearsal import scripts
 
@@ -227,7 +227,7 @@ def preconditions(
       python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
       python cli.py environment preconditions release.zip --drawing bars.svg
     """
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.pipelines import realism as report
 
     names = classes or ["cup", "sauce_pan"]

@@ -227,7 +227,7 @@ def edit(
       python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
     """
     from hearth.commands.edits import edited
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.simulation.homes import exporting
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),

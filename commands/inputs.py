@@ -26,9 +26,9 @@ def read_knowledge(overlay: Path | None) -> Knowledge:
     Raises:
         HearthError: every fault of the user's files.
     """
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default, load
 
-    return knowledge.load(overlay=overlay) if overlay else knowledge.default()
+    return load(overlay=overlay) if overlay else default()
 
 
 def read_program(file: Path, known: Knowledge) -> Program:

@@ -29,9 +29,9 @@ _SHOWN = 20
 
 
 def _known(kb: Path | None) -> Knowledge:
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default, load
 
-    return knowledge.load(overlay=kb) if kb else knowledge.default()
+    return load(overlay=kb) if kb else default()
 
 
 @app.command()

@@ -245,7 +245,7 @@ def visible(
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[Looked]]]:
     """Programs that run, drawn by the seed, each in the next of our homes; with what can be seen of each."""
     from hearth.grounding.trial import attempt
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.pipelines.build import corpus
     from hearth.pipelines.rehearsal import Script, scripts
     from hearth.rendering.snapshots import play

@@ -39,7 +39,7 @@ def replay(
     from itertools import islice
 
     from hearth.commands.waiting import bar, watched
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.pipelines.replay import replay as run_all
     from hearth.simulation.rules import DEFAULT, REPLAY
 

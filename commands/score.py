@@ -159,7 +159,7 @@ def program(
     Example:
       python cli.py score program predictions.jsonl --graph home.json --by activity
     """
-    from hearth.kb import knowledge
+    from hearth.kb.loading import default
     from hearth.pipelines.judging import read_line
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
@@ -169,7 +169,7 @@ def program(
     chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
     options = Options(chosen, match.value, scope.value, instances, seed)
     pairs = read_pairs(file, references, read_line)
-    scored = evaluate(pairs, knowledge.default(), environments.by_row(file, graph, homes), options)
+    scored = evaluate(pairs, default(), environments.by_row(file, graph, homes), options)
     if as_json:
         output.emit(_program_json(scored, options, by))
     else:

@@ -8,8 +8,8 @@ from typing import Any
 from urllib.parse import quote
 
 from hearth.exports.reading import Wanted, programs
-from hearth.kb import knowledge as kb
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.pipelines.dataset import Dataset
 
 PREFIX = "https://hearth.invalid/terms#"
@@ -35,7 +35,7 @@ def rdf(dataset: Dataset, to: Path, wanted: Wanted) -> int:
             file.writelines(f"{line}\n" for line in _program(row))
     with (to / "knowledge.ttl").open("w", encoding="utf-8", newline="\n") as file:
         file.write(_HEAD)
-        file.writelines(f"{line}\n" for line in _knowledge(kb.default()))
+        file.writelines(f"{line}\n" for line in _knowledge(default()))
     return number
 
 

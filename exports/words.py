@@ -8,8 +8,8 @@ from typing import Any
 import orjson
 
 from hearth.exports.reading import Wanted, programs, write
-from hearth.kb import knowledge as kb
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.kb.phrases import say
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import program_of
@@ -37,7 +37,7 @@ def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     Returns:
         how many programs.
     """
-    knowledge = kb.default()
+    knowledge = default()
     steps, chat, examples = [], [], []
     for row in programs(dataset, wanted):
         program = program_of(row)

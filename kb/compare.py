@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from hearth.kb.knowledge import Knowledge, load
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import load
 from hearth.kb.reasons import FIELDS, Fact, Reasons, root_of
 from hearth.kb.release_facts import is_release, read_release
 

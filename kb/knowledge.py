@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
-from pathlib import Path
+from functools import cached_property
 
 from hearth.kb.formula import Atom, Effect, Formula
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
@@ -260,23 +259,3 @@ class Knowledge:
     def object_spellings(self) -> dict[str, str]:
         """Every spelling of an object, as `key_of` gives it -> its class."""
         return {key: thing.name for key, thing in self._object_names.items()}
-
-
-def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledge:
-    """Read the knowledge from `directory` (ours when None), with a user's own files laid over it.
-
-    An entry of the overlay replaces ours of the same name; a placement of weight 0 takes ours away.
-
-    Raises:
-        HearthError: every duplicate key, unknown property, unknown object, circle of synonyms and other fault of all
-            files, each with file and line.
-    """
-    from hearth.kb.loading import assemble
-
-    return assemble([directory or Path(__file__).parent, *([overlay] if overlay else [])])
-
-
-@lru_cache(maxsize=1)
-def default() -> Knowledge:
-    """Our own knowledge, loaded once."""
-    return load()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -44,12 +45,16 @@ FILES = (
 """Every file the knowledge is read from; another YAML or CSV file in a directory of it is a mistake."""
 
 
-def assemble(layers: list[Path]) -> Knowledge:
-    """Read the layers, the first of which must be complete.
+def load(directory: Path | None = None, overlay: Path | None = None) -> Knowledge:
+    """Read the knowledge from `directory` (ours when None), with a user's own files laid over it.
+
+    An entry of the overlay replaces ours of the same name; a placement of weight 0 takes ours away.
 
     Raises:
-        HearthError: every fault of all files.
+        HearthError: every duplicate key, unknown property, unknown object, circle of synonyms and other fault of all
+            files, each with file and line.
     """
+    layers = [directory or Path(__file__).parent, *([overlay] if overlay else [])]
     faults = Faults()
     for number, layer in enumerate(layers):
         _check_files(layer, number == 0, faults)
@@ -57,6 +62,12 @@ def assemble(layers: list[Path]) -> Knowledge:
     if faults or knowledge is None:
         raise HearthError(sorted(faults, key=lambda fault: (fault.file, fault.line)))
     return knowledge
+
+
+@lru_cache(maxsize=1)
+def default() -> Knowledge:
+    """Our own knowledge, loaded once."""
+    return load()
 
 
 def _check_files(layer: Path, complete: bool, faults: Faults) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any, NamedTuple
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.kb.records import Action
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.judging import judge_steps

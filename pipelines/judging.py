@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from hearth.kb import knowledge as kb
 from hearth.kb.hearing import understand
+from hearth.kb.loading import default
 from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
@@ -153,7 +153,7 @@ def read_line(line: str) -> tuple[Step, ...] | Diagnostic:
     if not isinstance(parsed, Diagnostic):
         return parsed
     said = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line
-    meant = understand(kb.default(), said).meant if said else None
+    meant = understand(default(), said).meant if said else None
     if meant is None:
         return parsed
     return (Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)),)

@@ -8,8 +8,8 @@ from typing import Any
 
 import orjson
 
-from hearth.kb import knowledge as kb
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default, load
 from hearth.pipelines.files import tree_digest
 from hearth.pipelines.settings import Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
@@ -26,12 +26,12 @@ USES = ("kb", "simulation", "data_raw/homes", "pipelines/surroundings.py", "pipe
 
 def knowledge(settings: Settings) -> Knowledge:
     """Our knowledge, with the user's laid over it."""
-    return _overlaid(settings.kb_folder) if settings.kb_folder else kb.default()
+    return _overlaid(settings.kb_folder) if settings.kb_folder else default()
 
 
 @cache
 def _overlaid(folder: str) -> Knowledge:
-    return kb.load(overlay=Path(folder))
+    return load(overlay=Path(folder))
 
 
 def overlays(settings: Settings) -> dict[str, Any]:

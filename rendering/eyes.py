@@ -6,7 +6,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.rendering.acting import Actor, cast, posed
 from hearth.rendering.camera import Camera, follow, top_view
 from hearth.rendering.modalities import render

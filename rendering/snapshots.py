@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.rendering.acting import Actor, carried, cast, moved, posed
 from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.geometry import Still

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, radians, sin
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.rendering.figure import Figure
 from hearth.rendering.lights import SPILL, Daylight, Light, daylight, lamp, window
 from hearth.rendering.meshes.catalog import RECIPES

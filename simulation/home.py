@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.simulation import building
 from hearth.simulation.affordance import allowed

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.simulation.home import Home
 from hearth.simulation.homes import catalog
 

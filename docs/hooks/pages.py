@@ -33,7 +33,7 @@ def _helps(words: str, command: Any) -> Iterator[tuple[str, str]]:
 
 def actions() -> str:
     """Every action that is known."""
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
 
     lines = [
         "# Actions",
@@ -53,7 +53,7 @@ def actions() -> str:
 
 def objects() -> str:
     """Every class of objects that is known."""
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
 
     lines = ["# Objects", "", "Classes, what they can be and do; `hearth kb show NAME` tells all of one."]
     lines += ["", "| class | category | properties |", "|---|---|---|"]

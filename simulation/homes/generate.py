@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from random import Random
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng

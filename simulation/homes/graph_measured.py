@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation.homes.forms import form

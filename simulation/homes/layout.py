@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from hearth.kb.knowledge import Knowledge, default
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading import default
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.graph import Box
 from hearth.schemas.vocabulary import CHARACTER_CLASS

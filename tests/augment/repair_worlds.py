@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.vocabulary import STATE_ID

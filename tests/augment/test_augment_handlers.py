@@ -8,7 +8,7 @@ import pytest
 from repair_worlds import ROOMS, small_world, steps_of
 
 from hearth.grounding.postconditions import Fact
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.pipelines.handlers import registry
 from hearth.pipelines.handlers.common import Edit, Splice
 from hearth.pipelines.repairing import repair

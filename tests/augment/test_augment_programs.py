@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hearth.grounding.postconditions import nodes_of, reached
 from hearth.kb import grammar
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.pipelines.augmenting import Augmented, Options, augment
 from hearth.pipelines.repairing import TRIES, repair
 from hearth.schemas.failures import Code, Failure

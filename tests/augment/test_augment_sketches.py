@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hearth.grounding.sketches import asked
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.pipelines.sketching import inherited, sketch
 from hearth.schemas.syntax import parse_program, print_step
 from hearth.simulation.home import Home

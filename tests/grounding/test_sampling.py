@@ -11,7 +11,7 @@ from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.soundness import unsound
 from hearth.kb import grammar
-from hearth.kb.knowledge import load
+from hearth.kb.loading import load
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.syntax import parse_program

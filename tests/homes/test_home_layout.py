@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.simulation.homes import catalog
 from hearth.simulation.homes.floor import stands_on_floor

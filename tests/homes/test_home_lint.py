@@ -108,7 +108,7 @@ def test_every_check_is_tried():
 
 
 def view_of(graph):
-    from hearth.kb.knowledge import default
+    from hearth.kb.loading import default
     from hearth.simulation.homes.lint import View
 
     return View(graph, default())

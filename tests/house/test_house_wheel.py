@@ -64,7 +64,7 @@ def installed(wheel, tmp_path_factory):
 
 
 def test_it_is_imported_from_where_it_was_installed(installed, tmp_path):
-    code = "import hearth, hearth.kb.knowledge as kb; print(hearth.__file__); print(len(kb.default().actions))"
+    code = "import hearth, hearth.kb.loading as kb; print(hearth.__file__); print(len(kb.default().actions))"
     file, actions = run(installed / "python", "-c", code, cwd=tmp_path).split()
     assert Path(file).is_relative_to(installed.parent)
     assert int(actions) == 84

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.kb.knowledge import load
 from hearth.kb.lint import CHECKS, lint
+from hearth.kb.loading import load
 
 HEADER = "id,name,category,hypernym,properties,states,rooms,size,gloss,same_as,source\n"
 PLACES = "object,relation,destination,room,weight,evidence\n"

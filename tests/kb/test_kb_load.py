@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 import hearth.kb
-from hearth.kb.knowledge import load
-from hearth.kb.loading import FILES
+from hearth.kb.loading import FILES, load
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 

@@ -14,7 +14,7 @@ from hearth.exports.reading import Wanted, file_name
 from hearth.exports.registry import FORMATS, export
 from hearth.exports.release import ROOT
 from hearth.exports.triples import iri, text
-from hearth.kb import knowledge as kb
+from hearth.kb.loading import default
 from hearth.kb.phrases import hear
 from hearth.pipelines.replay import replay
 from hearth.schemas.errors import HearthError
@@ -44,7 +44,7 @@ def test_the_release_comes_back_through_ingest(ds, tmp_path, built, made):
 
 def test_what_was_exported_as_a_release_replays(ds, tmp_path):
     export(ds, "release", tmp_path / "out")
-    found = list(replay(tmp_path / "out" / ROOT, kb.default()))
+    found = list(replay(tmp_path / "out" / ROOT, default()))
     assert len(found) == ds.rows("SELECT count(*) FROM executions")[1][0][0]
     assert all(not one.faults for one in found)
     mine = [one for one in found if one.program_id == "batch-1/file1_1"]
@@ -57,7 +57,7 @@ def test_words_name_the_same_actions_and_objects(ds, tmp_path):
     assert [row["program_id"] for row in rows] == list(ds)
     for row in rows:
         for said, step in zip(row["steps"], ds[row["program_id"]].program.steps, strict=True):
-            meant = {(action.name, names) for action, names in hear(kb.default(), said)}
+            meant = {(action.name, names) for action, names in hear(default(), said)}
             assert (step.action, tuple(ref.name for ref in step.objects)) in meant
 
 
@@ -122,7 +122,7 @@ def test_triples_read_by_rdflib(ds, tmp_path):
     ((number,),) = found.query(query % "https://hearth.invalid/terms#")
     assert int(number) == ds.rows("SELECT count(*) FROM steps")[1][0][0]
     known = rdflib.Graph().parse(tmp_path / "out/knowledge.ttl")
-    assert len(known) > len(kb.default().objects)
+    assert len(known) > len(default().objects)
 
 
 def test_literals_and_identifiers_are_escaped():

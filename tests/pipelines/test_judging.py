@@ -10,7 +10,7 @@ import pytest
 
 import hearth
 from hearth.exports.words import sentences
-from hearth.kb import knowledge as kb
+from hearth.kb.loading import default
 from hearth.pipelines.baselines import (
     BASELINES,
     BY_SKETCH,
@@ -55,7 +55,7 @@ def test_steps_in_words_and_parquet(ds, tmp_path):
     ids, lines = [], []
     for name, program in programs(ds).items():
         ids.append(name)
-        lines.append("\n".join(f"{n}. {text}" for n, text in enumerate(sentences(program, kb.default()), 1)))
+        lines.append("\n".join(f"{n}. {text}" for n, text in enumerate(sentences(program, default()), 1)))
     pq.write_table(pa.table({"id": ids, "predicted": lines}), tmp_path / "mine.parquet")
     found = summarise(judge(ds, tmp_path / "mine.parquet"))
     assert found.means["lcs_step"].mean == 1.0
@@ -130,7 +130,7 @@ def test_every_baseline_gives_a_program_a_test():
         assert len(make(train, test, 0)) == 2
         assert make(train, test, 0) == make(train, test, 0)
     sampled = random_sampling(train, test, 0)
-    assert all(parsability(steps, kb.default()).parsable for steps in sampled)
+    assert all(parsability(steps, default()).parsable for steps in sampled)
     assert random_sampling(train, test, 1) != sampled
 
 

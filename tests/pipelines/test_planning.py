@@ -12,7 +12,7 @@ from hearth.exports.planning import DISPENSABLE, STEP, agreement, chosen, execut
 from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
 from hearth.exports.registry import export
-from hearth.kb import knowledge as kb
+from hearth.kb.loading import default
 from hearth.schemas.graph import Edge
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.bits import indices
@@ -46,7 +46,7 @@ def test_every_execution_that_changes_something_gets_a_problem(ds, tmp_path):
     number = export(ds, "pddl", tmp_path / "out")
     assert number == len(list((tmp_path / "out/problems").glob("*.pddl"))) > 0
     text = (tmp_path / "out/domain.pddl").read_text()
-    executed = {action.name for action in kb.default().actions.values() if action.executed}
+    executed = {action.name for action in default().actions.values() if action.executed}
     assert {line.split()[1] for line in text.splitlines() if "(:action" in line} == (executed - OMITTED) | {TO_DOOR}
 
 
@@ -72,7 +72,7 @@ def test_things_that_cannot_matter_are_left_out(task):
 
 
 def test_what_does_the_same_needs_no_more():
-    actions = kb.default().actions
+    actions = default().actions
     for name, others in DISPENSABLE.items():
         for other in others:
             mine, theirs = ({str(check.formula) for check in actions[each].preconditions} for each in (name, other))
@@ -144,5 +144,5 @@ def test_the_whole_domain_is_read(ds, task):
     reader = pytest.importorskip(
         "unified_planning.io", reason="not installed: pip install unified-planning"
     ).PDDLReader()
-    parsed = reader.parse_problem_string(planning_domain(kb.default()), problem(task))
+    parsed = reader.parse_problem_string(planning_domain(default()), problem(task))
     assert len(parsed.actions) == 41 and len(parsed.all_objects) == len(task.objects)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.models import FALLBACK, Model, choice_of, draw, looks, model_of, without_recipe

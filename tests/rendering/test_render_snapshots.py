@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.rendering.contact import caption, contact_sheet
 from hearth.rendering.places import Places, whereabouts
 from hearth.rendering.snapshots import moments, snapshots

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from small_worlds import bound_step, node
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.simulation.actions.registry import ACTIONS

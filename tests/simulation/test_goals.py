@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.knowledge import default
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal, Predicate
