@@ -28,7 +28,6 @@ from hearth.pipelines.stage import Job
 from hearth.pipelines.surroundings import Homes
 from hearth.pipelines.tensors import EDGE_TYPES
 from hearth.schemas.errors import HearthError
-from hearth.schemas.failure_ids import FAILURE_IDS
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
@@ -328,8 +327,8 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[Row]:
     graphs = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
     for kind, names in graphs.items():
         yield from ({"kind": kind, "id": number, "name": name} for number, name in enumerate(names))
-    for code, number in sorted(FAILURE_IDS.items(), key=lambda item: item[1]):
-        yield {"kind": "failure", "id": number, "name": str(code)}
+    for code in sorted(Code, key=lambda code: code.number):
+        yield {"kind": "failure", "id": code.number, "name": str(code)}
 
 
 def _rejects(job: Job) -> Iterator[Row]:

@@ -192,7 +192,7 @@ def failure_of(row: Mapping[str, Any] | None) -> Failure | None:
     if row is None:
         return None
     places = (tuple(row["objects"]), tuple(row["names"]))
-    return Failure(Code(row["code"]), row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
+    return Failure(Code[row["code"]], row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
 
 
 def tick_rows(execution: Execution) -> list[Row]:

@@ -4,96 +4,110 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 
 class Code(StrEnum):
-    """A failure's kind. Handlers, reports and scores look things up by it; nothing is parsed back from text."""
+    """A failure's kind. Handlers, reports and scores look things up by it; nothing is parsed back from text.
+
+    Attributes:
+        number: the id under which it is published, fixed for ever whatever the order here: a new code gets the next
+            number, one that goes leaves a gap.
+    """
+
+    number: int
+
+    def __new__(cls, name: str, number: int) -> Self:
+        """A code that equals its name; `Code["EMPTY"]` finds it again."""
+        code = str.__new__(cls, name)
+        code._value_, code.number = name, number
+        return code
 
     # Reading
-    EMPTY = "EMPTY"
-    NOT_TEXT = "NOT_TEXT"
-    LINE_TOO_LONG = "LINE_TOO_LONG"
-    BAD_ARCHIVE = "BAD_ARCHIVE"
-    BAD_JSON = "BAD_JSON"
-    BAD_TABLE = "BAD_TABLE"
-    BAD_GRAPH = "BAD_GRAPH"
-    MISSING_FILE = "MISSING_FILE"
-    UNSUPPORTED_FILE = "UNSUPPORTED_FILE"
-    DUPLICATE = "DUPLICATE"
-    REJECTED_ANSWER = "REJECTED_ANSWER"
+    EMPTY = "EMPTY", 0
+    NOT_TEXT = "NOT_TEXT", 1
+    LINE_TOO_LONG = "LINE_TOO_LONG", 2
+    BAD_ARCHIVE = "BAD_ARCHIVE", 3
+    BAD_JSON = "BAD_JSON", 4
+    BAD_TABLE = "BAD_TABLE", 5
+    BAD_GRAPH = "BAD_GRAPH", 6
+    MISSING_FILE = "MISSING_FILE", 7
+    UNSUPPORTED_FILE = "UNSUPPORTED_FILE", 8
+    DUPLICATE = "DUPLICATE", 9
+    REJECTED_ANSWER = "REJECTED_ANSWER", 10
     # Syntax and names
-    SYNTAX = "SYNTAX"
-    BAD_INSTANCE = "BAD_INSTANCE"
-    UNKNOWN_ACTION = "UNKNOWN_ACTION"
-    UNKNOWN_OBJECT = "UNKNOWN_OBJECT"
-    UNKNOWN_HOME = "UNKNOWN_HOME"
-    WRONG_ARITY = "WRONG_ARITY"
-    SPECIAL_BLOCK = "SPECIAL_BLOCK"
-    NOT_UNDERSTOOD = "NOT_UNDERSTOOD"
-    AMBIGUOUS = "AMBIGUOUS"
-    HEARD_NEARLY = "HEARD_NEARLY"
+    SYNTAX = "SYNTAX", 11
+    BAD_INSTANCE = "BAD_INSTANCE", 12
+    UNKNOWN_ACTION = "UNKNOWN_ACTION", 13
+    UNKNOWN_OBJECT = "UNKNOWN_OBJECT", 14
+    UNKNOWN_HOME = "UNKNOWN_HOME", 15
+    WRONG_ARITY = "WRONG_ARITY", 16
+    SPECIAL_BLOCK = "SPECIAL_BLOCK", 17
+    NOT_UNDERSTOOD = "NOT_UNDERSTOOD", 18
+    AMBIGUOUS = "AMBIGUOUS", 19
+    HEARD_NEARLY = "HEARD_NEARLY", 20
     # What an action is done to
-    NOT_AFFORDED = "NOT_AFFORDED"
-    NOT_SIMULATED = "NOT_SIMULATED"
+    NOT_AFFORDED = "NOT_AFFORDED", 21
+    NOT_SIMULATED = "NOT_SIMULATED", 22
     # What a program says as a whole
-    NEAR_DUPLICATE = "NEAR_DUPLICATE"
-    NO_EFFECT = "NO_EFFECT"
-    OFF_TOPIC = "OFF_TOPIC"
-    UNDECLARED = "UNDECLARED"
+    NEAR_DUPLICATE = "NEAR_DUPLICATE", 23
+    NO_EFFECT = "NO_EFFECT", 24
+    OFF_TOPIC = "OFF_TOPIC", 25
+    UNDECLARED = "UNDECLARED", 26
     # Where and how the character is
-    NOT_CLOSE = "NOT_CLOSE"
-    NOT_FACING = "NOT_FACING"
-    NOT_IN_ROOM = "NOT_IN_ROOM"
-    NO_ROOM = "NO_ROOM"
-    SITTING = "SITTING"
-    LYING = "LYING"
-    NOT_SITTING_OR_LYING = "NOT_SITTING_OR_LYING"
-    DOOR_CLOSED = "DOOR_CLOSED"
-    NO_PATH = "NO_PATH"
+    NOT_CLOSE = "NOT_CLOSE", 27
+    NOT_FACING = "NOT_FACING", 28
+    NOT_IN_ROOM = "NOT_IN_ROOM", 29
+    NO_ROOM = "NO_ROOM", 30
+    SITTING = "SITTING", 31
+    LYING = "LYING", 32
+    NOT_SITTING_OR_LYING = "NOT_SITTING_OR_LYING", 33
+    DOOR_CLOSED = "DOOR_CLOSED", 34
+    NO_PATH = "NO_PATH", 35
     # Hands
-    NO_FREE_HAND = "NO_FREE_HAND"
-    NOT_HOLDING = "NOT_HOLDING"
-    NO_ORIGIN = "NO_ORIGIN"
-    HELD_BY_OTHER = "HELD_BY_OTHER"
+    NO_FREE_HAND = "NO_FREE_HAND", 36
+    NOT_HOLDING = "NOT_HOLDING", 37
+    NO_ORIGIN = "NO_ORIGIN", 38
+    HELD_BY_OTHER = "HELD_BY_OTHER", 39
     # The object's state
-    OCCUPIED = "OCCUPIED"
-    INSIDE_CLOSED = "INSIDE_CLOSED"
-    IS_OPEN = "IS_OPEN"
-    IS_CLOSED = "IS_CLOSED"
-    IS_ON = "IS_ON"
-    IS_OFF = "IS_OFF"
-    IS_PLUGGED = "IS_PLUGGED"
-    IS_UNPLUGGED = "IS_UNPLUGGED"
-    NOT_OPENABLE_STATE = "NOT_OPENABLE_STATE"
-    NOT_WORN = "NOT_WORN"
-    NOTHING_TO_EAT = "NOTHING_TO_EAT"
+    OCCUPIED = "OCCUPIED", 40
+    INSIDE_CLOSED = "INSIDE_CLOSED", 41
+    IS_OPEN = "IS_OPEN", 42
+    IS_CLOSED = "IS_CLOSED", 43
+    IS_ON = "IS_ON", 44
+    IS_OFF = "IS_OFF", 45
+    IS_PLUGGED = "IS_PLUGGED", 46
+    IS_UNPLUGGED = "IS_UNPLUGGED", 47
+    NOT_OPENABLE_STATE = "NOT_OPENABLE_STATE", 48
+    NOT_WORN = "NOT_WORN", 49
+    NOTHING_TO_EAT = "NOTHING_TO_EAT", 50
     # Several agents
-    CONFLICT = "CONFLICT"
-    UNKNOWN_AGENT = "UNKNOWN_AGENT"
+    CONFLICT = "CONFLICT", 51
+    UNKNOWN_AGENT = "UNKNOWN_AGENT", 52
     # Grounding
-    UNBOUND = "UNBOUND"
-    CONTRADICTION = "CONTRADICTION"
-    NO_PLACE = "NO_PLACE"
-    CONDITION_UNMET = "CONDITION_UNMET"
+    UNBOUND = "UNBOUND", 53
+    CONTRADICTION = "CONTRADICTION", 54
+    NO_PLACE = "NO_PLACE", 55
+    CONDITION_UNMET = "CONDITION_UNMET", 56
     # Augmenting
-    NO_HANDLER = "NO_HANDLER"
-    HANDLER_ERROR = "HANDLER_ERROR"
-    TOO_MANY_TRIES = "TOO_MANY_TRIES"
-    LOOP = "LOOP"
-    GOAL_LOST = "GOAL_LOST"
-    UNPERTURBED = "UNPERTURBED"
+    NO_HANDLER = "NO_HANDLER", 57
+    HANDLER_ERROR = "HANDLER_ERROR", 58
+    TOO_MANY_TRIES = "TOO_MANY_TRIES", 59
+    LOOP = "LOOP", 60
+    GOAL_LOST = "GOAL_LOST", 61
+    UNPERTURBED = "UNPERTURBED", 62
     # Scoring and publishing
-    UNKNOWN_ID = "UNKNOWN_ID"
-    MISSING_PREDICTION = "MISSING_PREDICTION"
-    REPLAY_DIFFERS = "REPLAY_DIFFERS"
-    NOT_RENDERED = "NOT_RENDERED"
+    UNKNOWN_ID = "UNKNOWN_ID", 63
+    MISSING_PREDICTION = "MISSING_PREDICTION", 64
+    REPLAY_DIFFERS = "REPLAY_DIFFERS", 65
+    NOT_RENDERED = "NOT_RENDERED", 66
     # This machine, and Hearth itself
-    FILE_TOO_LARGE = "FILE_TOO_LARGE"
-    UNWRITABLE = "UNWRITABLE"
-    LOCKED = "LOCKED"
-    INTERNAL_ERROR = "INTERNAL_ERROR"
-    DAMAGED_FILE = "DAMAGED_FILE"
-    TIMED_OUT = "TIMED_OUT"
+    FILE_TOO_LARGE = "FILE_TOO_LARGE", 67
+    UNWRITABLE = "UNWRITABLE", 68
+    LOCKED = "LOCKED", 69
+    INTERNAL_ERROR = "INTERNAL_ERROR", 70
+    DAMAGED_FILE = "DAMAGED_FILE", 71
+    TIMED_OUT = "TIMED_OUT", 72
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,7 +84,7 @@ def read_refused(item: Item) -> Reject:
     """The reject of an item made by `refused`."""
     return Reject(
         tuple(
-            Diagnostic(Code(code), message, file, line, column, len(found), found, suggestion)
+            Diagnostic(Code[code], message, file, line, column, len(found), found, suggestion)
             for code, message, file, line, column, found, suggestion in item.value
         )
     )

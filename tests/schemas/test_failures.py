@@ -1,0 +1,25 @@
+"""Published ids of failures never change."""
+
+from __future__ import annotations
+
+import pickle
+
+import pytest
+
+from hearth.schemas.failures import Code
+
+
+def test_every_code_has_an_id_of_its_own():
+    assert len({code.number for code in Code}) == len(Code)
+
+
+def test_ids_are_those_published():
+    """Whoever changes one of these breaks datasets that people have."""
+    known = {"EMPTY": 0, "SYNTAX": 11, "NOT_AFFORDED": 21, "GOAL_LOST": 61, "REPLAY_DIFFERS": 65, "TIMED_OUT": 72}
+    assert {name: Code[name].number for name in known} == known
+
+
+@pytest.mark.parametrize("code", Code)
+def test_a_code_is_found_by_its_name_alone(code):
+    assert code == code.value == code.name == str(code)
+    assert Code[code.value] is pickle.loads(pickle.dumps(code)) is code
