@@ -33,6 +33,7 @@ class Attempt:
         handler: name of the repair, or of the handler that gave up.
         before: the steps that broke.
         after: the steps instead; empty when nothing could be done.
+        missed: the facts of the goal that did not hold, where the program ran to its end.
     """
 
     number: int
@@ -41,6 +42,12 @@ class Attempt:
     handler: str
     before: tuple[Step, ...]
     after: tuple[Step, ...]
+    missed: Postconditions = ()
+
+    @property
+    def cause(self) -> tuple[Code, str, tuple[int, ...], Postconditions]:
+        """What it is for: two attempts at one cause are about the same failure, whenever it occurs."""
+        return self.failure.code, self.failure.action, self.failure.objects, self.missed
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,20 +76,9 @@ def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[boo
         attempts: in order.
         failure: why the program was given up after the last of them; None if it was not.
     """
-    later = [_trouble_of(attempt.failure) for attempt in attempts[1:]]
-    last = (None if failure is None else _trouble_of(attempts[-1].failure)) if attempts else None
-    return (
-        tuple(
-            bool(attempt.after) and _trouble_of(attempt.failure) != following
-            for attempt, following in zip(attempts, (*later, last), strict=True)
-        )
-        if attempts
-        else ()
-    )
-
-
-def _trouble_of(failure: Failure) -> tuple[object, ...]:
-    return (failure.code, failure.action, failure.objects, failure.expected)
+    # A program that was given up still has the last attempt's failure.
+    following = [*(attempt.cause for attempt in attempts[1:]), attempts[-1].cause if failure and attempts else None]
+    return tuple(bool(each.after) and each.cause != later for each, later in zip(attempts, following, strict=False))
 
 
 class _Task(NamedTuple):
@@ -159,15 +155,15 @@ def _trouble(draft: _Draft, task: _Task) -> Trouble | None:
     """The first thing wrong with a program: a step that fails, or a goal that is missed."""
     execution = draft.execution
     failure, at = execution.failure, len(draft.program.steps)
+    lost = () if failure else missing(task.goal, task.nodes, execution.final)
     if failure is not None:
         at = _failing(draft.program, failure)
+    elif not lost:
+        return None
     else:
-        lost = missing(task.goal, task.nodes, execution.final)
-        if not lost:
-            return None
         wanted = "; ".join(map(str, lost))
         failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
-    return Trouble(draft.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes)
+    return Trouble(draft.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes, lost)
 
 
 def _failing(program: Program, failure: Failure) -> int:
@@ -210,7 +206,7 @@ def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
 
 
 def _attempt(attempts: Sequence[Attempt], trouble: Trouble, name: str, after: tuple[Step, ...]) -> Attempt:
-    return Attempt(len(attempts), trouble.at, trouble.failure, name, trouble.program.steps, after)
+    return Attempt(len(attempts), trouble.at, trouble.failure, name, trouble.program.steps, after, trouble.missed)
 
 
 def _given_up(draft: _Draft, attempts: list[Attempt], trouble: Trouble, code: Code, why: str) -> Repaired:

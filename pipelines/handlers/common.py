@@ -35,6 +35,7 @@ class Trouble:
         knowledge, rules: what the world goes by.
         goal: what the program has to reach (thesis eq. A.1).
         nodes: the nodes of the objects that the goal speaks of.
+        missed: the facts of the goal that do not hold, where the program ran to its end.
     """
 
     program: Program
@@ -45,6 +46,7 @@ class Trouble:
     rules: Rules
     goal: Postconditions = ()
     nodes: Mapping[Key, int] = field(default_factory=dict)
+    missed: Postconditions = ()
 
     @property
     def step(self) -> Step:

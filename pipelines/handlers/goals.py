@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.grounding.postconditions import Fact, missing
+from hearth.grounding.postconditions import Fact
 from hearth.pipelines.handlers.common import Edit, Splice, Trouble
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -21,8 +21,7 @@ STATE_ACTIONS: dict[str, str] = {
 
 def goal_lost(trouble: Trouble) -> Edit | None:
     """Bring about the first thing that is missing, things before where the character ends up."""
-    lost = sorted(missing(trouble.goal, trouble.nodes, trouble.world), key=_rank)
-    for fact in lost:
+    for fact in sorted(trouble.missed, key=_rank):
         steps = _steps(trouble, fact)
         if steps:
             return Edit("goal_lost", (Splice(len(trouble.program.steps), 0, steps),))
