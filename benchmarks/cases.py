@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import random
+import sys
 import zipfile
 from contextlib import suppress
 from functools import lru_cache
@@ -25,6 +26,8 @@ from hearth.simulation.home import Home
 from hearth.simulation.homes import catalog
 from hearth.simulation.legal import legal
 from hearth.simulation.world import World
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))  # for `oracles`
 
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", Path(__file__).resolve().parents[2] / "shared/real"))
 SAMPLE = REAL / "activityprograms-sample.zip"

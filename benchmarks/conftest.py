@@ -1,4 +1,4 @@
-"""Lets the benchmarks import the reference, and prints rates and ratios beside pytest-benchmark's own table."""
+"""Lets the benchmarks import their modules, and prints rates and ratios beside pytest-benchmark's own table."""
 
 from __future__ import annotations
 

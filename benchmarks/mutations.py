@@ -27,10 +27,11 @@ class Mutation(NamedTuple):
 
 
 MUTATIONS = (
-    Mutation("simulation/actions/hands.py", "or need_free_hand(world, agent, o)", "or None", "tests/simulation"),
+    Mutation("simulation/actions/hands.py", "reachable, free_hand, _nobody_else", "reachable, _nobody_else",
+             "tests/simulation"),
     Mutation("simulation/actions/hands.py", "agent.inside & ~bit", "agent.inside", "tests/simulation"),
-    Mutation("simulation/actions/appliances.py", "if failure is None and world.states[ON] >> o & 1:",
-             "if failure is None and world.states[OFF] >> o & 1:", "tests/simulation"),
+    Mutation("simulation/actions/appliances.py", "not_in_state(ON, Code.IS_ON)",
+             "not_in_state(OFF, Code.IS_ON)", "tests/simulation"),
     Mutation("simulation/rows.py", "row = 0 if gone >> i & 1 else row & ~gone", "row = row & ~gone",
              "tests/simulation"),
     Mutation("simulation/engine.py", "if isinstance(result, World) and now is not world:", "if False:",

@@ -19,12 +19,12 @@ from typing import Any
 
 import cases
 import numpy as np
-import reference
 import yaml
 from measuring import Taken, least, passes
 from numpy.typing import NDArray
-from reference_world import Options
-from reference_world import World as PlainWorld
+from oracles import engine as reference
+from oracles.world import Options
+from oracles.world import World as PlainWorld
 
 from hearth.rendering.camera import Camera
 from hearth.schemas.graph import EnvironmentGraph

@@ -11,9 +11,9 @@ from typing import Any
 import cases
 import orjson
 import pytest
-import reference
-from reference_world import Options
-from reference_world import World as PlainWorld
+from oracles import engine as reference
+from oracles.world import Options
+from oracles.world import World as PlainWorld
 
 from hearth.grounding.binding import Binding, bind
 from hearth.kb.loading import default

@@ -4,6 +4,32 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+AGENT_OUT = {
+    "CLOSE": "close", "FACING": "facing", "INSIDE": "inside", "ON": "on", "HOLDS_RH": "right", "HOLDS_LH": "left",
+}  # fmt: skip
+"""The field in which an edge from a character stands, by relation."""
+
+AGENT_IN = {"CLOSE": "close", "FACING": "faced", "INSIDE": "contents", "ON": "worn"}
+"""The field in which an edge to a character stands, by relation."""
+
+
+class AgentRow(NamedTuple):
+    """A character's edges as a home has them, under the names of `Agent`."""
+
+    close: int = 0
+    facing: int = 0
+    faced: int = 0
+    inside: int = 0
+    contents: int = 0
+    on: int = 0
+    worn: int = 0
+    right: int = 0
+    left: int = 0
+
+    def without(self, bit: int) -> AgentRow:
+        """Without the edges to and from these nodes."""
+        return AgentRow(*[row & ~bit for row in self])
+
 
 class Agent(NamedTuple):
     """One character.
@@ -34,10 +60,19 @@ class Agent(NamedTuple):
     left: int = 0
     origins: tuple[tuple[int, int, int], ...] = ()
 
+    @classmethod
+    def start(cls, index: int, row: AgentRow) -> Agent:
+        """A character as a home has it."""
+        return cls(index, 1 << index, *row)
+
     @property
     def held(self) -> int:
         """What either hand holds."""
         return self.right | self.left
+
+    def row(self) -> AgentRow:
+        """Its edges alone."""
+        return AgentRow(*self[2:-1])
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:
@@ -51,4 +86,4 @@ def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agen
 def _beside(agent: Agent, close: int, other: int) -> Agent:
     if agent.close & other == close:
         return agent
-    return Agent(agent.index, agent.bit, agent.close & ~other | close, *agent[3:])
+    return agent._replace(close=agent.close & ~other | close)

@@ -24,11 +24,11 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
+from hearth.simulation.agent import AgentRow
 from hearth.simulation.bits import indices, mask_of
 
 Rows = list[int]
 Raw = tuple[int, str, int]
-AgentRow = tuple[int, int, int, int, int, int, int, int, int]
 
 CHARACTER_PROPERTIES = frozenset({"PERSON"})
 """What counts of a character's properties."""
@@ -271,7 +271,7 @@ def _part_characters(tables: list[Rows], nodes: Nodes, others: list[Raw]) -> lis
     mine = (close, facing, faced, inside, contents, on, bears, right, left)
     # Edges between two characters stay with the one they go out from (see `Agent`).
     things = (-1, -1, ~characters, -1, ~characters, -1, ~characters, -1, -1)
-    found = [agent_row(row[i] & mask for row, mask in zip(mine, things, strict=True)) for i in nodes.agents]
+    found = [AgentRow(*[row[i] & mask for row, mask in zip(mine, things, strict=True)]) for i in nodes.agents]
     opposite = (close, faced, facing, contents, inside, bears, on)
     for i in nodes.agents:
         for table, inverse in zip(mine, opposite, strict=False):
@@ -297,13 +297,7 @@ def _held_once(rows: list[AgentRow]) -> list[AgentRow]:
     taken = 0
     found = []
     for row in rows:
-        right, left = row[7] & ~taken, row[8] & ~taken
+        right, left = row.right & ~taken, row.left & ~taken
         taken |= right | left
-        found.append((*row[:7], right, left))
+        found.append(row._replace(right=right, left=left))
     return found
-
-
-def agent_row(row: Iterable[int]) -> AgentRow:
-    """The nine rows of a character, from any iterable."""
-    close, facing, faced, inside, contents, on, worn, right, left = row
-    return close, facing, faced, inside, contents, on, worn, right, left

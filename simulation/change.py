@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
-from hearth.simulation.agent import Agent
+from hearth.simulation.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
 
@@ -117,21 +117,16 @@ def _edge_changes(before: World, after: World, extra: int) -> Iterator[tuple[int
         yield from _door_changes(before.home, after.home, i)
 
 
-_OUT = (("CLOSE", 2), ("FACING", 3), ("INSIDE", 5), ("ON", 7), ("HOLDS_RH", 9), ("HOLDS_LH", 10))
-_INTO = (("CLOSE", 2), ("FACING", 4), ("INSIDE", 6), ("ON", 8))
-"""The fields of an agent that hold its edges, by relation."""
-
-
 def _agent_changes(old: Agent, new: Agent) -> Iterator[tuple[int, str, int, bool]]:
     """What came and went of a character's own edges, both ways."""
     me = new.index
-    for relation, field in _OUT:
-        past, now = cast(int, old[field]), cast(int, new[field])
+    for relation, field in AGENT_OUT.items():
+        past, now = getattr(old, field), getattr(new, field)
         if past != now:
             yield from ((me, relation, j, True) for j in indices(now & ~past))
             yield from ((me, relation, j, False) for j in indices(past & ~now))
-    for relation, field in _INTO:
-        past, now = cast(int, old[field]), cast(int, new[field])
+    for relation, field in AGENT_IN.items():
+        past, now = getattr(old, field), getattr(new, field)
         if past != now:
             yield from ((j, relation, me, True) for j in indices(now & ~past))
             yield from ((j, relation, me, False) for j in indices(past & ~now))

@@ -15,9 +15,10 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
+from hearth.simulation.agent import AGENT_IN, AGENT_OUT, AgentRow
 from hearth.simulation.bits import indices
-from hearth.simulation.building import CHARACTER_PROPERTIES, agent_row
-from hearth.simulation.home import AGENT_IN, AGENT_OUT, Home
+from hearth.simulation.building import CHARACTER_PROPERTIES
+from hearth.simulation.home import Home
 
 
 class Loose(NamedTuple):
@@ -120,7 +121,7 @@ def without(home: Home, i: int) -> Home:
     new.by_class[home.classes[i]] &= ~bit
     new.properties = {name: mask & ~bit for name, mask in home.properties.items()}
     new.states = tuple(row & ~bit for row in home.states)
-    rows = [(a, agent_row(r & ~bit for r in row)) for a, row in zip(home.agents, home.agent_rows, strict=True)]
+    rows = [(a, row.without(bit)) for a, row in zip(home.agents, home.agent_rows, strict=True)]
     new.agents = tuple(a for a, _ in rows if a != i)
     new.agent_rows = [row for a, row in rows if a != i]
     new.others = [edge for edge in home.others if home.ids[i] not in (edge[0], edge[2])]
@@ -175,7 +176,7 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
         home.by_class[name] = home.by_class.get(name, 0) | mask
         if name == CHARACTER_CLASS:
             home.agents = (*home.agents, *indices(mask))
-            home.agent_rows += [(0,) * 9] * mask.bit_count()
+            home.agent_rows += [AgentRow()] * mask.bit_count()
         elif node.category == ROOM_CATEGORY:
             home.rooms |= mask
         for prop in node.properties:
@@ -277,9 +278,8 @@ def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, i
             break  # between two characters it stays with the one it goes out from
         part = True
         number = home.agents.index(me)
-        row = list(home.agent_rows[number])
-        row[field] = change(row[field], 1 << other)
-        home.agent_rows[number] = agent_row(row)
+        row = home.agent_rows[number]
+        home.agent_rows[number] = row._replace(**{field: change(getattr(row, field), 1 << other)})
     if not part and relation == "BETWEEN":
         home.between[i] = change(home.between[i], 1 << j)
     elif not part:

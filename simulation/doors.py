@@ -8,11 +8,10 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices, lowest
+from hearth.simulation.states import CLOSED
 
 if TYPE_CHECKING:
     from hearth.simulation.world import World
-
-CLOSED_STATE = 0
 
 
 def blocking(world: World, agent: Agent, room: int) -> Failure | None:
@@ -23,7 +22,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     """
     home = world.home
     start = rows.agent_room(world, agent)
-    closed = home.doors & world.states[CLOSED_STATE]
+    closed = home.doors & world.states[CLOSED]
     if start < 0 or start == room or not closed:
         return None
     reached, _ = _flood(world, start, home.doors & ~closed)
@@ -46,7 +45,7 @@ def open_rooms(world: World, agent: Agent) -> int:
     """The rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
     home = world.home
     start = rows.agent_room(world, agent)
-    closed = home.doors & world.states[CLOSED_STATE]
+    closed = home.doors & world.states[CLOSED]
     if start < 0 or not closed:
         return home.rooms
     reached, _ = _flood(world, start, home.doors & ~closed)
@@ -61,7 +60,7 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     start = rows.agent_room(world, agent)
     if start < 0:
         return room
-    reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED_STATE])
+    reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED])
     if room >= 0 and reached >> room & 1:
         return room
     within = world.home.between[door] & world.home.rooms & reached

@@ -15,7 +15,6 @@ from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
 from hearth.simulation import fitting, overlay, rows
 from hearth.simulation import moved as kinds
 from hearth.simulation.agent import Agent
-from hearth.simulation.building import agent_row
 from hearth.simulation.change import Change
 from hearth.simulation.derived import Loose, added_nodes, extended, without
 from hearth.simulation.home import Home
@@ -104,7 +103,7 @@ def _with_nodes(world: World, nodes: Sequence[Node]) -> World:
         return _moved_over(world, home)
     rest = world.home.everything
     states = tuple(now | new & ~rest for now, new in zip(world.states, home.states, strict=True))
-    came = (Agent(i, 1 << i, *row) for i, row in zip(home.agents, home.agent_rows, strict=True))
+    came = (Agent.start(i, row) for i, row in zip(home.agents, home.agent_rows, strict=True))
     agents = (*world.agents, *(agent for agent in came if not rest & agent.bit))
     return World(home, states, agents, world.moved)
 
@@ -131,7 +130,7 @@ def _without_node(world: World, i: int) -> World:
     for agent in world.agents:
         if agent.index != i:
             memory = tuple(entry for entry in agent.origins if i not in entry[:2])
-            agents.append(Agent(agent.index, agent.bit, *agent_row(row & ~bit for row in agent[2:11]), memory))
+            agents.append(Agent.start(agent.index, agent.row().without(bit))._replace(origins=memory))
     states = tuple(row & ~bit for row in world.states)
     return World(home, states, tuple(agents), world.moved._replace(extra=extra))
 
@@ -146,11 +145,8 @@ def _placed(world: World, i: int, relation: str, j: int) -> World:
         if agent.index == i:
             agents[number] = agent._replace(close=0, inside=0, on=0)
         else:
-            close, _facing, _faced, inside, contents, on, worn, right, left = (row & ~bit for row in agent[2:11])
-            agents[number] = Agent(
-                agent.index, agent.bit, close, agent.facing, agent.faced, inside, contents, on, worn, right, left,
-                agent.origins,
-            )  # fmt: skip
+            rest = agent.row().without(bit)._replace(facing=agent.facing, faced=agent.faced)
+            agents[number] = Agent.start(agent.index, rest)._replace(origins=agent.origins)
     edges = [(i, relation, j)]
     if j != room:
         edges.append((i, "CLOSE", j))

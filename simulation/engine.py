@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
-from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.change import Change
 from hearth.simulation.rules import DEFAULT, Rules
@@ -85,7 +84,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
     except KeyError:
         return _unbound(world, instruction)
-    result = action(world, instruction.agent, o, s, rules)
+    result = action.rule(world, instruction.agent, o, s, rules)
     if result.__class__ is Failure:
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
         said = (result.objects, result.names, result.expected, result.actual)
@@ -176,12 +175,3 @@ def _unbound(world: World, instruction: Step) -> Failure:
     nodes = tuple(ref.node for ref in missing if ref.node is not None)
     expected = "an object bound to a node"
     return Failure(Code.UNBOUND, 0, instruction.agent, instruction.action, nodes, names, expected, found)
-
-
-def executed(name: str) -> Action:
-    """The function that executes an action.
-
-    Raises:
-        KeyError: the action is not executed.
-    """
-    return ACTIONS[name]

@@ -15,12 +15,6 @@ from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.building import Raw, Rows
 from hearth.simulation.nodes import with_states
 
-AGENT_OUT = {"CLOSE": 0, "FACING": 1, "INSIDE": 3, "ON": 5, "HOLDS_RH": 7, "HOLDS_LH": 8}
-"""Where an edge from a character stands in its row of `Home.agent_rows`, which is that of `Agent` without its node."""
-
-AGENT_IN = {"CLOSE": 0, "FACING": 2, "INSIDE": 4, "ON": 6}
-"""Where an edge to a character stands in its row of `Home.agent_rows`."""
-
 
 class Memo(dict[int, int]):
     """A table filled on first use; what is never asked for costs nothing."""
@@ -52,7 +46,7 @@ class Home:
         between: the rooms a door is BETWEEN.
         states: the start's states, one set of nodes for each of `vocabulary.STATES`.
         agents: indices of the characters, in id order.
-        agent_rows: each character's own edges, in the order of `Agent`'s fields.
+        agent_rows: each character's own edges.
         others: edges that take no part in the simulation, kept for printing.
         nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
         restated: nodes whose states at the start are others than the node says.

@@ -13,13 +13,13 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box
 from hearth.schemas.program import Step
 from hearth.simulation import rows
-from hearth.simulation.actions.common import LYING, SITTING, refuse
-from hearth.simulation.agent import Agent
+from hearth.simulation.actions.common import refuse
 from hearth.simulation.bits import indices, lowest
 from hearth.simulation.engine import act
 from hearth.simulation.moved import carry
 from hearth.simulation.navigation import Point, Pose, Ways, along, distance_to
 from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.states import LYING, SITTING
 from hearth.simulation.world import World
 
 STRIDE = 1.0
@@ -187,7 +187,8 @@ def _departed(world: World, number: int, point: Point) -> World:
     moved = world.moved
     for i in indices(agent.held):
         moved = carry(moved, i, room)
-    going = Agent(agent.index, agent.bit, agent.held, 0, 0, 1 << room if room >= 0 else 0, 0, *agent[7:])
+    inside = 1 << room if room >= 0 else 0
+    going = agent._replace(close=agent.held, facing=0, faced=0, inside=inside, contents=0)
     after = world.with_agent(number, going)
     return World(world.home, world.states, after.agents, moved)
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from hearth.simulation import moved as kinds
 from hearth.simulation import rows
-from hearth.simulation.agent import Agent
+from hearth.simulation.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.bits import indices
-from hearth.simulation.building import agent_row
-from hearth.simulation.home import AGENT_IN, AGENT_OUT
 from hearth.simulation.moved import Moved, link, unlink
 from hearth.simulation.world import World
 
@@ -103,7 +102,6 @@ def _each_agent(agents: list[Agent], edge: Numbered, change: Callable[[int, int]
             continue
         part = True
         agent = agents[number]
-        row = list(agent[2:11])
-        row[field] = change(row[field], 1 << other)
-        agents[number] = Agent(agent.index, agent.bit, *agent_row(row), agent.origins)
+        row: dict[str, Any] = {field: change(getattr(agent, field), 1 << other)}
+        agents[number] = agent._replace(**row)
     return part

@@ -8,11 +8,10 @@ from hearth.simulation import doors, rows
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, NOTHING
+from hearth.simulation.states import CLOSED
 
 if TYPE_CHECKING:
     from hearth.simulation.world import World
-
-CLOSED_STATE = 0
 
 
 def close_to(world: World, agent: Agent) -> int:
@@ -88,7 +87,7 @@ def upon(world: World, places: int) -> int:
 
 def hidden(world: World) -> int:
     """Everything directly INSIDE something closed that is no room: what cannot be grabbed or touched."""
-    return contained(world, world.states[CLOSED_STATE] & ~world.home.rooms)
+    return contained(world, world.states[CLOSED] & ~world.home.rooms)
 
 
 def out_of_sight(world: World) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
+from hearth.simulation.states import CLOSED
 
 if TYPE_CHECKING:
     from hearth.simulation.world import World
@@ -134,7 +135,7 @@ def _search_room(world: World, frontier: int, seen: int) -> int:
 
 def closed_container(world: World, i: int) -> int:
     """Index of a closed thing that hides i, or -1."""
-    hiding = containers(world, i) & ~world.home.rooms & world.states[0]
+    hiding = containers(world, i) & ~world.home.rooms & world.states[CLOSED]
     return (hiding & -hiding).bit_length() - 1
 
 

@@ -13,7 +13,6 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release, to_release
-from hearth.simulation.agent import Agent
 from hearth.simulation.home import Home
 from hearth.simulation.moved import CLOSE, INSIDE, ON
 from hearth.simulation.world import World
@@ -52,5 +51,5 @@ def restore(data: Mapping[str, Any], knowledge: Knowledge | None = None) -> Worl
         raise HearthError.of(
             Code.BAD_GRAPH, message, suggestion="it needs `graph`, and `memories` of nodes in it"
         ) from error
-    agents = tuple(Agent(*agent[:-1], tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
+    agents = tuple(agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
     return World(world.home, world.states, agents, world.moved)

@@ -39,7 +39,7 @@ class World:
     @classmethod
     def start(cls, home: Home) -> World:
         """The home as it is given."""
-        agents = tuple(Agent(i, 1 << i, *row) for i, row in zip(home.agents, home.agent_rows, strict=True))
+        agents = tuple(Agent.start(i, row) for i, row in zip(home.agents, home.agent_rows, strict=True))
         return cls(home, home.states, agents, NOTHING)
 
     def with_agent(self, number: int, agent: Agent) -> World:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ settings.register_profile("hearth", derandomize=True, deadline=None, max_example
 settings.load_profile("hearth")
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "tests"))  # for `oracles`
 
 
 @pytest.fixture(scope="session")

@@ -3,39 +3,25 @@
 from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation.actions.common import (
-    CLEAN,
-    need_able,
-    need_close,
-    need_free_hand,
-    refuse,
-    with_state,
-)
-from hearth.simulation.rules import Rules
+from hearth.simulation.actions.common import Check, able, becomes, checked, close, free_hand, refuse
+from hearth.simulation.agent import Agent
+from hearth.simulation.states import CLEAN
 from hearth.simulation.world import World
 
 
-def wipe(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Wipe o clean with whatever a hand holds."""
-    agent = world.agents[number]
-    failure = need_close(world, agent, o)
-    if failure is None and not agent.right | agent.left:
-        failure = refuse(world, Code.NOT_HOLDING, "something in a hand", "empty hands", o)
-    return _cleaned(world, o) if failure is None else failure
+def _need_tool(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    """Refuse when the hands are empty; whatever they hold will do."""
+    if agent.right | agent.left:
+        return None
+    return refuse(world, Code.NOT_HOLDING, "something in a hand", "empty hands", o)
 
 
-def wash(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Wash o clean; Rinse and Scrub are the same."""
-    failure = need_close(world, world.agents[number], o)
-    return _cleaned(world, o) if failure is None else failure
+_tool = Check(_need_tool, lambda s, _: -1 if s.held else 0)
 
-
-def squeeze(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Squeeze something soft."""
-    agent = world.agents[number]
-    failure = need_free_hand(world, agent, o) or need_close(world, agent, o) or need_able(world, "Squeeze", o)
-    return world if failure is None else failure
-
-
-def _cleaned(world: World, o: int) -> World:
-    return World(world.home, with_state(world.states, CLEAN, 1 << o), world.agents, world.moved)
+ACTIONS = (
+    checked("Wipe", close, _tool, effect=becomes(CLEAN)),
+    checked("Wash", close, effect=becomes(CLEAN)),
+    checked("Rinse", close, effect=becomes(CLEAN)),
+    checked("Scrub", close, effect=becomes(CLEAN)),
+    checked("Squeeze", free_hand, close, able),
+)

@@ -1,24 +1,97 @@
-"""What the actions share: the shape of an action, refusing, checking and setting states."""
+"""The record of an action, and the checks that actions share.
+
+A check is made for one object by the engine and for all nodes at once by `legal`; both readings of it stand together.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.vocabulary import STATE_ID, STATES
+from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
+from hearth.simulation.states import OPEN, with_state
+from hearth.simulation.world import World
 
-if TYPE_CHECKING:
-    from hearth.simulation.world import World
-
-Action = Callable[["World", int, int, int, Rules], "World | Failure"]
+Rule = Callable[[World, int, int, int, Rules], World | Failure]
 """(world, agent number, index of the first object, of the second, rules) -> the next world, or why not.
 Indices of objects that the action does not take are -1."""
 
-CLOSED, OPEN, OFF, ON, DIRTY, CLEAN, PLUGGED_OUT, PLUGGED_IN, SITTING, LYING = range(len(STATES))
+Masks = tuple[int, ...] | None
+"""For each argument the nodes it may be, independently of the other; None when the action can't be done at all."""
+
+Mask = Callable[[Situation], Masks]
+
+Effect = Callable[[World, int, int, Rules], World]
+"""(world, agent number, index of the object, rules) -> the next world, once all checks hold."""
+
+
+class Action(NamedTuple):
+    """An action that is executed.
+
+    Attributes:
+        name: as in the knowledge, which has its roles, needs, literals and groups.
+        rule: does it, or refuses.
+        mask: the objects for which the rule does not refuse.
+    """
+
+    name: str
+    rule: Rule
+    mask: Mask
+
+
+class Check(NamedTuple):
+    """One thing that must hold before an action of one object.
+
+    Attributes:
+        refuse: (world, character, index of the object, name of the action) -> the failure where it does not hold.
+        mask: (situation, name of the action) -> the nodes for which it holds.
+    """
+
+    refuse: Callable[[World, Agent, int, str], Failure | None]
+    mask: Callable[[Situation, str], int]
+
+
+def unchanged(world: World, number: int, o: int, rules: Rules) -> World:
+    """The effect of an action that changes nothing."""
+    return world
+
+
+def becomes(state: int) -> Effect:
+    """The effect that the object enters a state."""
+
+    def effect(world: World, number: int, o: int, rules: Rules) -> World:
+        return World(world.home, with_state(world.states, state, 1 << o), world.agents, world.moved)
+
+    return effect
+
+
+def checked(name: str, *checks: Check, effect: Effect = unchanged) -> Action:
+    """The action of one object that makes these checks in order and then has this effect."""
+    refusals = tuple(check.refuse for check in checks)
+    masks = tuple(check.mask for check in checks)
+
+    def rule(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+        agent = world.agents[number]
+        for refusal in refusals:
+            failure = refusal(world, agent, o, name)
+            if failure is not None:
+                return failure
+        return effect(world, number, o, rules)
+
+    def mask(situation: Situation) -> Masks:
+        found = situation.home.everything
+        for holding in masks:
+            found &= holding(situation, name)
+            if not found:
+                return None
+        return (found,)
+
+    return Action(name, rule, mask)
 
 
 def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) -> Failure:
@@ -29,15 +102,12 @@ def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) 
     return Failure(code, objects=ids, names=names, expected=expected, actual=actual)
 
 
-def with_state(states: tuple[int, ...], state: int, bit: int) -> tuple[int, ...]:
-    """The states after a node enters one; it leaves the opposite."""
-    new = list(states)
-    new[state] |= bit
-    new[state ^ 1] &= ~bit
-    return tuple(new)
+def some(mask: int) -> Masks:
+    """The masks of an action of one object; None when no object is left."""
+    return (mask,) if mask else None
 
 
-def need_able(world: World, action: str, o: int, position: int = 0) -> Failure | None:
+def need_able(world: World, agent: Agent, o: int, action: str, position: int = 0) -> Failure | None:
     """Refuse an object that the knowledge does not allow for this argument."""
     if world.home.able(action, position) >> o & 1:
         return None
@@ -45,25 +115,39 @@ def need_able(world: World, action: str, o: int, position: int = 0) -> Failure |
     return refuse(world, Code.NOT_AFFORDED, requirement, "none of these", o)
 
 
-def need_close(world: World, agent: Agent, o: int) -> Failure | None:
+def need_close(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse what the character is not close to."""
     if rows.is_close(world, agent, o):
         return None
     return refuse(world, Code.NOT_CLOSE, "the character close to it", "no CLOSE edge, direct or by one hop", o)
 
 
-def need_free_hand(world: World, agent: Agent, o: int) -> Failure | None:
+def need_free_hand(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse when both hands hold something."""
     if not agent.right or not agent.left:
         return None
     return refuse(world, Code.NO_FREE_HAND, "a free hand", "both hands hold something", o, *rows.held_indices(agent))
 
 
-def need_holding(world: World, agent: Agent, o: int) -> Failure | None:
+def need_holding(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse what neither hand holds."""
     if (agent.right | agent.left) >> o & 1:
         return None
     return refuse(world, Code.NOT_HOLDING, "the object in a hand", "in neither hand", o)
+
+
+def need_facing(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
+    """Refuse what the character does not face."""
+    if rows.is_facing(world, agent, o):
+        return None
+    return refuse(world, Code.NOT_FACING, "the character facing it", "no FACING edge, direct or by one hop", o)
+
+
+def need_open(world: World, s: int) -> Failure | None:
+    """Refuse a container that is not open, though it can be."""
+    if not world.home.properties["CAN_OPEN"] >> s & 1 or world.states[OPEN] >> s & 1:
+        return None
+    return refuse(world, Code.IS_CLOSED, "OPEN", "CLOSED", s)
 
 
 def need_state(world: World, code: Code, state: int, o: int) -> Failure | None:
@@ -75,7 +159,7 @@ def need_state(world: World, code: Code, state: int, o: int) -> Failure | None:
     return refuse(world, code, STATES[state], found, o)
 
 
-def need_reachable(world: World, o: int) -> Failure | None:
+def _need_reachable(world: World, agent: Agent, o: int, action: str) -> Failure | None:
     """Refuse what is inside something closed, naming the container."""
     container = rows.closed_container(world, o)
     if container < 0:
@@ -83,6 +167,25 @@ def need_reachable(world: World, o: int) -> Failure | None:
     return refuse(world, Code.INSIDE_CLOSED, "its container OPEN", "CLOSED", o, container)
 
 
-def state_id(name: str) -> int:
-    """The index of a state's set in `World.states`."""
-    return STATE_ID[name]
+def in_state(state: int, code: Code) -> Check:
+    """The object is in a state."""
+    return Check(lambda world, agent, o, action: need_state(world, code, state, o), lambda s, _: s.states[state])
+
+
+def not_in_state(state: int, code: Code) -> Check:
+    """The object is not in a state; it may be in neither of a pair."""
+
+    def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+        if not world.states[state] >> o & 1:
+            return None
+        return refuse(world, code, f"not {STATES[state]}", STATES[state], o)
+
+    return Check(refusal, lambda s, _: ~s.states[state])
+
+
+able = Check(need_able, lambda s, action: s.able(action))
+close = Check(need_close, lambda s, _: s.close)
+facing = Check(need_facing, lambda s, _: s.facing)
+free_hand = Check(need_free_hand, lambda s, _: -1 if s.free_hand else 0)
+held = Check(need_holding, lambda s, _: s.held)
+reachable = Check(_need_reachable, lambda s, _: ~s.hidden)

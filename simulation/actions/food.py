@@ -4,44 +4,58 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import rows
-from hearth.simulation.actions.common import need_able, need_close, need_free_hand, need_holding, refuse
+from hearth.simulation.actions.common import (
+    Action,
+    Check,
+    Masks,
+    able,
+    checked,
+    close,
+    free_hand,
+    held,
+    need_able,
+    need_close,
+    need_holding,
+    refuse,
+)
 from hearth.simulation.agent import Agent
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.moved import INSIDE, add
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
 from hearth.simulation.world import World
 
 
-def drink(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Drink from what a hand holds."""
-    failure = need_able(world, "Drink", o) or need_holding(world, world.agents[number], o)
-    return world if failure is None else failure
+def _need_food(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    """Refuse what is not eatable and bears nothing eatable."""
+    eatable = world.home.properties["EATABLE"]
+    if eatable >> o & 1 or rows.bearing(world, o) & eatable:
+        return None
+    return refuse(world, Code.NOTHING_TO_EAT, "EATABLE, or something EATABLE on it", "neither", o)
 
 
-def eat(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Eat o, or what is on it."""
-    failure = need_close(world, world.agents[number], o)
-    if failure is None:
-        eatable = world.home.properties["EATABLE"]
-        if not eatable >> o & 1 and not rows.bearing(world, o) & eatable:
-            failure = refuse(world, Code.NOTHING_TO_EAT, "EATABLE, or something EATABLE on it", "neither", o)
-    return world if failure is None else failure
+def _with_food(s: Situation, action: str) -> int:
+    """Food, and the close things that bear some."""
+    food = s.home.properties["EATABLE"]
+    return food | mask_of(i for i in indices(s.close & ~food) if rows.bearing(s.world, i) & food)
 
 
-def cut(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Cut food with a knife in the other hand."""
-    agent = world.agents[number]
-    failure = need_free_hand(world, agent, o) or need_close(world, agent, o) or need_able(world, "Cut", o)
-    if failure is None and not _holds_knife(world, agent):
-        failure = refuse(world, Code.NOT_HOLDING, "a knife in a hand", "none", o)
-    return world if failure is None else failure
+def _need_knife(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    if _knives(world, agent):
+        return None
+    return refuse(world, Code.NOT_HOLDING, "a knife in a hand", "none", o)
+
+
+def _knives(world: World, agent: Agent) -> bool:
+    return any("knife" in world.home.classes[i] for i in rows.held_indices(agent))
 
 
 def pour(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
     """Pour o into s; water leaves the hand, other things stay in it."""
     agent = world.agents[number]
     failure = (
-        need_able(world, "Pour", o)
-        or need_able(world, "Pour", s, 1)
+        need_able(world, agent, o, "Pour")
+        or need_able(world, agent, s, "Pour", 1)
         or need_holding(world, agent, o)
         or need_close(world, agent, s)
     )
@@ -50,10 +64,21 @@ def pour(world: World, number: int, o: int, s: int, rules: Rules) -> World | Fai
     agents = world.agents
     if world.home.classes[o] == "water":
         rest = ~(1 << o)
-        emptied = Agent(*agent[:9], agent.right & rest, agent.left & rest, agent.origins)
+        emptied = agent._replace(right=agent.right & rest, left=agent.left & rest)
         agents = world.with_agent(number, emptied).agents
     return World(world.home, world.states, agents, add(world.moved, (o, INSIDE, s)))
 
 
-def _holds_knife(world: World, agent: Agent) -> bool:
-    return any("knife" in world.home.classes[i] for i in rows.held_indices(agent))
+def _pourable(s: Situation) -> Masks:
+    return s.able("Pour") & s.held, s.able("Pour", 1) & s.close
+
+
+_food = Check(_need_food, _with_food)
+_knife = Check(_need_knife, lambda s, _: -1 if _knives(s.world, s.me) else 0)
+
+ACTIONS = (
+    checked("Drink", able, held),
+    checked("Eat", close, _food),
+    checked("Cut", free_hand, close, able, _knife),
+    Action("Pour", pour, _pourable),
+)

@@ -6,33 +6,42 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation import moved as kinds
 from hearth.simulation import origins, rows
 from hearth.simulation.actions.common import (
-    OPEN,
-    need_able,
+    Action,
+    Check,
+    Masks,
+    able,
+    checked,
+    close,
+    free_hand,
+    held,
     need_close,
     need_free_hand,
     need_holding,
-    need_reachable,
+    need_open,
+    reachable,
     refuse,
+    some,
 )
 from hearth.simulation.agent import Agent
 from hearth.simulation.moved import add, lift
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
+from hearth.simulation.states import OPEN
 from hearth.simulation.world import World
 
 
-def grab(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+def _need_nobody_else(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+    """Refuse what another character holds."""
+    if len(world.agents) > 1:
+        for number, other in enumerate(world.agents):
+            if other.index != agent.index and other.held >> o & 1:
+                return refuse(world, Code.HELD_BY_OTHER, "in nobody's hands", f"held by char{number}", o, other.index)
+    return None
+
+
+def _grab(world: World, number: int, o: int, rules: Rules) -> World:
     """Take o into the free hand, right first, and remember where it came from."""
     agent = world.agents[number]
-    failure = (
-        need_able(world, "Grab", o)
-        or need_close(world, agent, o)
-        or need_reachable(world, o)
-        or need_free_hand(world, agent, o)
-    )
-    if failure is None and len(world.agents) > 1:
-        failure = _need_nobody_holding(world, number, o)
-    if failure is not None:
-        return failure
     place, kind = origins.remembered(world, agent, o, rules)
     bit = 1 << o
     room = rows.agent_room(world, agent)
@@ -40,7 +49,7 @@ def grab(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
     memory = agent.origins
     if place >= 0:
         close |= 1 << place
-        memory = (*(entry for entry in memory if entry[0] != o), (o, place, kind))
+        memory = (*_forgotten(agent, o), (o, place, kind))
     right, left = agent.right, agent.left
     if right:
         left |= bit
@@ -68,7 +77,7 @@ def put_back(world: World, number: int, o: int, s: int, rules: Rules) -> World |
 def put_in(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
     """Put o into s, which must be open if it can be."""
     agent = world.agents[number]
-    failure = need_holding(world, agent, o) or need_close(world, agent, s) or _need_open(world, s)
+    failure = need_holding(world, agent, o) or need_close(world, agent, s) or need_open(world, s)
     if failure is not None:
         return failure
     return _put(world, number, (o, kinds.INSIDE, s), agent.origins)
@@ -83,18 +92,15 @@ def put_obj_back(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
     place, kind = entry[1:]
     failure = need_holding(world, agent, o) or need_close(world, agent, place)
     if failure is None and kind == kinds.INSIDE:
-        failure = _need_open(world, place)
+        failure = need_open(world, place)
     if failure is not None:
         return failure
     return _put(world, number, (o, kind, place), _forgotten(agent, o))
 
 
-def drop(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Let go of o where the character stands; Release is the same."""
+def _drop(world: World, number: int, o: int, rules: Rules) -> World:
+    """Let go of o where the character stands."""
     agent = world.agents[number]
-    failure = need_holding(world, agent, o)
-    if failure is not None:
-        return failure
     room = rows.agent_room(world, agent)
     after = add(world.moved, (o, kinds.INSIDE, room)) if room >= 0 else world.moved
     freed = _freed(agent, o, agent.close, agent.worn, _forgotten(agent, o))
@@ -119,13 +125,10 @@ def _put_at_character(world: World, edge: tuple[int, int, int]) -> World:
     """Leave a thing with a character, oneself or another: its edges stand in the character's rows."""
     o, kind, s = edge
     bit = 1 << o
-    number, (index, me, close, facing, faced, inside, contents, on, worn, right, left, memory) = next(
-        (number, agent) for number, agent in enumerate(world.agents) if agent.index == s
-    )
-    worn |= bit if kind == kinds.ON else 0
-    contents |= bit if kind == kinds.INSIDE else 0
-    agent = Agent(index, me, close | bit, facing, faced, inside, contents, on, worn, right, left, memory)
-    return world.with_agent(number, agent)
+    number, agent = next((number, agent) for number, agent in enumerate(world.agents) if agent.index == s)
+    worn = agent.worn | bit if kind == kinds.ON else agent.worn
+    contents = agent.contents | bit if kind == kinds.INSIDE else agent.contents
+    return world.with_agent(number, agent._replace(close=agent.close | bit, worn=worn, contents=contents))
 
 
 def _freed(agent: Agent, o: int, close: int, worn: int, memory: tuple[tuple[int, int, int], ...]) -> Agent:
@@ -138,31 +141,21 @@ def _forgotten(agent: Agent, o: int) -> tuple[tuple[int, int, int], ...]:
     return tuple(entry for entry in agent.origins if entry[0] != o)
 
 
-def _need_open(world: World, s: int) -> Failure | None:
-    if not world.home.properties["CAN_OPEN"] >> s & 1 or world.states[OPEN] >> s & 1:
-        return None
-    return refuse(world, Code.IS_CLOSED, "OPEN", "CLOSED", s)
-
-
-def _need_nobody_holding(world: World, number: int, o: int) -> Failure | None:
-    for other, agent in enumerate(world.agents):
-        if other != number and agent.held >> o & 1:
-            return refuse(world, Code.HELD_BY_OTHER, "in nobody's hands", f"held by char{other}", o, agent.index)
-    return None
-
-
 def _taken_from_others(agents: tuple[Agent, ...], number: int, taken: Agent, bit: int) -> tuple[Agent, ...]:
     """Void the other characters' edges to a thing that one has grabbed."""
     rest = ~bit
     return tuple(
         taken
         if i == number
-        else Agent(
-            other.index, other.bit, other.close & rest, other.facing, other.faced, other.inside & rest,
-            other.contents & rest, other.on & rest, other.worn & rest, other.right, other.left, other.origins,
+        else other._replace(
+            close=other.close & rest,
+            inside=other.inside & rest,
+            contents=other.contents & rest,
+            on=other.on & rest,
+            worn=other.worn & rest,
         )
         for i, other in enumerate(agents)
-    )  # fmt: skip
+    )
 
 
 def _hand_over(world: World, number: int, o: int, s: int) -> World | Failure:
@@ -174,5 +167,34 @@ def _hand_over(world: World, number: int, o: int, s: int) -> World | Failure:
     bit = 1 << o
     right, left = (taker.right, taker.left | bit) if taker.right else (taker.right | bit, taker.left)
     given = _freed(giver, o, giver.close | 1 << s, giver.worn, _forgotten(giver, o))
-    taken = Agent(*taker[:2], taker.close | bit | giver.bit, *taker[3:9], right, left, taker.origins)
+    taken = taker._replace(close=taker.close | bit | giver.bit, right=right, left=left)
     return world.with_agent(number, given).with_agent(receiver, taken)
+
+
+def _putable_on(s: Situation) -> Masks:
+    return (s.held, s.close & ~s.full_handed) if s.held else None
+
+
+def _putable_in(s: Situation) -> Masks:
+    return (s.held, s.close & (~s.home.properties["CAN_OPEN"] | s.states[OPEN])) if s.held else None
+
+
+def _returnable(s: Situation) -> Masks:
+    shut = s.home.properties["CAN_OPEN"] & ~s.states[OPEN]
+    mask = 0
+    for o, place, kind in s.me.origins:
+        if s.held >> o & 1 and s.close >> place & 1 and not (kind == kinds.INSIDE and shut >> place & 1):
+            mask |= 1 << o
+    return some(mask)
+
+
+_nobody_else = Check(_need_nobody_else, lambda s, _: ~s.held_by_others)
+
+ACTIONS = (
+    checked("Grab", able, close, reachable, free_hand, _nobody_else, effect=_grab),
+    Action("PutBack", put_back, _putable_on),
+    Action("PutIn", put_in, _putable_in),
+    Action("PutObjBack", put_obj_back, _returnable),
+    checked("Drop", held, effect=_drop),
+    checked("Release", held, effect=_drop),
+)

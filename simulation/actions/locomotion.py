@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import doors, rows
-from hearth.simulation.actions.common import LYING, SITTING, need_close, refuse
+from hearth.simulation.actions.common import Action, Masks, checked, need_close, refuse, some
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import NOTHING, carry
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
+from hearth.simulation.states import LYING, SITTING
 from hearth.simulation.world import World
 
 
@@ -43,8 +45,19 @@ def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
     return world.with_agent(number, _attending(agent, agent.close | 1 << o, 0))
 
 
-def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Face o alone."""
+def _walkable(s: Situation) -> Masks:
+    return None if s.resting else some(s.walkable)
+
+
+def _findable(s: Situation) -> Masks:
+    if s.resting:
+        return some(s.close)
+    near = s.home.properties["BODY_PART"] | s.me.worn
+    return some(s.close | s.walkable & ~near)
+
+
+def _turn_to(world: World, number: int, o: int, rules: Rules) -> World:
+    """The character faces o alone."""
     agent = world.agents[number]
     return world.with_agent(number, _attending(agent, agent.close, 1 << o))
 
@@ -93,15 +106,20 @@ def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held
     return tuple(
         arrived
         if i == number
-        else Agent(
-            other.index,
-            other.bit,
-            other.close & gone | (arrived.bit if arrived.close & other.bit else 0),
-            other.facing & gone,
-            other.faced & gone,
-            other.inside & gone,
-            other.contents & gone,
-            *other[7:],
+        else other._replace(
+            close=other.close & gone | (arrived.bit if arrived.close & other.bit else 0),
+            facing=other.facing & gone,
+            faced=other.faced & gone,
+            inside=other.inside & gone,
+            contents=other.contents & gone,
         )
         for i, other in enumerate(agents)
     )
+
+
+ACTIONS = (
+    Action("Walk", walk, _walkable),
+    Action("Run", walk, _walkable),
+    Action("Find", find, _findable),
+    checked("TurnTo", effect=_turn_to),
+)

@@ -4,39 +4,26 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import rows
-from hearth.simulation.actions.common import LYING, SITTING, need_able, need_close, refuse, with_state
+from hearth.simulation.actions.common import Action, Check, Masks, able, checked, close, refuse
 from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
+from hearth.simulation.states import LYING, SITTING, with_state
 from hearth.simulation.world import World
 
 
-def sit(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Sit down on o, then face what o faces."""
-    agent = world.agents[number]
-    failure = need_close(world, agent, o)
-    if failure is None and world.states[SITTING] & agent.bit:
-        failure = refuse(world, Code.SITTING, "not sitting", "sitting", o)
-    failure = failure or need_able(world, "Sit", o) or _need_room_on(world, o, lying=False)
-    if failure is not None:
-        return failure
+def _sit(world: World, number: int, o: int, rules: Rules) -> World:
+    """The character then faces what the seat faces."""
     ahead = rows.facing(world, o)
     for other in world.agents:
         if other.faced >> o & 1:
             ahead |= other.bit
-    return _settle(world, number, o, SITTING, agent.facing | ahead)
+    return _settle(world, number, o, SITTING, world.agents[number].facing | ahead)
 
 
-def lie(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Lie down on o."""
-    agent = world.agents[number]
-    failure = need_close(world, agent, o)
-    if failure is None and world.states[LYING] & agent.bit:
-        failure = refuse(world, Code.LYING, "not lying", "lying", o)
-    failure = failure or need_able(world, "Lie", o) or _need_room_on(world, o, lying=True)
-    if failure is not None:
-        return failure
-    return _settle(world, number, o, LYING, agent.facing)
+def _lie(world: World, number: int, o: int, rules: Rules) -> World:
+    return _settle(world, number, o, LYING, world.agents[number].facing)
 
 
 def stand_up(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
@@ -57,18 +44,40 @@ def sleep(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
     return world if failure is None else failure
 
 
+def _resting(s: Situation) -> Masks:
+    return () if s.resting else None
+
+
 def _need_rest(world: World, agent: Agent) -> Failure | None:
     if (world.states[SITTING] | world.states[LYING]) & agent.bit:
         return None
     return refuse(world, Code.NOT_SITTING_OR_LYING, "sitting or lying", "standing")
 
 
-def _need_room_on(world: World, o: int, lying: bool) -> Failure | None:
-    taken = rows.bearing(world, o)
-    limit = world.home.limit(o, lying)
-    if taken.bit_count() < limit:
-        return None
-    return refuse(world, Code.OCCUPIED, f"fewer than {limit} on it", str(taken.bit_count()), o, *indices(taken))
+def _not_already(state: int, code: Code, name: str) -> Check:
+    """The character is not in the posture yet."""
+
+    def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+        return refuse(world, code, f"not {name}", name, o) if world.states[state] & agent.bit else None
+
+    return Check(refusal, lambda s, _: 0 if s.states[state] & s.me.bit else -1)
+
+
+def _unoccupied(lying: bool) -> Check:
+    """Fewer things are on the seat or bed than its limit."""
+
+    def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+        taken = rows.bearing(world, o)
+        limit = world.home.limit(o, lying)
+        if taken.bit_count() < limit:
+            return None
+        return refuse(world, Code.OCCUPIED, f"fewer than {limit} on it", str(taken.bit_count()), o, *indices(taken))
+
+    def mask(s: Situation, action: str) -> int:
+        places = indices(s.able(action) & s.close)
+        return mask_of(i for i in places if rows.bearing(s.world, i).bit_count() < s.home.limit(i, lying))
+
+    return Check(refusal, mask)
 
 
 def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
@@ -77,3 +86,12 @@ def _settle(world: World, number: int, o: int, state: int, facing: int) -> World
     settled = Agent(index, bit, close, facing, faced, inside, contents, on | 1 << o, worn, right, left, origins)
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents
     return World(world.home, with_state(world.states, state, bit), agents, world.moved)
+
+
+ACTIONS = (
+    checked("Sit", close, _not_already(SITTING, Code.SITTING, "sitting"), able, _unoccupied(lying=False), effect=_sit),
+    checked("Lie", close, _not_already(LYING, Code.LYING, "lying"), able, _unoccupied(lying=True), effect=_lie),
+    Action("StandUp", stand_up, _resting),
+    Action("Sleep", sleep, _resting),
+    Action("WakeUp", sleep, _resting),
+)

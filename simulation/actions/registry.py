@@ -1,4 +1,4 @@
-"""Every action that is executed, by its canonical name. To add one: a YAML entry, a function, a row here, a test."""
+"""Every action that is executed, by its canonical name; the files name theirs in `ACTIONS`."""
 
 from __future__ import annotations
 
@@ -16,46 +16,16 @@ from hearth.simulation.actions import (
 from hearth.simulation.actions.common import Action
 
 ACTIONS: dict[str, Action] = {
-    "Close": appliances.close,
-    "Cut": food.cut,
-    "Drink": food.drink,
-    "Drop": hands.drop,
-    "Eat": food.eat,
-    "Find": locomotion.find,
-    "Grab": hands.grab,
-    "Greet": senses.greet,
-    "Lie": posture.lie,
-    "LookAt": senses.look_at,
-    "Move": moving.move,
-    "Open": appliances.open_,
-    "PlugIn": appliances.plug_in,
-    "PlugOut": appliances.plug_out,
-    "PointAt": senses.look_at,
-    "Pour": food.pour,
-    "Pull": moving.pull,
-    "Push": moving.push,
-    "PutBack": hands.put_back,
-    "PutIn": hands.put_in,
-    "PutObjBack": hands.put_obj_back,
-    "PutOff": clothes.put_off,
-    "PutOn": clothes.put_on,
-    "Read": senses.read,
-    "Release": hands.drop,
-    "Rinse": cleaning.wash,
-    "Run": locomotion.walk,
-    "Scrub": cleaning.wash,
-    "Sit": posture.sit,
-    "Sleep": posture.sleep,
-    "Squeeze": cleaning.squeeze,
-    "StandUp": posture.stand_up,
-    "SwitchOff": appliances.switch_off,
-    "SwitchOn": appliances.switch_on,
-    "Touch": senses.touch,
-    "TurnTo": locomotion.turn_to,
-    "Type": appliances.type_,
-    "WakeUp": posture.sleep,
-    "Walk": locomotion.walk,
-    "Wash": cleaning.wash,
-    "Watch": senses.watch,
-    "Wipe": cleaning.wipe,
+    action.name: action
+    for action in (
+        *appliances.ACTIONS,
+        *cleaning.ACTIONS,
+        *clothes.ACTIONS,
+        *food.ACTIONS,
+        *hands.ACTIONS,
+        *locomotion.ACTIONS,
+        *moving.ACTIONS,
+        *posture.ACTIONS,
+        *senses.ACTIONS,
+    )
 }

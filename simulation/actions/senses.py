@@ -5,30 +5,31 @@ from __future__ import annotations
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import rows
 from hearth.simulation.actions.common import (
-    LYING,
-    ON,
-    SITTING,
+    Action,
+    Masks,
+    able,
+    checked,
+    close,
+    facing,
+    held,
     need_able,
-    need_close,
-    need_holding,
-    need_reachable,
+    need_facing,
+    reachable,
     refuse,
+    some,
 )
 from hearth.simulation.agent import Agent
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.rules import Rules
+from hearth.simulation.situation import Situation
+from hearth.simulation.states import LYING, ON, SITTING
 from hearth.simulation.world import World
-
-
-def look_at(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Look at, or point at, what the character faces."""
-    failure = _need_facing(world, world.agents[number], o)
-    return world if failure is None else failure
 
 
 def watch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Watch what is in the room and faced; by `rules.watch_needs_on`, what has a switch must be on."""
     agent = world.agents[number]
-    failure = need_able(world, "Watch", o)
+    failure = need_able(world, agent, o, "Watch")
     if failure is None and rows.room_of(world, o) != rows.agent_room(world, agent):
         failure = refuse(world, Code.NOT_IN_ROOM, "in the character's room", "in another", o)
     if failure is None:
@@ -40,33 +41,31 @@ def watch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fa
     return world if failure is None else failure
 
 
-def read(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Read what a hand holds."""
-    failure = need_able(world, "Read", o) or need_holding(world, world.agents[number], o)
-    return world if failure is None else failure
-
-
-def touch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Touch what is close and not shut away."""
-    failure = need_close(world, world.agents[number], o) or need_reachable(world, o)
-    return world if failure is None else failure
-
-
-def greet(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """Greet a person."""
-    failure = need_able(world, "Greet", o)
-    return world if failure is None else failure
-
-
-def _need_facing(world: World, agent: Agent, o: int) -> Failure | None:
-    if rows.is_facing(world, agent, o):
-        return None
-    return refuse(world, Code.NOT_FACING, "the character facing it", "no FACING edge, direct or by one hop", o)
-
-
 def _need_view(world: World, agent: Agent, o: int) -> Failure | None:
     """Who sits or lies must face a thing itself; a computer may also be faced by one hop."""
     resting = (world.states[SITTING] | world.states[LYING]) & agent.bit
     if resting and world.home.classes[o] != "computer" and not agent.facing >> o & 1:
         return refuse(world, Code.NOT_FACING, "the seat facing it", "no direct FACING edge", o)
-    return _need_facing(world, agent, o)
+    return need_facing(world, agent, o)
+
+
+def _watchable(s: Situation) -> Masks:
+    mask = s.able("Watch") & s.facing
+    if s.resting:
+        mask &= s.me.facing | s.home.by_class.get("computer", 0)
+    if s.rules.watch_needs_on:
+        mask &= ~s.home.properties["HAS_SWITCH"] | s.states[ON]
+    if mask:
+        room = rows.agent_room(s.world, s.me)
+        mask = mask_of(i for i in indices(mask) if rows.room_of(s.world, i) == room)
+    return some(mask)
+
+
+ACTIONS = (
+    checked("LookAt", facing),
+    checked("PointAt", facing),
+    Action("Watch", watch, _watchable),
+    checked("Read", able, held),
+    checked("Touch", close, reachable),
+    checked("Greet", able),
+)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 
 import pytest
-import reference
-from reference_world import Options
-from reference_world import World as PlainWorld
+from oracles import engine as reference
+from oracles.world import Options
+from oracles.world import World as PlainWorld
 from small_worlds import random_graph, random_step
 
 from hearth.schemas.failures import Failure

@@ -6,9 +6,9 @@ import zipfile
 
 import orjson
 import pytest
-import reference
-from reference_world import Options
-from reference_world import World as PlainWorld
+from oracles import engine as reference
+from oracles.world import Options
+from oracles.world import World as PlainWorld
 
 from hearth.kb import grammar
 from hearth.schemas.graph import from_release

@@ -1,4 +1,4 @@
-"""The world of the reference engine: dicts of sets, changed in place."""
+"""The world of the plain engine: dicts of sets, changed in place."""
 
 from __future__ import annotations
 

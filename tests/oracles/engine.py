@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from reference_world import OPPOSITE, Options, RefusedError, World, need
-
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program, Step
+from oracles.world import OPPOSITE, Options, RefusedError, World, need
 
 SEATS = {
     "couch": 4, "bed": 4, "sofa": 4, "loveseat": 2, "love_seat": 2, "pianobench": 2, "piano_bench": 2, "bench": 2,
