@@ -91,7 +91,8 @@ def legal(
     for name, action in ACTIONS.items():
         masks = action.mask(situation)
         if masks is not None:
-            kept = tuple([mask & keep for mask in masks])
-            if all(kept):
-                found[name] = kept
+            if keep != -1:
+                masks = tuple([mask & keep for mask in masks])
+            if all(masks):
+                found[name] = masks
     return Legal(world.home, agent, found)

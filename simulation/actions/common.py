@@ -56,11 +56,6 @@ class Check(NamedTuple):
     mask: Callable[[Situation, str], int]
 
 
-def unchanged(world: World, number: int, o: int, rules: Rules) -> World:
-    """The effect of an action that changes nothing."""
-    return world
-
-
 def becomes(state: int) -> Effect:
     """The effect that the object enters a state."""
 
@@ -70,10 +65,10 @@ def becomes(state: int) -> Effect:
     return effect
 
 
-def checked(name: str, *checks: Check, effect: Effect = unchanged) -> Action:
-    """The action of one object that makes these checks in order and then has this effect."""
+def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
+    """The action of one object that makes these checks in order and then has this effect, or changes nothing."""
     refusals = tuple(check.refuse for check in checks)
-    masks = tuple(check.mask for check in checks)
+    masks = tuple(check.mask for check in reversed(checks))  # the last are the cheapest and most often empty
 
     def rule(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
         agent = world.agents[number]
@@ -81,7 +76,7 @@ def checked(name: str, *checks: Check, effect: Effect = unchanged) -> Action:
             failure = refusal(world, agent, o, name)
             if failure is not None:
                 return failure
-        return effect(world, number, o, rules)
+        return world if effect is None else effect(world, number, o, rules)
 
     def mask(situation: Situation) -> Masks:
         found = situation.home.everything

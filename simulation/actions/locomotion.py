@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation import doors, rows
-from hearth.simulation.actions.common import Action, Masks, checked, need_close, refuse, some
+from hearth.simulation.actions.common import Action, Masks, need_close, refuse, some
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import NOTHING, carry
@@ -56,8 +56,8 @@ def _findable(s: Situation) -> Masks:
     return some(s.close | s.walkable & ~near)
 
 
-def _turn_to(world: World, number: int, o: int, rules: Rules) -> World:
-    """The character faces o alone."""
+def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
+    """Face o alone."""
     agent = world.agents[number]
     return world.with_agent(number, _attending(agent, agent.close, 1 << o))
 
@@ -121,5 +121,5 @@ ACTIONS = (
     Action("Walk", walk, _walkable),
     Action("Run", walk, _walkable),
     Action("Find", find, _findable),
-    checked("TurnTo", effect=_turn_to),
+    Action("TurnTo", turn_to, lambda s: some(s.home.everything)),
 )
