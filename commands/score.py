@@ -159,6 +159,8 @@ def program(
     Example:
       python cli.py score program predictions.jsonl --graph home.json --by activity
     """
+    from functools import partial
+
     from hearth.kb.loading import default
     from hearth.pipelines.judging import read_line
     from hearth.scoring import environments
@@ -168,8 +170,9 @@ def program(
 
     chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
     options = Options(chosen, match.value, scope.value, instances, seed)
-    pairs = read_pairs(file, references, read_line)
-    scored = evaluate(pairs, default(), environments.by_row(file, graph, homes), options)
+    known = default()
+    pairs = read_pairs(file, references, partial(read_line, known))
+    scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), options)
     if as_json:
         output.emit(_program_json(scored, options, by))
     else:

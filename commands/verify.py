@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -30,9 +31,12 @@ def verify(dataset: Folder, workers: Workers = 0, as_json: output.Json = False) 
 
     with bar("shares run again") as seen:
         found = checked(dataset, workers or os.cpu_count() or 1, seen)
+    if found.note and not as_json:
+        print(f"Note: {found.note}", file=sys.stderr)
     if as_json:
         told = {"files": found.files, "rows": found.rows, "executions": found.executions}
-        output.emit({**told, "faults": [output.diagnostic_json(fault) for fault in found.faults]})
+        faults = [output.diagnostic_json(fault) for fault in found.faults]
+        output.emit({**told, "note": found.note, "faults": faults})
     else:
         output.report(found.faults)
         ran = f"{output.counted(found.executions, 'execution')} run again"

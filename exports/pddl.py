@@ -24,7 +24,6 @@ from hearth.exports.planning_domain import (
     unary_predicates,
 )
 from hearth.exports.reading import Wanted, file_name, runs, write
-from hearth.kb.loading import default
 from hearth.kb.pddl import class_predicate, limit_predicate, named_predicate, property_predicate, state_predicate
 from hearth.pipelines.dataset import Dataset, Run
 from hearth.pipelines.rows import change_of
@@ -74,7 +73,7 @@ def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     Returns:
         how many problems.
     """
-    write(to / "domain.pddl", planning_domain(default()).encode())
+    write(to / "domain.pddl", planning_domain(dataset.knowledge).encode())
     number = 0
     for task in tasks(dataset, wanted):
         write(to / "problems" / f"{file_name(task.name)}.pddl", problem(task).encode())

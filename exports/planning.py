@@ -18,7 +18,6 @@ from typing import Any
 from hearth.exports.pddl import Task, object_names, problem, tasks
 from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
-from hearth.kb.loading import default
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.schemas.errors import HearthError
@@ -144,7 +143,9 @@ def solve(task: Task) -> Outcome:
         remedy = "pip install unified-planning up-fast-downward"
         raise HearthError.of(Code.MISSING_FILE, f"no planner here: {error}", suggestion=remedy) from None
     get_environment().credits_stream = None
-    parsed = PDDLReader().parse_problem_string(planning_domain(default(), helpful(task), loose=False), problem(task))
+    parsed = PDDLReader().parse_problem_string(
+        planning_domain(task.world.home.knowledge, helpful(task), loose=False), problem(task)
+    )
     options = {"fast_downward_search_time_limit": f"{LIMIT}s"}
     # Fast Downward writes its `output.sas` where it is started: two at once would read each other's.
     with OneshotPlanner(name="fast-downward", params=options) as planner, TemporaryDirectory() as own, chdir(own):
@@ -156,8 +157,8 @@ def solve(task: Task) -> Outcome:
 def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
     """A plan of unified-planning as steps bound to nodes."""
     nodes = {name: node for node, name in object_names(task).items()}
-    actions = {name.lower(): name for name in default().actions} | {TO_DOOR.lower(): "Walk"}
     home = task.world.home
+    actions = {name.lower(): name for name in home.knowledge.actions} | {TO_DOOR.lower(): "Walk"}
     steps = []
     for each in plan.actions:
         _, *given = (nodes[str(argument)] for argument in each.actual_parameters)

@@ -9,7 +9,6 @@ from urllib.parse import quote
 
 from hearth.exports.reading import Wanted, programs
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.pipelines.dataset import Dataset
 
 PREFIX = "https://hearth.invalid/terms#"
@@ -35,7 +34,7 @@ def rdf(dataset: Dataset, to: Path, wanted: Wanted) -> int:
             file.writelines(f"{line}\n" for line in _program(row))
     with (to / "knowledge.ttl").open("w", encoding="utf-8", newline="\n") as file:
         file.write(_HEAD)
-        file.writelines(f"{line}\n" for line in _knowledge(default()))
+        file.writelines(f"{line}\n" for line in _knowledge(dataset.knowledge))
     return number
 
 

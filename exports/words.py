@@ -9,7 +9,6 @@ import orjson
 
 from hearth.exports.reading import Wanted, programs, write
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.kb.phrases import say
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import program_of
@@ -37,7 +36,7 @@ def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     Returns:
         how many programs.
     """
-    knowledge = default()
+    knowledge = dataset.knowledge
     steps, chat, examples = [], [], []
     for row in programs(dataset, wanted):
         program = program_of(row)

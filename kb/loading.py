@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from hearth.kb.load_objects import (
     load_placements,
     load_stand_ins,
 )
-from hearth.kb.reading import Entry, Faults
+from hearth.kb.reading import Entry, Faults, check_extent
 from hearth.kb.records import Action, ObjectClass, Placement
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -70,11 +71,46 @@ def default() -> Knowledge:
     return load()
 
 
+def laid_over(overlay: Path | None) -> Knowledge:
+    """Ours with a user's files laid over it, read once a process while these stay as they are; errors as of `load`."""
+    return _laid_over(overlay, digest(overlay)) if overlay else default()
+
+
+@lru_cache(maxsize=8)
+def _laid_over(overlay: Path, _: str) -> Knowledge:
+    return load(overlay=overlay)
+
+
+def files_of(directory: Path) -> list[Path]:
+    """The files of knowledge in a directory, by name."""
+    return [path for name in sorted(FILES) if (path := directory / name).is_file()]
+
+
+def digest(directory: Path | None = None) -> str:
+    """SHA-256 of the names and bytes of a directory's files of knowledge; of ours when None."""
+    return _digest(directory) if directory else _own_digest()
+
+
+@lru_cache(maxsize=1)
+def _own_digest() -> str:
+    return _digest(Path(__file__).parent)
+
+
+def _digest(directory: Path) -> str:
+    found = sha256()
+    for path in files_of(directory):
+        with path.open("rb") as file:
+            found.update(f"{path.name}\0{file_digest(file, 'sha256').hexdigest()}\n".encode())
+    return found.hexdigest()
+
+
 def _check_files(layer: Path, complete: bool, faults: Faults) -> None:
     if not layer.is_dir():
         faults.add(str(layer), 0, "is not a directory of knowledge files", code=Code.MISSING_FILE)
         return
     present = {path.name for path in layer.iterdir() if path.suffix in (".yaml", ".yml", ".csv")}
+    for name in () if complete else sorted(present & set(FILES)):
+        check_extent(layer / name, faults)
     for name in sorted(present - set(FILES)):
         faults.add(str(layer / name), 0, "is not one of the knowledge's files", f"they are {', '.join(FILES)}")
     for name in FILES if complete else ():

@@ -40,6 +40,56 @@ class Faults(list[Diagnostic]):
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
+LARGEST = 4 << 20
+"""Bytes of a file of somebody else's knowledge, at most; ours is smaller by far."""
+MOST = 100_000
+"""Values in one, aliases written out."""
+DEEPEST = 20
+"""Values that stand in one another."""
+
+
+def check_extent(path: Path, faults: Faults) -> None:
+    """Refuse a file that takes too much to read, by its size or by aliases that stand for more than they take to write.
+
+    Ours need no such check. A fault of form is left for the reader to name.
+    """
+    remedy = f"at most {LARGEST:,} bytes, {MOST:,} values, {DEEPEST} in one another"
+    size = path.stat().st_size
+    if size > LARGEST:
+        faults.add(str(path), 0, f"{size:,} bytes are too many", remedy, Code.FILE_TOO_LARGE)
+    elif path.suffix != ".csv" and not _is_small(path):
+        faults.add(str(path), 0, "it holds too many values, or itself", remedy, Code.FILE_TOO_LARGE)
+
+
+def _is_small(path: Path) -> bool:
+    text = decode(path.read_bytes())
+    known: dict[str | None, int] = {}
+    open_values: list[tuple[str | None, int]] = [(None, 0)]
+    try:
+        for event in yaml.parse(text if isinstance(text, str) else "", _Loader):
+            anchor = getattr(event, "anchor", None)
+            if isinstance(event, yaml.CollectionStartEvent):
+                known.pop(anchor, None)
+                open_values.append((anchor, 1))
+                if len(open_values) > DEEPEST:
+                    return False
+                continue
+            number = 0
+            if isinstance(event, yaml.AliasEvent):
+                number = known.get(anchor, MOST)
+            elif isinstance(event, yaml.ScalarEvent):
+                number = known[anchor] = 1
+            elif isinstance(event, yaml.CollectionEndEvent):
+                anchor, number = open_values.pop()
+                known[anchor] = number
+            outer, before = open_values[-1]
+            open_values[-1] = (outer, before + number)
+            if before + number > MOST:
+                return False
+    except yaml.YAMLError:
+        pass
+    return True
+
 
 def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
     """The top-level entries of a YAML mapping, each with its line. Duplicate keys at any depth are faults."""

@@ -28,7 +28,7 @@ from hearth.pipelines.rows import (
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
 from hearth.pipelines.stage import Job, Output, Plan, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, overlays
+from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
@@ -273,6 +273,7 @@ STAGE = Stage(
     settings=("seed", "probability", "variants", "target", "tries"),
     open=open_context,
     prepare=prepare,
+    facts=knowledge_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
     tally=lambda row: f"{len(row['repairs'])} repairs" if "repairs" in row else None,

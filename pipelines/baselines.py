@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any, NamedTuple
 
-from hearth.kb.loading import default
+from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.judging import judge_steps
@@ -81,7 +81,8 @@ def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> lis
         train, test = (_examples(dataset, split, part, originals) for part in ("train", "test"))
         test = test[:: max(1, -(-len(test) // MOST))]
         if train and test:
-            found += [_result(dataset, name, make(train, test, seed), test) for name, make in makers.items()]
+            known = dataset.knowledge
+            found += [_result(dataset, name, make(train, test, seed, known), test) for name, make in makers.items()]
     return found
 
 
@@ -139,9 +140,8 @@ def _result(dataset: Dataset, name: str, predicted: Sequence[Steps], test: Seque
     return Result(name, *(means[each].mean if each in means else None for each in (*wanted, "parsable")))
 
 
-def random_sampling(train: Sequence[Example], test: Sequence[Example], seed: int) -> list[Steps]:
+def random_sampling(train: Sequence[Example], test: Sequence[Example], seed: int, knowledge: Knowledge) -> list[Steps]:
     """As long as some program; each action and its objects are picked at random."""
-    knowledge = default()
     actions = [action for action in knowledge.actions.values() if action.executed]
     names = sorted(knowledge.objects)
     return [_sampled(rng(seed, "random sampling", each.execution_id), train, actions, names) for each in test]
@@ -156,12 +156,12 @@ def _sampled(random: Random, train: Sequence[Example], actions: list[Action], na
     return tuple(steps)
 
 
-def random_retrieval(train: Sequence[Example], test: Sequence[Example], seed: int) -> list[Steps]:
+def random_retrieval(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
     """Any program of train."""
     return [rng(seed, "random retrieval", each.execution_id).choice(train).steps for each in test]
 
 
-def nearest_description(train: Sequence[Example], test: Sequence[Example], seed: int) -> list[Steps]:
+def nearest_description(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
     """The program of the most similar words, by the cosine of TF-IDF weights; of equals the first.
 
     Raises:
@@ -183,7 +183,7 @@ WORD = r"(?u)[^\W_]{2,}"
 """What counts as a word of a description."""
 
 
-def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int) -> list[Steps]:
+def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
     """The program whose sketch is most similar by LCS; of equals, the one whose start is most like the test's (5.6.2).
 
     Starts are alike as far as they share what differs from their homes, told of classes: states, and ON and INSIDE
@@ -202,7 +202,7 @@ def _shared(one: frozenset[Fact], other: frozenset[Fact]) -> float:
     return len(one & other) / len(one | other) if one or other else 1.0
 
 
-Maker = Callable[[Sequence[Example], Sequence[Example], int], list[Steps]]
+Maker = Callable[[Sequence[Example], Sequence[Example], int, Knowledge], list[Steps]]
 
 BASELINES: dict[str, Maker] = {
     "random sampling": random_sampling,

@@ -20,6 +20,7 @@ from hearth.pipelines.run import REJECTS, run_stage
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stages import STAGES, stage
 from hearth.pipelines.stores import fetched, working
+from hearth.pipelines.surroundings import kept_knowledge
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
@@ -95,6 +96,8 @@ def build(
     fresh: list[str] = []
     with working(out) as (folder, url, revision):
         settings = Settings(paths, folder, store=url, revision=revision, **options)
+        if only and only != "validate":
+            settings = kept_knowledge(settings)
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
             for name in [only] if only else list(STAGES):
                 result = run_stage(stage(name), settings, pool, progress)

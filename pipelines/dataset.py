@@ -18,6 +18,7 @@ from hearth.schemas.program import Program
 if TYPE_CHECKING:
     import networkx
 
+    from hearth.kb.knowledge import Knowledge
     from hearth.pipelines.tensors import Tensors
     from hearth.simulation.home import Home
 
@@ -61,6 +62,17 @@ class Dataset:
 
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
+
+    @cached_property
+    def knowledge(self) -> Knowledge:
+        """What it was made with: our knowledge, and over it what the dataset carries.
+
+        Raises:
+            HearthError: what it carries is not there, is not what the manifest says, or has faults.
+        """
+        from hearth.pipelines.dataset_knowledge import knowledge_of
+
+        return knowledge_of(self.folder, self.manifest)
 
     @cached_property
     def connection(self) -> Any:
@@ -358,8 +370,8 @@ def _refused(error: Exception) -> HearthError:
     return HearthError.of(Code.SYNTAX, message)
 
 
-def world_of(run: Run, knowledge: Any = None) -> Home:
+def world_of(run: Run) -> Home:
     """The home that a run starts in, for the engine."""
     from hearth.simulation.home import Home
 
-    return Home.from_graph(run.start, run.home, knowledge)
+    return Home.from_graph(run.start, run.home, run.dataset.knowledge)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from hearth.kb.hearing import understand
-from hearth.kb.loading import default
+from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
@@ -66,7 +67,7 @@ def judge(
     wanted = chosen(dataset, split, part)
     known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
     named = _named(dataset)
-    predicted = {pair.id: pair for pair in read_pairs(file, known, read_line, named)}
+    predicted = {pair.id: pair for pair in read_pairs(file, known, partial(read_line, dataset.knowledge), named)}
     return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
 
 
@@ -92,7 +93,7 @@ def _judged(job: Job) -> list[Scored]:
     for pair, lcs in zip(filled, lcs_of(filled, options.instances), strict=True):
         case = cases[pair.id]
         mine = replace(options, rules=RULES[case["rules"]])
-        each = scored(pair, lcs, homes.home(case["home"]).knowledge, start_of(case, homes), mine)
+        each = scored(pair, lcs, dataset.knowledge, start_of(case, homes), mine)
         # A world holds its whole home: of thousands only what became of them is kept.
         ran = each.execution and replace(each.execution, final=None)
         found.append(replace(each, execution=ran))
@@ -147,13 +148,13 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
     return found
 
 
-def read_line(line: str) -> tuple[Step, ...] | Diagnostic:
+def read_line(knowledge: Knowledge, line: str) -> tuple[Step, ...] | Diagnostic:
     """A line of a program, or a step in words: `2. Put the cup on the table`."""
     parsed = parse_steps(line)
     if not isinstance(parsed, Diagnostic):
         return parsed
     said = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line
-    meant = understand(default(), said).meant if said else None
+    meant = understand(knowledge, said).meant if said else None
     if meant is None:
         return parsed
     return (Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)),)

@@ -10,7 +10,7 @@ from hearth.pipelines.parts import Row
 from hearth.pipelines.publishing import finish
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.stage import Job, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, overlays
+from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import ENVIRONMENT, REPAIR, TABLES
 
@@ -88,6 +88,7 @@ STAGE = Stage(
         "pipelines/card.py",
         "pipelines/croissant.py",
         "pipelines/cases.py",
+        "pipelines/dataset_knowledge.py",
         "pipelines/catalog.py",
         "pipelines/catalog.sql",
     ),
@@ -97,4 +98,5 @@ STAGE = Stage(
     gather=GATHER,
     identify=lambda case: str(case["execution_id"]),
     finish=finish,
+    facts=knowledge_used,
 )

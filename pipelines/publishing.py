@@ -19,6 +19,7 @@ from hearth.pipelines import splits
 from hearth.pipelines.card import write_card
 from hearth.pipelines.catalog import write_catalog
 from hearth.pipelines.croissant import write_croissant
+from hearth.pipelines.dataset_knowledge import copy_overlay
 from hearth.pipelines.files import TEMPORARY, commit, sync_folder, write_json
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.naming import STAMP, activity_id
@@ -68,6 +69,7 @@ def finish(job: Job, counts: Counts) -> None:
     write_rows(in_vain, TABLES["repairs"], _in_vain(job))
     counts.rows["repairs"] += pq.read_metadata(in_vain).num_rows
     _copy_pictures(job)
+    copy_overlay(job.settings.kb_folder, job.folder)
     write_card(job.folder)
     write_croissant(job.folder)
     write_catalog(job.folder)

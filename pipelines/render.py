@@ -13,7 +13,7 @@ from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import READ_BATCH, Row, read_rows
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Partition, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, overlays
+from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
 from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:
@@ -218,6 +218,7 @@ STAGE = Stage(
     settings=("pictures", "videos", "seed"),
     open=open_context,
     prepare=prepare,
+    facts=knowledge_used,
     partitions=partitions,
     records=records,
     patience=10,

@@ -85,7 +85,8 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     if stage.finish:
         stage.finish(job, counts)
     counts.check(stage.name)
-    manifest = describe(folder, job.asked(), inputs, key, counts=counts.to_json(), parts=list(_parts(job, numbers)))
+    facts = {**stage.facts(job), "counts": counts.to_json(), "parts": list(_parts(job, numbers))}
+    manifest = describe(folder, job.asked(), inputs, key, **facts)
     seconds = time.monotonic() - began
     write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
     manifest.write()

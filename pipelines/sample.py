@@ -21,7 +21,7 @@ from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, program_of
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Record, Stage
-from hearth.pipelines.surroundings import DERIVED, RULES, USES, Homes, overlays
+from hearth.pipelines.surroundings import DERIVED, RULES, USES, Homes, knowledge_used, overlays
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
@@ -201,6 +201,7 @@ STAGE = Stage(
     settings=("seed", "homes_each"),
     open=open_homes,
     prepare=prepare,
+    facts=knowledge_used,
     begin=derive_homes,
     tally=lambda row: "executable" if row["executable"] else "not executable",
     share=64,

@@ -79,6 +79,7 @@ class Stage:
         batch: how many records' rows are turned into Arrow together, of a partition.
         tally: a label under which a row is counted, or None.
         finish: writes what needs all partitions, before the manifest.
+        facts: what else the manifest says.
         patience: how many times the usual limit a record may take.
         share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
         gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
@@ -104,6 +105,7 @@ class Stage:
     batch: Callable[[Partition], int] = lambda partition: BATCH
     tally: Callable[[Row], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
+    facts: Callable[[Job], dict[str, Any]] = lambda job: {}
     patience: int = 1
     share: int | None = None
     gather: int = 0

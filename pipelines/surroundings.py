@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import orjson
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default, load
+from hearth.kb.loading import digest as knowledge_digest
+from hearth.kb.loading import laid_over
+from hearth.pipelines.dataset_knowledge import FOLDER, copy_overlay, made_with
 from hearth.pipelines.files import tree_digest
 from hearth.pipelines.settings import Settings
+from hearth.pipelines.stage import Job
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, REPLAY, Rules
@@ -26,18 +29,38 @@ USES = ("kb", "simulation", "data_raw/homes", "pipelines/surroundings.py", "pipe
 
 def knowledge(settings: Settings) -> Knowledge:
     """Our knowledge, with the user's laid over it."""
-    return _overlaid(settings.kb_folder) if settings.kb_folder else default()
+    return laid_over(Path(settings.kb_folder) if settings.kb_folder else None)
 
 
-@cache
-def _overlaid(folder: str) -> Knowledge:
-    return load(overlay=Path(folder))
+def knowledge_used(job: Job) -> dict[str, Any]:
+    """Which knowledge a stage used, for its manifest."""
+    return made_with(job.settings.kb_folder, job.folder)
+
+
+def keep_knowledge(job: Job) -> None:
+    """Copy what is laid over our knowledge into the stage's folder, for stages that are run alone later."""
+    copy_overlay(job.settings.kb_folder, job.folder)
+
+
+def kept_knowledge(settings: Settings) -> Settings:
+    """The options, with the knowledge that the programs were checked with where they name none."""
+    folder = settings.folder("validate") / FOLDER
+    return settings if settings.kb_folder or not folder.is_dir() else replace(settings, kb_folder=str(folder))
 
 
 def overlays(settings: Settings) -> dict[str, Any]:
-    """Digests of the user's own knowledge and homes, for a plan."""
-    folders = {"kb": settings.kb_folder, "homes": settings.homes_folder}
-    return {f"{name}_overlay": tree_digest(Path(folder)) for name, folder in folders.items() if folder}
+    """Digests of the user's own knowledge and homes, for a plan.
+
+    Raises:
+        HearthError: a folder is not there; every fault of the knowledge.
+    """
+    made: dict[str, Any] = {}
+    if settings.kb_folder:
+        knowledge(settings)
+        made["kb_overlay"] = knowledge_digest(Path(settings.kb_folder))
+    if settings.homes_folder:
+        made["homes_overlay"] = tree_digest(Path(settings.homes_folder))
+    return made
 
 
 RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY}

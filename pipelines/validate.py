@@ -15,7 +15,7 @@ from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import binding_rows, step_rows, warning_row
 from hearth.pipelines.spoken import parse_spoken
 from hearth.pipelines.stage import Job, Record, Stage
-from hearth.pipelines.surroundings import knowledge, overlays
+from hearth.pipelines.surroundings import keep_knowledge, knowledge, knowledge_used, overlays
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program
@@ -171,5 +171,7 @@ STAGE = Stage(
     ),
     open=open_knowledge,
     prepare=overlays,
+    begin=keep_knowledge,
+    facts=knowledge_used,
     select=is_program,
 )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.pipelines.dataset import Dataset
+from hearth.pipelines.dataset_knowledge import other_base
 from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.pipelines.stored_cases import stored_cases
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -70,12 +71,14 @@ class Verdict:
         rows: rows counted, all tables together.
         executions: executions run again.
         faults: everything that is wrong; empty when the dataset is what it says.
+        note: what else is to be known of it, or "".
     """
 
     files: int
     rows: int
     executions: int
     faults: tuple[Diagnostic, ...]
+    note: str = ""
 
 
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
@@ -95,14 +98,15 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     opened.cache_clear()
     dataset = Dataset.open(path)
     files = len(dataset.manifest["files"])
-    faults = tuple(_files(dataset)) or tuple(_schemas(dataset))
+    note = other_base(dataset.manifest)
+    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
     if faults:
-        return Verdict(files, 0, 0, faults)
+        return Verdict(files, 0, 0, faults, note)
     rows = sum(_count(dataset, table) for table in _tables())
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
     if wrong:
-        return Verdict(files, rows, 0, tuple(wrong))
-    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)))
+        return Verdict(files, rows, 0, tuple(wrong), note)
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note)
 
 
 def _tables() -> tuple[str, ...]:
@@ -132,6 +136,13 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 _AGAIN = "fetch or publish the dataset again"
+
+
+def _knowledge(dataset: Dataset) -> Iterator[Diagnostic]:
+    try:
+        _ = dataset.knowledge
+    except HearthError as error:
+        yield from error.diagnostics
 
 
 def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
@@ -219,7 +230,7 @@ class StoredHomes:
             KeyError: there is none of that name.
         """
         if name not in self._built:
-            self._built[name] = Home.from_graph(self._dataset.home(name), name)
+            self._built[name] = Home.from_graph(self._dataset.home(name), name, self._dataset.knowledge)
         return self._built[name]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.scoring.predictions import Pair
 from hearth.simulation.home import Home
@@ -19,11 +20,12 @@ GRAPH = "graph"
 HOME = "home"
 
 
-def by_row(file: Path, graph: Path | None = None, homes: Path | None = None) -> Environments:
+def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: Path | None = None) -> Environments:
     """Environments by what each row says: `graph`, a scene graph's file beside the predictions', or `home`, a name.
 
     Args:
         file: the predictions; a row's path is relative to its folder.
+        knowledge: of the environments.
         graph: the environment of rows that say neither.
         homes: a folder of the user's own homes.
 
@@ -34,10 +36,10 @@ def by_row(file: Path, graph: Path | None = None, homes: Path | None = None) -> 
         named, home = pair.more.get(GRAPH), pair.more.get(HOME)
         try:
             if named is not None:
-                return _from_file(file.parent / str(named))
+                return _from_file(file.parent / str(named), knowledge)
             if home is not None:
-                return _from_home(str(home), homes)
-            return _from_file(graph) if graph else None
+                return _from_home(str(home), homes, knowledge)
+            return _from_file(graph, knowledge) if graph else None
         except HearthError as error:
             raise HearthError(_at(fault, pair, file) for fault in error.diagnostics) from None
 
@@ -51,10 +53,10 @@ def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
 
 
 @lru_cache(maxsize=32)
-def _from_file(path: Path) -> World:
-    return World.start(Home.from_graph(graph_of(path), path.stem))
+def _from_file(path: Path, knowledge: Knowledge) -> World:
+    return World.start(Home.from_graph(graph_of(path), path.stem, knowledge))
 
 
 @lru_cache(maxsize=32)
-def _from_home(name: str, homes: Path | None) -> World:
-    return World.start(Home.from_graph(load_graph(name, homes), name))
+def _from_home(name: str, homes: Path | None, knowledge: Knowledge) -> World:
+    return World.start(Home.from_graph(load_graph(name, homes), name, knowledge))

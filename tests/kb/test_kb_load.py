@@ -226,3 +226,27 @@ def test_the_files_are_sorted_and_say_what_they_are():
         elif name not in ("states.yaml", "repairs.yaml", "corrections.yaml"):
             keys = [line.split(":")[0] for line in body if line[0] not in " -}"]
             assert keys == sorted(keys) or name == "limits.yaml", name
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: &x [*x]\n",
+        "a: " + "[" * 100_000,
+        "- " * 100_000,
+        "a0: &a0 [x, x]\n" + "".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 9)),
+        "a: [" + "x," * 150_000 + "]\n",
+        "# " + "x" * 5_000_000,
+    ],
+    ids=["itself", "deep", "deep block", "aliases", "wide", "long"],
+)
+def test_an_overlay_that_takes_too_much_to_read_is_refused(tmp_path, text):
+    (tmp_path / "actions.yaml").write_text(text)
+    (fault,) = faults(tmp_path)
+    assert fault.code is Code.FILE_TOO_LARGE
+
+
+def test_an_overlay_may_use_aliases(tmp_path):
+    (tmp_path / "limits.yaml").write_text("sit: &seats {default: 3, sofa: 5}\nlie: *seats\n")
+    known = load(overlay=tmp_path)
+    assert (known.seat_limit("sofa"), known.bed_limit("sofa"), known.bed_limit("bed")) == (5, 5, 3)

@@ -113,9 +113,9 @@ def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
 
 def test_lines_as_programs_and_as_sentences():
     step = (Step("PutIn", (ObjectRef("milk"), ObjectRef("fridge"))),)
-    assert read_line("[PutIn] <milk> (1) <fridge> (1)") == step
+    assert read_line(default(), "[PutIn] <milk> (1) <fridge> (1)") == step
     for said in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
-        assert read_line(said) == step, said
+        assert read_line(default(), said) == step, said
 
 
 def walk(name):
@@ -127,11 +127,11 @@ def test_every_baseline_gives_a_program_a_test():
         ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
     test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
     for make in (random_sampling, random_retrieval, nearest_sketch):
-        assert len(make(train, test, 0)) == 2
-        assert make(train, test, 0) == make(train, test, 0)
-    sampled = random_sampling(train, test, 0)
+        assert len(make(train, test, 0, default())) == 2
+        assert make(train, test, 0, default()) == make(train, test, 0, default())
+    sampled = random_sampling(train, test, 0, default())
     assert all(parsability(steps, default()).parsable for steps in sampled)
-    assert random_sampling(train, test, 1) != sampled
+    assert random_sampling(train, test, 1, default()) != sampled
 
 
 @pytest.mark.tools
@@ -140,7 +140,7 @@ def test_the_nearest_description_shares_the_rarest_words():
     train = [Example(f"t{n}", text, walk(text.split()[1])) for n, text in enumerate(
         ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
     test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
-    assert nearest_description(train, test, 0) == [walk("book"), walk("bed")]
+    assert nearest_description(train, test, 0, default()) == [walk("book"), walk("bed")]
 
 
 def test_the_nearest_sketch_and_of_equals_the_nearest_start():
@@ -154,7 +154,7 @@ def test_the_nearest_sketch_and_of_equals_the_nearest_start():
         Example("b", "", (), walk("sofa"), frozenset({"ON cup table"})),
         Example("c", "", (), walk("sink"), frozenset({"ON lamp"})),
     ]
-    assert nearest_sketch(train, test, 0) == [walk("bed"), walk("book"), walk("cup")]
+    assert nearest_sketch(train, test, 0, default()) == [walk("bed"), walk("book"), walk("cup")]
 
 
 @pytest.mark.tools
