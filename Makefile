@@ -30,10 +30,10 @@ tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.c
 manifest = $(OUT)/$(1)/manifest.json
 
 # What decides a stage's output. Generous: a stage that runs without need finds by digests that nothing changed.
-SHARED   := version.py $(call tree,schemas) \
+SHARED   := version.py $(call tree,schemas simulation grounding) \
             $(filter-out $(STAGES:%=pipelines/%.py),$(wildcard pipelines/*.py pipelines/*.sql pipelines/*.yaml))
 KNOWN    := $(SHARED) $(call tree,kb)
-WORLD    := $(KNOWN) $(call tree,simulation grounding data_raw/homes)
+WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
 .PHONY: all full mini frames setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
 

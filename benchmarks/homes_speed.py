@@ -18,9 +18,9 @@ from measuring import Figure, finish, parser, passes, rate, runs, seconds, stall
 
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
+from hearth.pipelines.library import Homes
 from hearth.pipelines.rehearsal import Script, scripts
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.surroundings import Homes
 from hearth.schemas.failures import Failure
 from hearth.simulation.homes import catalog
 from hearth.simulation.homes.generate import generate

@@ -22,13 +22,13 @@ from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.stored_cases import stored_cases
-from hearth.pipelines.surroundings import RULES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.scoring.evaluate import Options, Pair, lcs_of, scored
 from hearth.scoring.lcs import matrix
 from hearth.simulation.homes import catalog
+from hearth.simulation.rules import RULES
 
 ASKED = 30_000
 """Predictions and executions that the targets are about."""

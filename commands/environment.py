@@ -10,7 +10,7 @@ import typer
 from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
-    from hearth.pipelines.surroundings import Homes as AllHomes
+    from hearth.pipelines.library import Homes as AllHomes
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -265,7 +265,7 @@ def _bars(group: str, counts: Any) -> None:
 
 
 def _homes(names: list[str] | None, folder: Path | None) -> AllHomes:
+    from hearth.pipelines.library import Homes
     from hearth.pipelines.settings import Settings
-    from hearth.pipelines.surroundings import Homes
 
     return Homes(Settings(homes=tuple(names or ()), homes_folder=str(folder) if folder else None))

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
+    from hearth.pipelines.library import Homes
     from hearth.pipelines.rehearsal import Rehearsal, Script
-    from hearth.pipelines.surroundings import Homes
     from hearth.schemas.failures import Failure
 
 
@@ -21,9 +21,9 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
 
     from hearth.commands.waiting import bar, watched
     from hearth.grounding.sampling import Size
+    from hearth.pipelines.library import Homes
     from hearth.pipelines.rehearsal import rehearse, scripts
     from hearth.pipelines.settings import Settings
-    from hearth.pipelines.surroundings import Homes
 
     homes = Homes(Settings(**settings))
     programs = islice(scripts(map(str, sources), homes.knowledge), limit)

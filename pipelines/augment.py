@@ -12,6 +12,7 @@ from hearth.grounding.perturbing import Chances, Perturbation
 from hearth.grounding.sampling import Environment
 from hearth.pipelines.augmenting import Augmented, Options, Pair, augment, default_chances
 from hearth.pipelines.cases import environment_of, rerun, run_row
+from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Row
 from hearth.pipelines.rejects import Reject
@@ -28,7 +29,7 @@ from hearth.pipelines.rows import (
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
 from hearth.pipelines.stage import Job, Output, Plan, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
+from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
@@ -258,18 +259,6 @@ STAGE = Stage(
     tables={"": CASE, "attempts": TRIED, "sketches": SKETCHED},
     process=process,
     reads=("sample",),
-    uses=(
-        *USES,
-        "grounding",
-        "pipelines/augment.py",
-        "pipelines/augment.yaml",
-        "pipelines/augmenting.py",
-        "pipelines/canonical.py",
-        "pipelines/cases.py",
-        "pipelines/handlers",
-        "pipelines/repairing.py",
-        "pipelines/sketching.py",
-    ),
     settings=("seed", "probability", "variants", "target", "tries"),
     open=open_context,
     prepare=prepare,

@@ -21,7 +21,6 @@ from hearth.pipelines.rows import (
     program_of,
     tick_rows,
 )
-from hearth.pipelines.surroundings import RULES
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.change import Change
@@ -29,6 +28,7 @@ from hearth.simulation.edit import extended
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import states_of
+from hearth.simulation.rules import RULES
 from hearth.simulation.world import World
 
 Row = dict[str, Any]

@@ -10,8 +10,8 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from hearth.pipelines.library import Homes
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.surroundings import Homes
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 

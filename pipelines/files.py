@@ -6,7 +6,7 @@ import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -112,19 +112,3 @@ def walk(folder: Path) -> Iterator[Path]:
 def value_digest(value: Any) -> str:
     """SHA-256 of a JSON value, keys sorted."""
     return hashlib.sha256(orjson.dumps(value, option=orjson.OPT_SORT_KEYS)).hexdigest()
-
-
-@cache
-def code_digest(parts: tuple[str, ...]) -> str:
-    """SHA-256 of the code and data files of some packages or modules (`kb`, `pipelines/sample.py`) of this package."""
-    root = Path(__file__).resolve().parent.parent
-    digest = hashlib.sha256()
-    for part in sorted(set(parts)):
-        path = root / part
-        files = [path] if path.is_file() else sorted(f for f in path.rglob("*") if f.suffix in _CODE)
-        for file in files:
-            digest.update(f"{file.relative_to(root).as_posix()}\0{file_digest(file)}\n".encode())
-    return digest.hexdigest()
-
-
-_CODE = frozenset({".py", ".yaml", ".csv", ".sql", ".json"})

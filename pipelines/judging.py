@@ -15,7 +15,6 @@ from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.pipelines.stored_cases import stored_cases
-from hearth.pipelines.surroundings import RULES
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -24,6 +23,7 @@ from hearth.schemas.syntax import parse_steps
 from hearth.scoring.evaluate import Options, Scored, lcs_of, scored
 from hearth.scoring.predictions import Pair, read_pairs
 from hearth.scoring.rows import Named
+from hearth.simulation.rules import RULES
 
 PART = 250
 """References whose environments are in memory at a time, and a worker's share."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from hearth.pipelines.cases import difference_on_replay
+from hearth.pipelines.library import Homes
 from hearth.pipelines.naming import STAMP, activity_id, split_of
 from hearth.pipelines.parts import Row
 from hearth.pipelines.publishing import finish
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.stage import Job, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
+from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import ENVIRONMENT, REPAIR, TABLES
 
@@ -77,21 +78,6 @@ STAGE = Stage(
     process=process,
     reads=("sample", "augment"),
     needs=("ingest", "validate", "render"),
-    uses=(
-        *USES,
-        "grounding",
-        "pipelines/publish.py",
-        "pipelines/publishing.py",
-        "pipelines/naming.py",
-        "pipelines/splits.py",
-        "pipelines/alike.py",
-        "pipelines/card.py",
-        "pipelines/croissant.py",
-        "pipelines/cases.py",
-        "pipelines/dataset_knowledge.py",
-        "pipelines/catalog.py",
-        "pipelines/catalog.sql",
-    ),
     settings=("seed",),
     open=open_context,
     prepare=overlays,

@@ -21,12 +21,12 @@ from hearth.pipelines.catalog import write_catalog
 from hearth.pipelines.croissant import write_croissant
 from hearth.pipelines.dataset_knowledge import copy_overlay
 from hearth.pipelines.files import TEMPORARY, commit, sync_folder, write_json
+from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.naming import STAMP, activity_id
 from hearth.pipelines.parts import Counts, Row, part_path, read_rows, write_table
 from hearth.pipelines.rows import node_row
 from hearth.pipelines.stage import Job
-from hearth.pipelines.surroundings import Homes
 from hearth.pipelines.tensors import EDGE_TYPES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code

@@ -15,10 +15,10 @@ from hearth.grounding.conditions import Preconditions
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import USUAL, Environment, Size, sample
 from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.library import Homes
 from hearth.pipelines.readers import release
 from hearth.pipelines.rehearsal import Script, scripts
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.surroundings import Homes
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program

@@ -18,12 +18,12 @@ from hearth.grounding.sampling import USUAL, Environment, Size, sample, unplacea
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import ingest, validate
 from hearth.pipelines.cases import environment_of
+from hearth.pipelines.library import Homes
 from hearth.pipelines.readers import release
 from hearth.pipelines.readers.item import Item
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import program_of
 from hearth.pipelines.sources import labelled
-from hearth.pipelines.surroundings import Homes
 from hearth.pipelines.workers import Workers
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.pipelines.cases import rerun
 from hearth.pipelines.files import value_digest, write_bytes
+from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import READ_BATCH, Row, read_rows
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Partition, Record, Stage
-from hearth.pipelines.surroundings import USES, Homes, knowledge_used, overlays
+from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:
@@ -214,7 +215,6 @@ STAGE = Stage(
     tables={"": RENDERED, "videos": FILMED},
     process=process,
     reads=("sample",),
-    uses=(*USES, "grounding", "rendering", "pipelines/render.py", "pipelines/cases.py"),
     settings=("pictures", "videos", "seed"),
     open=open_context,
     prepare=prepare,

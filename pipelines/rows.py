@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from operator import itemgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hearth.grounding.conditions import Condition, Preconditions
 from hearth.schemas.errors import Diagnostic
@@ -13,7 +13,9 @@ from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.change import Change
-from hearth.simulation.engine import Execution
+
+if TYPE_CHECKING:
+    from hearth.simulation.engine import Execution
 
 Row = dict[str, Any]
 Bindings = dict[tuple[str, int], int]

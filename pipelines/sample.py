@@ -15,20 +15,21 @@ from hearth.grounding.sampling import sample
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.cases import difference_of, environment_of, run_row
 from hearth.pipelines.derived import common, write_home
+from hearth.pipelines.library import DERIVED, Homes
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Row, read_rows
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, program_of
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Record, Stage
-from hearth.pipelines.surroundings import DERIVED, RULES, USES, Homes, knowledge_used, overlays
+from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.schemas.tables import CASE, VALIDATED
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
-from hearth.simulation.rules import REPLAY, Rules
+from hearth.simulation.rules import REPLAY, RULES, Rules
 from hearth.simulation.world import World
 
 SHARED_BY = 32
@@ -197,7 +198,6 @@ STAGE = Stage(
     tables={"": CASE},
     process=process,
     reads=("validate",),
-    uses=(*USES, "grounding", "pipelines/sample.py", "pipelines/cases.py", "pipelines/derived.py"),
     settings=("seed", "homes_each"),
     open=open_homes,
     prepare=prepare,

@@ -3,41 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from hearth.kb.hearing import Candidate, understand
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.phrases import say
+from hearth.pipelines.readers.spoken import NUMBERED, header
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 
-NUMBERED = re.compile(r"\s*(?:step\s*\d{1,4}\s*[.:)\]–-]?|\d{1,4}\s*[.:)\]]|[-*•])\s+(?=\S)", re.IGNORECASE)
-"""How a line begins that is a step in words."""
-
-_TITLE = re.compile(r"\s*(?:task|title|activity|goal)\s*:\s*", re.IGNORECASE)
 _JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z])", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
-
-
-class Header(NamedTuple):
-    """What stands above the steps."""
-
-    title: str
-    description: str
-
-
-def header(text: str) -> Header:
-    """Title and description: the lines before the first numbered one; `Task:` before the title is left out."""
-    found: list[str] = []
-    for line in text.split("\n"):
-        if NUMBERED.match(line):
-            break
-        if line.strip():
-            found.append(line.strip())
-    title = _TITLE.sub("", found[0], count=1) if found else ""
-    return Header(title, "\n".join(found[1:]))
 
 
 class Spoken(NamedTuple):
@@ -141,35 +118,3 @@ class _Listener:
 def said(candidate: Candidate) -> str:
     """A candidate in words."""
     return say(candidate.action, candidate.names)
-
-
-def looks_spoken(lines: list[str]) -> bool:
-    """Whether a text's first lines are steps in words: numbered ones, and none in brackets."""
-    numbered = [line for line in lines if NUMBERED.match(line)]
-    bracketed = any(re.match(r"\s*(?:\[|<[^<>]*>\s*\[)", line) for line in lines)
-    return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(_TITLE.match(lines[0])))
-
-
-def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
-    """Split a text into its programs: (number of the first line, lines); of a longer one than `most` only so much.
-
-    A program begins with a line that is not numbered, once steps were seen, or where the numbers begin again.
-    """
-    block: list[str] = []
-    first, last, size = 0, 0, 0
-    for number, line in lines:
-        match = NUMBERED.match(line)
-        digits = re.search(r"\d+", match[0]) if match else None
-        count = int(digits[0]) if digits else last + 1
-        new = bool(line.strip()) and (last > 0 if not match else count <= 1 < last)
-        if new and block:
-            yield first, block
-            first, block, last, size = 0, [], 0, 0
-        if (line.strip() or block) and size <= most:
-            first = first or number
-            block.append(line)
-            size += len(line) + 1
-        if match:
-            last = max(count, 1)
-    if block:
-        yield first, block

@@ -18,7 +18,8 @@ from typing import Any
 import pyarrow as pa
 
 from hearth.pipelines.deadline import Deadline, OverTime
-from hearth.pipelines.files import code_digest, value_digest
+from hearth.pipelines.dependencies import code_digest
+from hearth.pipelines.files import value_digest
 from hearth.pipelines.parts import Counts, PartWriter, Row, read_rows
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.settings import Settings
@@ -30,8 +31,6 @@ Output = Row | Reject | tuple[str, Row]
 
 BATCH = 64
 """Records whose rows are turned into Arrow together, where a stage says nothing else: graphs are large."""
-
-_EVERY_STAGE = ("schemas", "version.py", "pipelines/stage.py", "pipelines/parts.py", "pipelines/rejects.py")
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +65,6 @@ class Stage:
             rows refuse a part of a record.
         reads: the stages whose rows are its records, in order.
         needs: stages that it looks at besides.
-        uses: packages and modules whose code and data decide its output.
         settings: names of the options that decide its output.
         open: makes the context given to `process`, once a process.
         prepare: looks at all of the input once, before any record; its result is part of what was asked.
@@ -92,7 +90,6 @@ class Stage:
     process: Callable[[Record, Any], Iterable[Output] | Reject]
     reads: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
-    uses: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
     open: Callable[[Job], Any] = lambda job: job
     prepare: Callable[[Settings], Plan] = lambda settings: {}
@@ -147,7 +144,7 @@ class Job:
         """Stage, code, options and plan, as they stand in the manifest."""
         return {
             "stage": self.stage.name,
-            "code": code_digest((*_EVERY_STAGE, *self.stage.uses)),
+            "code": code_digest(self.stage.process.__module__, __name__, "hearth.version"),
             "settings": self.settings.chosen(self.stage.settings),
             "plan": self.plan,
         }

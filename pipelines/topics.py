@@ -7,11 +7,14 @@ from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.findings import Finding
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
+
+if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
 
 FILE = "pipelines/off_topic.yaml"
 

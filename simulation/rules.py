@@ -26,3 +26,6 @@ DEFAULT = Rules()
 
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
 """Reproduces the release's stored end graphs exactly."""
+
+RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY}
+"""The options by the names that published executions give them."""

@@ -135,13 +135,7 @@ def _told(path: Place, place: str) -> Recognised:
         return _refused(path, place, "a table whose first line names none of a batch's columns", Code.BAD_TABLE)
     if suffix in _JSON and told:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
-    return Recognised(path, place, spoken.NAME if told and _is_spoken(told) else text.NAME)
-
-
-def _is_spoken(told: list[str]) -> bool:
-    from hearth.pipelines.spoken import looks_spoken
-
-    return looks_spoken(told)
+    return Recognised(path, place, spoken.NAME if told and spoken.looks_spoken(told) else text.NAME)
 
 
 def _json(path: Place, place: str, told: list[str]) -> Recognised:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
-from hearth.pipelines import spoken
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
 from hearth.pipelines.rejects import Reject
@@ -15,10 +15,34 @@ NAME = "spoken"
 
 _LONGEST_PROGRAM = 100_000
 
+NUMBERED = re.compile(r"\s*(?:step\s*\d{1,4}\s*[.:)\]–-]?|\d{1,4}\s*[.:)\]]|[-*•])\s+(?=\S)", re.IGNORECASE)
+"""How a line begins that is a step in words."""
+
+_TITLE = re.compile(r"\s*(?:task|title|activity|goal)\s*:\s*", re.IGNORECASE)
+
+
+class Header(NamedTuple):
+    """What stands above the steps."""
+
+    title: str
+    description: str
+
+
+def header(text: str) -> Header:
+    """Title and description: the lines before the first numbered one; `Task:` before the title is left out."""
+    found: list[str] = []
+    for line in text.split("\n"):
+        if NUMBERED.match(line):
+            break
+        if line.strip():
+            found.append(line.strip())
+    title = _TITLE.sub("", found[0], count=1) if found else ""
+    return Header(title, "\n".join(found[1:]))
+
 
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
-    for number, block in spoken.blocks((number, line) for number, (line, _) in enumerate(lines(path), 1)):
+    for number, block in blocks((number, line) for number, (line, _) in enumerate(lines(path), 1)):
         text = "\n".join(block)
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
@@ -56,7 +80,7 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
 
 def read(item: Item) -> dict[str, Any]:
     """The record of an item: the words as they are; `validate` maps them to steps."""
-    top = spoken.header(item.value["text"])
+    top = header(item.value["text"])
     return {
         "kind": "program",
         "program_id": item.record_id,
@@ -68,3 +92,35 @@ def read(item: Item) -> dict[str, Any]:
         "text": item.value["text"],
         "line": item.value["line"],
     }
+
+
+def looks_spoken(lines: list[str]) -> bool:
+    """Whether a text's first lines are steps in words: numbered ones, and none in brackets."""
+    numbered = [line for line in lines if NUMBERED.match(line)]
+    bracketed = any(re.match(r"\s*(?:\[|<[^<>]*>\s*\[)", line) for line in lines)
+    return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(_TITLE.match(lines[0])))
+
+
+def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
+    """Split a text into its programs: (number of the first line, lines); of a longer one than `most` only so much.
+
+    A program begins with a line that is not numbered, once steps were seen, or where the numbers begin again.
+    """
+    block: list[str] = []
+    first, last, size = 0, 0, 0
+    for number, line in lines:
+        match = NUMBERED.match(line)
+        digits = re.search(r"\d+", match[0]) if match else None
+        count = int(digits[0]) if digits else last + 1
+        new = bool(line.strip()) and (last > 0 if not match else count <= 1 < last)
+        if new and block:
+            yield first, block
+            first, block, last, size = 0, [], 0, 0
+        if (line.strip() or block) and size <= most:
+            first = first or number
+            block.append(line)
+            size += len(line) + 1
+        if match:
+            last = max(count, 1)
+    if block:
+        yield first, block

@@ -6,9 +6,9 @@ from typer.testing import CliRunner
 
 from hearth.cli import app
 from hearth.grounding.sampling import Size
+from hearth.pipelines.library import Homes
 from hearth.pipelines.rehearsal import rehearse, scripts
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.surroundings import Homes
 from hearth.schemas.failures import Code
 
 PROGRAMS = {

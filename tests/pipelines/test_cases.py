@@ -9,9 +9,9 @@ import pytest
 from hearth.grounding.base import prepared
 from hearth.grounding.sampling import sample
 from hearth.pipelines.cases import difference_of, difference_on_replay, environment_of, home_of, run_row
+from hearth.pipelines.library import Homes
 from hearth.pipelines.rows import failure_of, failure_row, node_of, node_row, step_rows, steps_of
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.surroundings import Homes
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program

@@ -12,7 +12,7 @@ import hearth
 from hearth.pipelines.cases import rerun
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.files import file_digest, read_json
-from hearth.pipelines.surroundings import Homes
+from hearth.pipelines.library import Homes
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import from_release
 from hearth.schemas.syntax import print_lines
