@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -18,17 +17,15 @@ import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
 from hearth.pipelines import judging
-from hearth.pipelines.cases import start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.stored_cases import stored_cases
 from hearth.schemas.errors import HearthError
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
-from hearth.scoring.evaluate import Options, Pair, lcs_of, scored
+from hearth.scoring.evaluate import Options, Pair, lcs_of
 from hearth.scoring.lcs import matrix
 from hearth.simulation.homes import catalog
-from hearth.simulation.rules import RULES
 
 ASKED = 30_000
 """Predictions and executions that the targets are about."""
@@ -102,10 +99,7 @@ def scoring(dataset: Dataset) -> Iterator[Figure]:
     options = Options()
 
     def score(pair: Pair) -> object:
-        case = cases[pair.id]
-        mine = replace(options, rules=RULES[case["rules"]])
-        (lcs,) = lcs_of([pair], options.instances)
-        return scored(pair, lcs, homes.home(case["home"]).knowledge, start_of(case, homes), mine)
+        return list(judging._scored(cases[pair.id], [(pair, *lcs_of([pair], options.instances))], homes, options))
 
     taken = passes(score, pairs, 9)
     read = sum(map(len, shares))

@@ -15,7 +15,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
-from hearth.scoring.evaluate import summarise
+from hearth.scoring.evaluate import Scored, summarise
 from hearth.scoring.lcs import matrix
 
 Steps = tuple[Step, ...]
@@ -81,8 +81,11 @@ def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> lis
         train, test = (_examples(dataset, split, part, originals) for part in ("train", "test"))
         test = test[:: max(1, -(-len(test) // MOST))]
         if train and test:
-            known = dataset.knowledge
-            found += [_result(dataset, name, make(train, test, seed, known), test) for name, make in makers.items()]
+            predicted = [make(train, test, seed, dataset.knowledge) for make in makers.values()]
+            # Those of one execution stand together: it is then read once.
+            pairs = ((each.execution_id, one) for each, *some in zip(test, *predicted, strict=True) for one in some)
+            scored = judge_steps(dataset, pairs)
+            found += [_result(name, scored[place :: len(makers)]) for place, name in enumerate(makers)]
     return found
 
 
@@ -133,9 +136,8 @@ def _example(row: dict[str, Any], start: frozenset[Fact]) -> Example:
     return Example(row["execution_id"], f"{told['title']} {told['description']}", steps, kept, start)
 
 
-def _result(dataset: Dataset, name: str, predicted: Sequence[Steps], test: Sequence[Example]) -> Result:
-    ids = [each.execution_id for each in test]
-    means = summarise(judge_steps(dataset, dict(zip(ids, predicted, strict=True)))).means
+def _result(name: str, scored: Sequence[Scored]) -> Result:
+    means = summarise(scored).means
     wanted = ("lcs_action", "lcs_object", "lcs_step", "lcs_mean", "f1_relation", "f1_state", "f1", "executable")
     return Result(name, *(means[each].mean if each in means else None for each in (*wanted, "parsable")))
 

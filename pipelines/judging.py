@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from hearth.kb.hearing import understand
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.cases import start_of
+from hearth.pipelines.cases import Source, start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.spread import Seen, spread, unseen
@@ -18,11 +19,14 @@ from hearth.pipelines.stored_cases import stored_cases
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.evaluate import Options, Scored, lcs_of, scored
+from hearth.scoring.evaluate import Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.lcs import LcsScore
 from hearth.scoring.predictions import Pair, read_pairs
+from hearth.scoring.reading import steps_of
 from hearth.scoring.rows import Named
+from hearth.simulation.engine import run
 from hearth.simulation.rules import RULES
 
 PART = 250
@@ -72,10 +76,13 @@ def judge(
 
 
 def judge_steps(
-    dataset: Dataset, predicted: Mapping[str, tuple[Step, ...]], options: Options | None = None
+    dataset: Dataset, predicted: Iterable[tuple[str, tuple[Step, ...]]], options: Options | None = None
 ) -> list[Scored]:
-    """Score programs for executions of a dataset, by execution id, in that order; as `judge`, in this process."""
-    return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted.items()], options, 1, unseen)
+    """Score programs for executions of a dataset, each with its execution's id, in order; as `judge`, in this process.
+
+    Those of one execution should stand together: it is then read and run once.
+    """
+    return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted], options, 1, unseen)
 
 
 def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, workers: int, seen: Seen) -> list[Scored]:
@@ -87,17 +94,26 @@ def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, wor
 def _judged(job: Job) -> list[Scored]:
     folder, pairs, options = job
     dataset, homes = opened(folder)
-    cases = {case["execution_id"]: case for case in stored_cases(dataset, [pair.id for pair in pairs])}
+    cases = {case["execution_id"]: case for case in stored_cases(dataset, list({pair.id for pair in pairs}))}
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
-    found = []
-    for pair, lcs in zip(filled, lcs_of(filled, options.instances), strict=True):
-        case = cases[pair.id]
-        mine = replace(options, rules=RULES[case["rules"]])
-        each = scored(pair, lcs, dataset.knowledge, start_of(case, homes), mine)
+    every = zip(filled, lcs_of(filled, options.instances), strict=True)
+    groups = groupby(every, key=lambda each: each[0].id)
+    return [each for name, group in groups for each in _scored(cases[name], list(group), homes, options)]
+
+
+def _scored(
+    case: Mapping[str, Any], pairs: Sequence[tuple[Pair, LcsScore]], homes: Source, options: Options
+) -> Iterator[Scored]:
+    """The scores of an execution's predictions, given with their LCS."""
+    world, options = start_of(case, homes), replace(options, rules=RULES[case["rules"]])
+    program = Program(steps=steps_of(pairs[0][0].reference))
+    # To read and to apply the ticks that are stored takes four times as long as to run the program again.
+    ran = run(world, program, options.rules)
+    reference = Reference.of(program, world, ran.final if ran.executable else None)
+    for pair, lcs in pairs:
+        each = scored(pair, lcs, world.home.knowledge, world, options, reference)
         # A world holds its whole home: of thousands only what became of them is kept.
-        ran = each.execution and replace(each.execution, final=None)
-        found.append(replace(each, execution=ran))
-    return found
+        yield replace(each, execution=each.execution and replace(each.execution, final=None))
 
 
 def _filled(pair: Pair, case: dict[str, Any]) -> Pair:

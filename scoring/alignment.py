@@ -8,13 +8,17 @@ class only, so that no score depends on the ids instances happen to have.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence, Set
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from hearth.scoring.counts import Match, Matches, matched
-from hearth.scoring.side import Side
+from hearth.schemas.graph import Edge
+from hearth.scoring.counts import Match, Matches, matched, shared
 from hearth.scoring.views import Label, View
+from hearth.simulation.bits import indices, mask_of
+
+Tuples = Counter[object]
 
 LIMIT = 1_000
 """Up to so many alignments all are tried; beyond, a search finds a lower bound of the best."""
@@ -59,13 +63,10 @@ class Problem:
         self.groups = _groups(predicted, reference, named_predicted, named_reference)
         ours = {node for group in self.groups for node in group.predicted}
         theirs = {node for group in self.groups for node in group.reference}
-        self.predicted = Side(predicted, named_predicted, ours, either)
-        self.reference = Side(reference, named_reference, theirs, either)
+        self.predicted = _Side(predicted, named_predicted, ours, either)
+        self.reference = _Side(reference, named_reference, theirs, either)
         self._pairs: dict[Pair, tuple[int, ...]] = {}
-        self._still = (
-            *matched(self.predicted.still_states, self.reference.still_states),
-            *matched(self.predicted.still_relations, self.reference.still_relations),
-        )
+        self._still = _matches(self.predicted.still, self.reference.still)
 
     def best(self, limit: int = LIMIT) -> Best:
         """The best alignment, of all where there are at most `limit`."""
@@ -109,8 +110,7 @@ class Problem:
 
     def _counted(self, reference: int | None, predicted: int | None) -> tuple[int, ...]:
         """The matches of one pair's states and relations, as numbers in a row."""
-        ours, theirs = self.predicted.about(predicted), self.reference.about(reference)
-        return (*matched(ours[0], theirs[0]), *matched(ours[1], theirs[1]))
+        return _matches(self.predicted.about(predicted), self.reference.about(reference))
 
     def _all(self) -> Iterator[tuple[Pair, ...]]:
         yield self._derived([group.identity() for group in self.groups])
@@ -158,6 +158,95 @@ class Problem:
         weights = np.array([[found[0] + found[3] for found in row] for row in counts])
         rows, columns = linear_sum_assignment(weights, maximize=True)
         return [(pairs[i][0], pairs[j][1]) for i, j in zip(rows.tolist(), columns.tolist(), strict=True)]
+
+
+About = tuple[Set[object], Mapping[object, int]]
+"""State tuples, and how many there are of each relation tuple."""
+
+
+def _matches(predicted: About, reference: About) -> tuple[int, ...]:
+    return (*shared(predicted[0], reference[0]), *matched(predicted[1], reference[1]))
+
+
+class _Side:
+    """One of the two graphs: its tuples, sorted by what a change of counterparts can touch.
+
+    Movable nodes are the instances of the classes that either program names. Of all others rooms, doors and characters
+    are compared by id and the rest by class, whatever the alignment; these are the still ends.
+
+    Args:
+        view: the graph.
+        named: the nodes its program names.
+        movable: as above.
+        either: an aligned node's tuples count even when this side's program does not name it.
+
+    Attributes:
+        named: as given.
+        still: the characters' states, and their edges to still ends.
+    """
+
+    def __init__(self, view: View, named: Set[int], movable: Set[int], either: bool) -> None:
+        self.named, self._either, self._classes = named, either, view.nodes.classes
+        self._about: dict[int, About] = {}
+        self._to_characters: dict[int, Tuples] = {}
+        self._out: dict[int, list[Edge]] = {}
+        self._into: dict[int, list[Edge]] = {}
+        moving, characters = (mask_of(map(view.index.__getitem__, group)) for group in (movable, view.nodes.characters))
+        for node in movable:
+            self._sort(view, node, moving, characters)
+        relations: Tuples = Counter()
+        for me in view.nodes.characters:
+            for (relation, out), row in view.rows(view.index[me]).items():
+                # What comes from a character stands in its own row.
+                for j in indices(row & ~moving if out else row & ~moving & ~characters):
+                    other = _label(view, j)
+                    relations[(relation, me, other) if out else (relation, other, me)] += 1
+        self.still: About = {(me, state) for me in view.nodes.characters for state in view.states(me)}, relations
+
+    def _sort(self, view: View, node: int, moving: int, characters: int) -> None:
+        """Read a movable node's tuples."""
+        relations: Tuples = Counter()
+        for (relation, out), row in view.rows(view.index[node]).items():
+            if out:
+                for j in indices(row & moving):
+                    edge = Edge(node, relation, view.ids[j])
+                    self._out.setdefault(node, []).append(edge)
+                    self._into.setdefault(edge.target, []).append(edge)
+            for j in indices(row & ~moving):
+                relations[relation, out, _label(view, j)] += 1
+            for j in indices(row & characters):
+                self._to_characters.setdefault(node, Counter())[relation, out, view.ids[j]] += 1
+        self._about[node] = view.states(node), relations
+
+    def about(self, node: int | None) -> About:
+        """The state and relation tuples of an aligned node, its edges to movable nodes left aside."""
+        if node is not None and (self._either or node in self.named):
+            return self._about[node]
+        return frozenset(), self._to_characters.get(node, {}) if node is not None else {}
+
+    def moving(self, labels: Mapping[int, Label]) -> Mapping[object, int]:
+        """Edges between movable nodes of which one is scored, and the characters' to those that are not aligned."""
+        about = labels.keys() if self._either else self.named
+        found: dict[object, int] = {}
+        ends: list[Edge] = []
+        if self._out:
+            for node in about:
+                ends += self._out.get(node, ())
+                ends += [edge for edge in self._into.get(node, ()) if edge.source not in about]
+        classes = self._classes
+        for source, relation, target in ends:
+            item = (relation, labels.get(source, classes[source]), labels.get(target, classes[target]))
+            found[item] = found.get(item, 0) + 1
+        for node, tuples in self._to_characters.items():
+            if node not in labels:
+                for ends_at, count in tuples.items():
+                    one = (classes[node], ends_at)
+                    found[one] = found.get(one, 0) + count
+        return found
+
+
+def _label(view: View, number: int) -> Label:
+    return view.nodes.labels.get(view.ids[number], "?")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import NamedTuple
 
 
@@ -52,6 +52,11 @@ class Matches(NamedTuple):
     def published_rank(self) -> float:
         """By this the published scorer chooses: the sum of the three F1."""
         return sum(self.rank())
+
+
+def shared(predicted: Set[object], reference: Set[object]) -> Match:
+    """What two sets of tuples share."""
+    return Match(len(predicted & reference), len(predicted), len(reference))
 
 
 def matched(predicted: Mapping[object, int], reference: Mapping[object, int]) -> Match:

@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import Program
 from hearth.scoring import executability as running
 from hearth.scoring import goals, parse
 from hearth.scoring.bootstrap import Interval, intervals
@@ -18,6 +22,7 @@ from hearth.scoring.graph_f1 import score as graph_score
 from hearth.scoring.lcs import LcsScore, lcs_signature, score_pairs
 from hearth.scoring.parse import Parsability, parsability
 from hearth.scoring.predictions import Pair
+from hearth.scoring.reading import Lines
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
 
@@ -193,26 +198,59 @@ def by_field(every: Iterable[Scored], name: str, seed: int = 0) -> dict[str, Sum
     return {value: summarise(group, seed) for value, group in sorted(groups.items())}
 
 
-def scored(pair: Pair, lcs: LcsScore, knowledge: Knowledge, world: World | None, options: Options) -> Scored:
-    """Every score of one prediction whose LCS is known, in its environment if there is one."""
+class Reference(NamedTuple):
+    """What predictions in an environment are compared with; it runs once, whatever their number.
+
+    Attributes:
+        program: bound.
+        final: the world at its end; None where it does not run.
+        goal: what it achieves there.
+    """
+
+    program: Program
+    final: World | None
+    goal: Goal | None
+
+    @classmethod
+    def of(cls, program: Program, start: World, final: World | None) -> Reference:
+        """A program's, from the world it starts in and the one at its end."""
+        return cls(program, final, goal_of(start, final) if final else None)
+
+
+@lru_cache(maxsize=64)
+def reference_of(lines: Lines, world: World, rules: Rules) -> Reference:
+    """The reference that a program is in its environment, its objects bound as `executability` says."""
+    ran = executability(lines, world, rules=rules)
+    return Reference.of(ran.program, world, ran.final)
+
+
+def scored(
+    pair: Pair,
+    lcs: LcsScore,
+    knowledge: Knowledge,
+    world: World | None,
+    options: Options,
+    known: Reference | None = None,
+) -> Scored:
+    """Every score of one prediction whose LCS is known, in its environment if there is one.
+
+    Args:
+        pair: the prediction and its reference.
+        lcs: of the two.
+        knowledge: the grammar.
+        world: where they start.
+        options: how.
+        known: what the reference comes to, where that is known; else it is run.
+    """
     parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
     if world is None:
         return Scored(pair, lcs, parsed)
-    reference = executability(pair.reference, world, rules=options.rules)
-    ran = None
-    if pair.predicted is not None:
-        ran = executability(pair.predicted, world, reference.program, options.rules)
-    if reference.final is None:
+    program, final, goal = known or reference_of(pair.reference, world, options.rules)
+    ran = None if pair.predicted is None else executability(pair.predicted, world, program, options.rules)
+    if final is None or goal is None:
         return Scored(pair, lcs, parsed, ran, comparable=False)
     if ran is None or ran.final is None:
         return Scored(pair, lcs, parsed, ran, FAILED, comparable=True)
-    graph = graph_score(
-        ran.final,
-        reference.final,
-        named(ran.program),
-        named(reference.program),
-        match=options.match,
-        scope=options.scope,
-    )
-    goal = satisfaction(goal_of(world, reference.final), ran.final)
-    return Scored(pair, lcs, parsed, ran, graph, goal, comparable=True)
+    objects = named(ran.program), named(program)
+    graph = graph_score(ran.final, final, *objects, match=options.match, scope=options.scope)
+    return Scored(pair, lcs, parsed, ran, graph, satisfaction(goal, ran.final), comparable=True)

@@ -129,10 +129,10 @@ def _subjects(predicate: Predicate, view: View) -> set[int]:
     """The distinct nodes that satisfy a predicate: of HOLDS the things held, else the subjects."""
     subjects = _nodes(predicate.subject, view)
     if predicate.target is None:
-        return view.in_state(predicate.name, subjects)
+        return {node for node in subjects if predicate.name in view.states(node)}
     targets = _nodes(predicate.target, view)
     relations = HANDS if predicate.name == HOLDS else (predicate.name,)
-    edges = (edge for relation in relations for edge in view.out(relation, subjects))
+    edges = (Edge(node, name, other) for name in relations for node in subjects for other in view.targets(node, name))
     return {_counted(edge) for edge in edges if edge.target in targets}
 
 

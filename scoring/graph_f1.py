@@ -6,14 +6,12 @@ from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
-from hearth.scoring import row_match
 from hearth.scoring.alignment import LIMIT, PERFECT, Pair, Problem
 from hearth.scoring.counts import NOTHING, Match, Matches, Prf
 from hearth.scoring.signature import signature
-from hearth.scoring.views import View, view_of
-from hearth.simulation.world import World
+from hearth.scoring.views import Final, View, views_of
+from hearth.simulation.bits import indices, mask_of
 
 MatchBy = Literal["none", "swap1", "best"]
 """How instances of a class may stand for each other; see `score`."""
@@ -23,8 +21,6 @@ Scope = Literal["either", "own"]
 
 MATCHES: tuple[MatchBy, ...] = get_args(MatchBy)
 SCOPES: tuple[Scope, ...] = get_args(Scope)
-
-Final = EnvironmentGraph | World
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +63,8 @@ def named(program: Program) -> frozenset[int]:
 
 
 def score(
-    predicted: Final | View,
-    reference: Final | View,
+    predicted: Final,
+    reference: Final,
     named_predicted: Iterable[int],
     named_reference: Iterable[int],
     *,
@@ -96,33 +92,22 @@ def score(
         match: how instances may stand for each other.
         scope: whose objects are looked at.
     """
-    a, b = _view(predicted), _view(reference)
-    ours, theirs = _scored(a, named_predicted), _scored(b, named_reference)
+    a, b = views_of(predicted, reference)
+    ours, theirs = a.nodes.scored(named_predicted), b.nodes.scored(named_reference)
     if match == "swap1":
         return _swap1(a, b, ours, theirs, scope)
-    by_id = _by_id(predicted, reference, ours | theirs) if scope == "either" else None
-    if by_id is None:
-        about = (ours | theirs, ours | theirs) if scope == "either" else (ours, theirs)
-        by_id = _compare(_tuples(a, about[0]), _tuples(b, about[1]))
+    by_id = _compared(a, b, *((ours | theirs,) * 2 if scope == "either" else (ours, theirs)))
     if match == "none" or by_id.rank() == PERFECT:
         return GraphScore.of(by_id)
     best = Problem(a, b, ours, theirs, either=scope == "either").best(LIMIT)
     return GraphScore.of(best.matches, best.exact, best.pairs)
 
 
-def _by_id(predicted: Final | View, reference: Final | View, about: Set[int]) -> Matches | None:
-    """What two worlds of one home share, ids compared, from their rows; None where only tuples can tell."""
-    if isinstance(predicted, World) and isinstance(reference, World) and row_match.comparable(predicted, reference):
-        return row_match.matches(predicted, reference, about)
-    return None
-
-
 def _swap1(a: View, b: View, ours: Set[int], theirs: Set[int], scope: Scope) -> GraphScore:
-    mine = _tuples(a, ours | theirs if scope == "either" else ours)
+    mine = ours | theirs if scope == "either" else ours
     found: list[tuple[Matches, tuple[Pair, ...]]] = []
     for pair, asked in _substitutes(b, theirs):
-        about = asked | ours if scope == "either" else asked
-        found.append((_compare(mine, _tuples(b, about)), pair))
+        found.append((_compared(a, b, mine, asked | ours if scope == "either" else asked), pair))
     matches, pair = max(found, key=lambda scored: scored[0].published_rank())
     return GraphScore.of(matches, assigned=pair)
 
@@ -136,23 +121,27 @@ def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pai
                 yield ((node, other),), objects - {node} | {other}
 
 
-def _view(final: Final | View) -> View:
-    return view_of(final) if isinstance(final, EnvironmentGraph | World) else final
+def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
+    """What the graphs share, ids compared, and have: tuples about some nodes of each, and about its characters."""
+    ours, theirs = ours | a.nodes.characters, theirs | b.nodes.characters
+    mine, yours = (mask_of(map(a.index.__getitem__, nodes)) for nodes in (ours, theirs))
+    found = ((a, b, ours, theirs, mine, yours), (a, a, ours, ours, mine, mine), (b, b, theirs, theirs, yours, yours))
+    states = (sum(len(x.states(node) & y.states(node)) for node in one & other) for x, y, one, other, _, _ in found)
+    relations = (_shared(x, y, one, other) for x, y, _, _, one, other in found)
+    return Matches(Match(*states), Match(*relations))
 
 
-def _scored(view: View, nodes: Iterable[int]) -> frozenset[int]:
-    known = view.nodes
-    return frozenset(i for i in nodes if i in known.classes and i not in known.left_out and i not in known.characters)
-
-
-Tuples = tuple[frozenset[object], frozenset[object]]
-
-
-def _tuples(view: View, about: Set[int]) -> Tuples:
-    nodes = about | view.nodes.characters
-    return frozenset(view.states(nodes)), frozenset(view.edges(nodes))
-
-
-def _compare(predicted: Tuples, reference: Tuples) -> Matches:
-    states, relations = (Match(len(a & b), len(a), len(b)) for a, b in zip(predicted, reference, strict=True))
-    return Matches(states, relations)
+def _shared(a: View, b: View, ours: int, theirs: int) -> int:
+    """How many edges are in both graphs, with an end among some nodes of the first and one among some of the second."""
+    every, same = ours | theirs, ours & theirs
+    found = 0
+    for i in indices(every):
+        if same >> i & 1:
+            # An edge from another of the nodes is counted as going out from there.
+            out, into = -1, ~every
+        else:
+            out, into = theirs if ours >> i & 1 else ours, 0
+        there = b.rows(i)
+        for direction, row in a.rows(i).items():
+            found += (row & there.get(direction, 0) & (out if direction[1] else into)).bit_count()
+    return found

@@ -1,6 +1,6 @@
 import pytest
 
-from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, signatures, summarise
+from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
 from hearth.scoring.executability import ErrorClass
 from hearth.scoring.predictions import Pair
 from hearth.scoring.reading import read
@@ -89,3 +89,9 @@ def test_every_score_says_what_it_is():
     assert found["f1"] == "f1|match:swap1|scope:own|empty:1|v1"
     assert found["lcs_step"] == "lcs|norm:max|level:step|instances:yes|v1"
     assert {name.split("_")[0] for name in METRICS} == {name.split("_")[0] for name in found}
+
+
+def test_a_reference_of_several_predictions_runs_once(knowledge, world):
+    reference_of.cache_clear()
+    evaluate([pair("a", None), pair("b", REFERENCE), pair("c", ["[Walk] <cup> (1)"])], knowledge, lambda _: world)
+    assert (reference_of.cache_info().misses, reference_of.cache_info().hits) == (1, 2)

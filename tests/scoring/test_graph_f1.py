@@ -13,7 +13,8 @@ from hearth.schemas.syntax import parse_program
 from hearth.scoring.alignment import Problem
 from hearth.scoring.counts import Match, Matches, Prf
 from hearth.scoring.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
-from hearth.scoring.views import GraphView, WorldView
+from hearth.scoring.views import view_of, views_of
+from hearth.simulation.bits import indices
 from hearth.simulation.engine import act, run
 from hearth.simulation.legal import legal
 
@@ -150,9 +151,7 @@ def test_swapping_the_graphs_swaps_precision_and_recall(case):
 @given(cases, st.sampled_from(SCOPES))
 def test_a_search_finds_no_more_than_all_and_says_that_it_searched(case, scope):
     rng, ours, theirs = case
-    problem = Problem(
-        GraphView(random_graph(rng)), GraphView(random_graph(rng)), ours, theirs, either=scope == "either"
-    )
+    problem = Problem(*views_of(random_graph(rng), random_graph(rng)), ours, theirs, either=scope == "either")
     every, searched = problem.best(), problem.best(limit=0)
     assert every.exact
     assert searched.matches.rank() <= every.matches.rank()
@@ -267,11 +266,26 @@ def test_a_world_is_scored_as_its_graph(world):
 
 def test_a_worlds_view_is_its_graphs_view(world):
     final, _ = ran(world, CUP_TO_TABLE)
-    one, other = WorldView(final), GraphView(final.graph())
+    one, other = view_of(final), view_of(final.graph())
     assert one.nodes == other.nodes
     for node in (9, 10, 11, 12, 20, 21, 22):
-        assert one.edges({node}) == other.edges({node})
-        assert sorted(one.states({node})) == sorted(other.states({node}))
+        assert edges_of(one, node) == edges_of(other, node) == {e for e in final.edges() if node in (e[0], e[2])}
+        assert one.states(node) == other.states(node) == set(final.home.node(final.home.index[node]).states)
+
+
+def edges_of(view, node):
+    read = view.rows(view.index[node]).items()
+    ends = [(relation, out, view.ids[j]) for (relation, out), row in read for j in indices(row)]
+    return {Edge(node, relation, j) if out else Edge(j, relation, node) for relation, out, j in ends}
+
+
+def test_two_graphs_number_their_nodes_alike_whatever_nodes_they_have():
+    one = EnvironmentGraph((Node(20, "cup"), Node(10, "table")), (Edge(20, "ON", 10),))
+    other = EnvironmentGraph((Node(30, "plate"), Node(20, "cup"), Node(10, "table")), (Edge(20, "ON", 10),))
+    a, b = views_of(one, other)
+    assert (a.ids, a.index) == (b.ids, b.index)
+    assert a.rows(a.index[20]) == b.rows(b.index[20]) == {("ON", True): 1 << a.index[10]}
+    assert score(one, other, {20}, {20}).both == Prf(1, 1, 1)
 
 
 def test_signature():
