@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Literal, Name
 
 if TYPE_CHECKING:
     from hearth.grounding.sampling import Size
-    from hearth.schemas.goals import Goal, Predicate
+    from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
     from hearth.simulation.home import Home
     from hearth.simulation.world import World
@@ -78,14 +79,14 @@ def read(goals: Sequence[str]) -> Goal:
     return Goal(tuple(_counted(text) for text in goals))
 
 
-def _counted(text: str) -> tuple[Predicate, int]:
-    from hearth.schemas.goals import Predicate
+def _counted(text: str) -> tuple[Literal[Name], int]:
 
     found = _GOAL.fullmatch(text)
     if found is None:
         _refuse(f"`{text}` is no goal", _FORM)
     name, subject, target, count = found.groups()
-    return Predicate(name.upper(), _word(subject), None if target is None else _word(target)), int(count or 1)
+    terms = (subject,) if target is None else (subject, target)
+    return Literal(name.upper(), tuple(map(_word, terms))), int(count or 1)
 
 
 def _word(text: str) -> str | int:

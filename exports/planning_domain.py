@@ -13,9 +13,10 @@ room); that is an action of its own here, `WalkToDoor`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from itertools import combinations, count
 
-from hearth.kb.formula import TRUE, And, Atom, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.pddl import (
     class_predicate,
@@ -25,6 +26,7 @@ from hearth.kb.pddl import (
     state_predicate,
 )
 from hearth.kb.records import Action, Requirement
+from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 
 Names = Mapping[str, str]
@@ -112,7 +114,7 @@ def dashed(name: str) -> str:
 
 
 def _named(formula: Formula) -> Iterator[str]:
-    if isinstance(formula, Atom):
+    if isinstance(formula, Literal):
         if formula.name in _BY_PROPERTY:
             yield _BY_PROPERTY[formula.name](formula.terms[1].name)
         return
@@ -169,8 +171,9 @@ class _Writer:
 
     def formula(self, formula: Formula, names: Names) -> str:
         """A formula, derived predicates written out."""
-        if isinstance(formula, Atom):
-            return self._atom(formula, names)
+        if isinstance(formula, Literal):
+            text = self._atom(formula, names)
+            return f"(not {text})" if formula.negated else text
         if isinstance(formula, Not):
             return f"(not {self.formula(formula.part, names)})"
         if isinstance(formula, And):
@@ -197,18 +200,18 @@ class _Writer:
             cases.append(f"(and ({limited} {names[formula.limit.name]}) (not {many}))")
         return f"(or {' '.join(cases)})"
 
-    def _atom(self, atom: Atom, names: Names) -> str:
+    def _atom(self, atom: Literal[Term], names: Names) -> str:
         for position, term in enumerate(atom.terms):
             if term.function:
                 fresh = self._fresh(term.function[0])
-                plain = Atom(atom.name, (*atom.terms[:position], Term(fresh), *atom.terms[position + 1 :]))
+                plain = Literal(atom.name, (*atom.terms[:position], Term(fresh), *atom.terms[position + 1 :]))
                 found = self._found(term, names, fresh)
                 return _some(fresh, _both([found, self._atom(plain, {**names, fresh: fresh})]))
         if atom.name == "affords":
             return self._need(self._needs[atom.terms[0].name], names[atom.terms[0].name])
         if atom.name in self._knowledge.derived:
             if atom.name == "close" and not self._loose:
-                return _plain(Atom("CLOSE", atom.terms), names)
+                return _plain(Literal("CLOSE", atom.terms), names)
             head, body = self._knowledge.derived[atom.name]
             inner = {mine.name: names[given.name] for mine, given in zip(head.terms, atom.terms, strict=True)}
             return self.formula(body, inner)
@@ -235,25 +238,25 @@ class _Writer:
 
     def _changes(self, effect: Effect) -> Iterator[Effect]:
         """An effect as plain ones: CLOSE both ways, a state with the end of its opposite, nothing of places."""
-        atom, delete = effect.atom, effect.delete
-        if atom.name == "REMEMBERS" or any(term.function == "place" for term in atom.terms):
+        literal = effect.literal
+        if literal.name == "REMEMBERS" or any(term.function == "place" for term in literal.terms):
             return
-        changes = [(atom, delete)]
-        if atom.name == "CLOSE":
-            changes.append((Atom("CLOSE", atom.terms[::-1]), delete))
-        if atom.name == "state" and not delete:
-            subject, state = atom.terms
+        changes = [literal]
+        if literal.name == "CLOSE":
+            changes.append(literal._replace(terms=literal.terms[::-1]))
+        if literal.name == "state" and not literal.negated:
+            subject, state = literal.terms
             opposites = (other for other in self._knowledge.excludes(state.name) if other in STATES)
-            changes += [(Atom("state", (subject, Term(other))), True) for other in opposites]
-        for changed, gone in changes:
-            yield Effect(changed, gone, effect.condition, effect.variables)
+            changes += [Literal("state", (subject, Term(other)), True) for other in opposites]
+        for change in changes:
+            yield replace(effect, literal=change)
 
     def _effect(self, effect: Effect, names: Names) -> str:
         bound = {name: self._fresh(name) for name in effect.variables}
         names = {**names, **bound}
         guards = [] if effect.condition == TRUE else [self.formula(effect.condition, names)]
         terms = []
-        for term in effect.atom.terms:
+        for term in effect.literal.terms:
             if not term.function:
                 terms.append(term)
                 continue
@@ -261,15 +264,15 @@ class _Writer:
             guards.append(self._found(term, names, fresh))
             bound[fresh] = names[fresh] = fresh
             terms.append(Term(fresh))
-        text = _plain(Atom(effect.atom.name, tuple(terms)), names)
-        text = f"(not {text})" if effect.delete else text
+        text = _plain(effect.literal._replace(terms=tuple(terms)), names)
+        text = f"(not {text})" if effect.literal.negated else text
         if guards:
             text = f"(when {_both(guards)} {text})"
         variables = " ".join(f"{name} - object" for name in bound.values())
         return f"(forall ({variables}) {text})" if bound else text
 
 
-def _plain(atom: Atom, names: Names) -> str:
+def _plain(atom: Literal[Term], names: Names) -> str:
     first = names[atom.terms[0].name]
     if atom.name in _BY_PROPERTY:
         return f"({_BY_PROPERTY[atom.name](atom.terms[1].name)} {first})"

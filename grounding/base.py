@@ -108,8 +108,7 @@ class Base:
         """Indices of what a program may mean by a class name: of the first of its names that the home knows."""
         found = self._named.get(name)
         if found is None:
-            masks = (self.home.by_class.get(other, 0) for other in self.knowledge.same_class(name))
-            found = self._named[name] = tuple(indices(next((mask for mask in masks if mask), 0)))
+            found = self._named[name] = tuple(indices(self.home.instances(name)))
         return found
 
     def kind(self, name: str) -> Kind:

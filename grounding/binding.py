@@ -12,8 +12,8 @@ from functools import reduce
 from itertools import product
 from operator import and_
 
-from hearth.grounding.conditions import Key
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation import rows
 from hearth.simulation.bits import indices

@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from hearth.grounding.conditions import CHARACTER, NAME_OF, Condition, Key
+from hearth.grounding.conditions import Condition
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import CHARACTER, NAME_OF, Key, Literal
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation import rows
@@ -46,7 +47,7 @@ class Moment:
 
     def needs(self, name: str, *objects: Key) -> Condition:
         """The condition, needed by this step."""
-        return Condition(name, objects, self.step)
+        return Condition(Literal(name, objects), self.step)
 
 
 Demand = Callable[[Moment], Iterator[Condition]]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from random import Random
 
 from hearth.grounding.base import Base
-from hearth.grounding.conditions import Key
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.literals import Key
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
 from hearth.simulation.bits import indices
 from hearth.simulation.edit import Loose, extended

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
+from functools import reduce
+from operator import or_
 
 from hearth.grounding.base import Base
 from hearth.grounding.conditions import Preconditions
@@ -12,7 +14,8 @@ from hearth.grounding.placing import put_where_it_belongs
 from hearth.grounding.sampling import TRIES, USUAL, Environment, Size, of_draft, settle_character
 from hearth.grounding.soundness import unsound
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import OPPOSITE
@@ -34,7 +37,7 @@ def sample_for_goal(
     """Draw an environment in which a goal can be reached and is not reached yet; an empty goal asks for nothing.
 
     Args:
-        goal: counted predicates over classes, nodes of the home or agents.
+        goal: counted literals over classes, nodes of the home or agents.
         home: any home; it is brought to its default state first.
         seed, record_id: all the randomness there is.
         size: nodes wanted.
@@ -45,12 +48,12 @@ def sample_for_goal(
         whatever is done.
 
     Raises:
-        HearthError: UNKNOWN_OBJECT or SYNTAX: a predicate names nothing that there is.
+        HearthError: UNKNOWN_OBJECT or SYNTAX: a literal names nothing that there is.
     """
     base = size.base(home)
-    for predicate, wanted in goal:
+    for literal, wanted in goal:
         if wanted > MOST:
-            return _failure(Code.NO_PLACE, predicate, f"at most {MOST}", str(wanted))
+            return _failure(Code.NO_PLACE, literal, f"at most {MOST}", str(wanted))
     failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "none was drawn")
     for attempt in range(TRIES):
         environment = _drawn(goal, base, seed, record_id, attempt, size)
@@ -69,38 +72,39 @@ def sample_for_goal(
     return failure
 
 
-def _failure(code: Code, predicate: Predicate | None, expected: str, actual: str) -> Failure:
-    return Failure(code, names=(str(predicate),) if predicate else (), expected=expected, actual=actual)
+def _failure(code: Code, literal: Literal[Name] | None, expected: str, actual: str) -> Failure:
+    return Failure(code, names=(str(literal),) if literal else (), expected=expected, actual=actual)
 
 
-def _class(predicate: Predicate) -> str:
-    """The class of things that a predicate counts, or "" where it names nodes or agents alone."""
-    counted = predicate.target if str(predicate.subject).startswith("agent") else predicate.subject
-    return counted if isinstance(counted, str) and not counted.startswith("agent") else ""
+def _class(literal: Literal[Name]) -> str:
+    """The class of things that a literal counts, or "" where it names nodes or agents alone."""
+    counted = literal.target if _is_agent(literal.subject) else literal.subject
+    return counted if isinstance(counted, str) and not _is_agent(counted) else ""
 
 
-def _candidates(predicate: Predicate, world: World) -> int:
-    name = _class(predicate)
-    if not name:
-        return MOST + 1
-    masks = (world.home.by_class.get(other, 0) for other in world.home.knowledge.same_class(name))
-    return next((mask for mask in masks if mask), 0).bit_count()
+def _is_agent(term: Name | None) -> bool:
+    return isinstance(term, str) and term.startswith(AGENT)
+
+
+def _candidates(literal: Literal[Name], world: World) -> int:
+    name = _class(literal)
+    return world.home.instances(name).bit_count() if name else MOST + 1
 
 
 def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size: Size) -> Environment | Failure:
     draft = Draft(base, rng(seed, "goal", base.home.name, record_id, attempt))
     wanted: Counter[str] = Counter()
-    for predicate, number in goal:
-        if name := _class(predicate):
+    for literal, number in goal:
+        if name := _class(literal):
             wanted[name] = max(wanted[name], number)
-        holder = predicate.target
-        if isinstance(holder, str) and holder != name and not holder.startswith("agent"):
+        holder = literal.target
+        if isinstance(holder, str) and holder != name and not _is_agent(holder):
             wanted[holder] = max(wanted[holder], 1)
     for name, number in sorted(wanted.items()):
         if not base.knowledge.is_room(name):
             provide(draft, name, number)
-    for predicate, number in goal:
-        _undo(draft, predicate, number)
+    for literal, number in goal:
+        _undo(draft, literal, number)
     settle_character(draft, _NO_PROGRAM, _NOTHING)
     fill(draft, size.least, size.most, size.some)
     return of_draft(draft, seed, _NO_PROGRAM, _NOTHING)
@@ -120,18 +124,18 @@ def provide(draft: Draft, name: str, number: int) -> None:
         put_where_it_belongs(draft, called, node_id, -1, must=False)
 
 
-def _undo(draft: Draft, predicate: Predicate, number: int) -> None:
+def _undo(draft: Draft, literal: Literal[Name], number: int) -> None:
     """Where the home meets a predicate already, spoil it: states turned over, things laid on the floor."""
     home = draft.base.home
     try:
-        watch = Progress.start(Goal(((predicate, number),)), World.start(home)).watches[0]
+        watch = Progress.start(Goal(((literal, number),)), World.start(home)).watches[0]
     except IndexError:
         return
-    for i in list(indices(watch.met))[: max(0, watch.count - number + 1)]:
+    for i in list(indices(reduce(or_, watch.met, 0)))[: max(0, watch.count - number + 1)]:
         node_id = home.ids[i]
-        if predicate.target is None:
-            draft.set_state(node_id, OPPOSITE[predicate.name])
-        elif predicate.name in ("ON", "INSIDE", "CLOSE") and home.properties["GRABBABLE"] >> i & 1:
+        if literal.target is None:
+            draft.set_state(node_id, OPPOSITE[literal.name])
+        elif literal.name in ("ON", "INSIDE", "CLOSE") and home.properties["GRABBABLE"] >> i & 1:
             room = draft.room_of(node_id)
             draft.lift(node_id)
             draft.settle(node_id, room)

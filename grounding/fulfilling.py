@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hearth.grounding import spoiling
-from hearth.grounding.conditions import CHARACTER, STATE_OF, Condition, Key, Preconditions
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.draft import Draft
 from hearth.schemas.graph import Edge
+from hearth.schemas.literals import CHARACTER, HANDS, STATE_OF, Key
 from hearth.simulation.bits import indices
 
 Fulfil = Callable[[Draft, Condition], None]
@@ -59,8 +60,8 @@ def _nearby(draft: Draft, condition: Condition) -> None:
 def _holds(draft: Draft, condition: Condition) -> None:
     node_id = _node(draft, condition.objects[0])
     me = draft.base.character
-    full = any(edge.source == me and edge.relation == "HOLDS_RH" for edge in draft.added)
-    draft.added.append(Edge(me, "HOLDS_LH" if full else "HOLDS_RH", node_id))
+    full = any(edge.source == me and edge.relation == HANDS[0] for edge in draft.added)
+    draft.added.append(Edge(me, HANDS[full], node_id))
     draft.close(me, node_id)
 
 

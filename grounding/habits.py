@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hearth.grounding.conditions import Condition, Key
+from hearth.grounding.conditions import Condition
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 
 _GOING = frozenset({"Walk", "Run"})
@@ -37,7 +38,7 @@ def _locations(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             elif ref.key not in seen:
                 seen.add(ref.key)
                 if room is not None and not has(knowledge, ref.name, "BODY_PART"):
-                    yield Condition("location", (ref.key, room), number, hard=False)
+                    yield Condition(Literal("location", (ref.key, room)), number, hard=False)
 
 
 def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
@@ -53,7 +54,7 @@ def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         elif step.action == "Grab" and keys[0] not in handled:
             container = next((key for key in reversed(opened) if _fits(keys[0], key, knowledge)), None)
             if container is not None:
-                yield Condition("inside", (keys[0], container), number, hard=False)
+                yield Condition(Literal("inside", (keys[0], container)), number, hard=False)
         if step.action in _LEAVING or step.action == "Grab":
             handled.add(keys[0])
 
@@ -75,9 +76,9 @@ def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             seen.add(ref.key)
             loose = new and has(knowledge, ref.name, "GRABBABLE")
             if loose and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
-                yield Condition("in", (ref.key, last), number, hard=False)
+                yield Condition(Literal("in", (ref.key, last)), number, hard=False)
             elif loose and last is not None and last[0] == "chair":
-                yield Condition("atreach", (ref.key, last), number, hard=False)
+                yield Condition(Literal("atreach", (ref.key, last)), number, hard=False)
         if step.action in _NOTICING and step.objects:
             last = None if knowledge.is_room(step.objects[0].name) else step.objects[0].key
 
@@ -93,7 +94,7 @@ def _free_seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """Rule 11: seats and beds that are used are free."""
     for number, step in enumerate(program.steps):
         if step.action in ("Sit", "Lie") and step.objects:
-            yield Condition("free", (step.objects[0].key,), number)
+            yield Condition(Literal("free", (step.objects[0].key,)), number)
 
 
 def _plugs(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
@@ -108,4 +109,4 @@ def _plugs(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         elif step.action in ("SwitchOn", "SwitchOff") and key not in plugged:
             plugged.add(key)
             if has(knowledge, key[0], "HAS_PLUG"):
-                yield Condition("plugged", (key,), number)
+                yield Condition(Literal("plugged", (key,)), number)

@@ -12,10 +12,11 @@ from itertools import islice
 from random import Random
 
 from hearth.grounding.base import Base
-from hearth.grounding.conditions import CHARACTER, SEATS, STATE_OF, Condition, Key, Preconditions
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.spoiling import closes
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import CHARACTER, STATE_OF, Key, Literal
 from hearth.schemas.program import Program
 from hearth.simulation.bits import indices
 
@@ -110,12 +111,12 @@ def distinct(case: Case, chances: Chances, rng: Random, count: int) -> Iterator[
 
 
 def _drawn(case: Case, every: Sequence[Perturbation], chances: Chances, rng: Random) -> Iterator[Perturbed]:
-    seen: set[frozenset[object]] = {frozenset(c.fact for c in case.conditions)}
+    seen: set[frozenset[object]] = {frozenset(c.literal for c in case.conditions)}
     patience = PATIENCE
     while patience and every:
         chosen = _chosen(every, chances, rng)
         conditions = applied(case.conditions, chosen)
-        facts = frozenset(c.fact for c in conditions)
+        facts = frozenset(c.literal for c in conditions)
         if not chosen or facts in seen:
             patience -= 1
             continue
@@ -160,7 +161,7 @@ def _swap(kind: str, pairs: Mapping[str, str]) -> Kind:
         for condition in case.conditions:
             opposite = pairs.get(condition.name)
             if opposite is not None:
-                yield Perturbation(kind, (condition,), (Condition(opposite, condition.objects, condition.step),))
+                yield Perturbation(kind, (condition,), (condition.instead(opposite),))
 
     return swap
 
@@ -192,14 +193,14 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
         if condition.name == "nearby":
             yield Perturbation("at_reach", (condition,))
         elif condition.name == "atreach" and condition.objects[0] != condition.objects[1]:
-            yield _replaced(case, "at_reach", condition, Condition("apart", condition.objects, condition.step))
+            yield _replaced(case, "at_reach", condition, condition.instead("apart"))
 
 
 def _container(case: Case) -> Iterator[Perturbation]:
     """What was on or in something is in something else, which is closed."""
     for condition in case.conditions:
         if condition.name in ("in", "inside") and _can_be_stowed(case, *condition.objects):
-            yield _replaced(case, "container", condition, Condition("stowed", condition.objects, condition.step))
+            yield _replaced(case, "container", condition, condition.instead("stowed"))
 
 
 def _can_be_stowed(case: Case, key: Key, now: Key) -> bool:
@@ -216,7 +217,7 @@ def _location(case: Case) -> Iterator[Perturbation]:
     """What was in one room is in another."""
     for condition in case.conditions:
         if condition.name == "location" and _is_portable(case, condition.objects[0]):
-            yield _replaced(case, "location", condition, Condition("elsewhere", condition.objects, condition.step))
+            yield _replaced(case, "location", condition, condition.instead("elsewhere"))
 
 
 def _replaced(case: Case, kind: str, old: Condition, new: Condition) -> Perturbation:
@@ -240,7 +241,7 @@ def _full_hands(case: Case) -> Iterator[Perturbation]:
     for number, step in enumerate(case.program.steps):
         action = case.knowledge.actions.get(step.action)
         if action is not None and any(check.code == "NO_FREE_HAND" for check in action.preconditions):
-            yield Perturbation("full_hands", (), (Condition("full_hands", (CHARACTER,), number),))
+            yield Perturbation("full_hands", (), (Condition(Literal("full_hands", (CHARACTER,)), number),))
             return
 
 
@@ -249,7 +250,7 @@ def _door(case: Case) -> Iterator[Perturbation]:
     resting = any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions)
     number, first = next(((n, s) for n, s in enumerate(case.program.steps) if s.objects), (0, None))
     if first is not None and not resting and first.action in ("Walk", "Run") and _has_door(case, first.objects[0].name):
-        yield Perturbation("door", (), (Condition("shut_in", (first.objects[0].key,), number),))
+        yield Perturbation("door", (), (Condition(Literal("shut_in", (first.objects[0].key,)), number),))
 
 
 def _has_door(case: Case, room: str) -> bool:
@@ -265,7 +266,7 @@ def _pet(case: Case) -> Iterator[Perturbation]:
     """A cat or a dog is on the seat, and what else it takes to leave no room."""
     for condition in case.conditions:
         if condition.name == "free":
-            added = tuple(Condition(name, condition.objects, condition.step) for name in ("pet", "occupied"))
+            added = tuple(condition.instead(name) for name in ("pet", "occupied"))
             yield Perturbation("pet", (condition,), added)
 
 
@@ -277,13 +278,13 @@ def _dirty(case: Case) -> Iterator[Perturbation]:
             seen.add(step.objects[0].key)
             known = tuple(c for c in case.conditions.about(step.objects[0].key) if c.name in ("clean", "dirty"))
             if not any(c.name == "dirty" for c in known):
-                yield Perturbation("dirty", known, (Condition("dirty", (step.objects[0].key,), number),))
+                yield Perturbation("dirty", known, (Condition(Literal("dirty", (step.objects[0].key,)), number),))
 
 
 def _seated(case: Case) -> Iterator[Perturbation]:
     """The character sits somewhere."""
     if not any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions) and case.program.steps:
-        yield Perturbation("seated", (), (Condition("sitting", (CHARACTER,)),))
+        yield Perturbation("seated", (), (Condition(Literal("sitting", (CHARACTER,))),))
 
 
 PERTURBATIONS: dict[str, Kind] = {
@@ -320,4 +321,4 @@ _MATTER: dict[str, str] = {
 }  # fmt: skip
 """What each condition is about; the rest is about where its first object is."""
 
-assert set(_MATTER) >= {*STATE_OF, *SEATS}
+assert set(_MATTER) >= {*STATE_OF, "sitting", "lying", "free", "occupied"}

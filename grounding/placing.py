@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from functools import reduce
 from operator import and_
 
-from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.draft import Draft
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import CHARACTER, Key
 from hearth.schemas.program import Program
 from hearth.simulation.bits import indices
 

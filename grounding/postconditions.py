@@ -7,40 +7,21 @@ eq. A.1: the function Omega).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
-from hearth.grounding.conditions import Key
+from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
-from hearth.simulation import rows
 from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.engine import Execution
+from hearth.simulation.holds import holds, related
 from hearth.simulation.world import World
 
 GOING = frozenset({"Walk", "Run", "Find"})
 """Actions that take the character somewhere."""
 
 
-class Fact(NamedTuple):
-    """A state or relation of a program's objects.
-
-    Attributes:
-        name: a state (`OPEN`), or `ON`, `INSIDE` or `HOLDS`. With a target, `ON` is the relation, else the state.
-        subject: the object; what HOLDS, and what sits, is `("character", 1)`, the second agent `("character", 2)`.
-        target: the other object of a relation; what is worn is ON the character.
-    """
-
-    name: str
-    subject: Key
-    target: Key | None = None
-
-    def __str__(self) -> str:
-        objects = (self.subject,) if self.target is None else (self.subject, self.target)
-        return f"{self.name}({', '.join(f'{name} ({number})' for name, number in objects)})"
-
-
-Postconditions = tuple[Fact, ...]
-"""Sorted facts, each once."""
+Postconditions = tuple[Literal[Key], ...]
+"""States, ON, INSIDE and HOLDS, of a program's objects, sorted, each once; what is worn is ON the character."""
 
 
 def achieved(execution: Execution) -> Postconditions:
@@ -57,12 +38,12 @@ def achieved(execution: Execution) -> Postconditions:
     now = tuple(facts(world, nodes))
     new = [fact for fact in now if fact not in before]
     rooms = {key for key, node in nodes.items() if home.rooms >> home.index[node] & 1}
-    held = {fact.target for fact in now if fact.name == "HOLDS"}
+    held = {fact.target for fact in now if fact.name == HOLDS}
     poured = _residues(program, now, held, rooms)
     placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
     walked = [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
 
-    def is_meant(fact: Fact) -> bool:
+    def is_meant(fact: Literal[Key]) -> bool:
         if fact in poured:
             return False
         if fact.name != "INSIDE" or fact.target not in rooms:
@@ -71,29 +52,17 @@ def achieved(execution: Execution) -> Postconditions:
             return bool(walked) and fact.target == walked[-1]
         return fact.target in walked and fact.subject not in placed and fact.subject not in held
 
-    return tuple(sorted(filter(is_meant, new), key=_order))
+    return tuple(sorted(filter(is_meant, new)))
 
 
 def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
     """The facts that do not hold in a world; `nodes` says which node each object is."""
-    return tuple(fact for fact in wanted if not holds(fact, nodes, world))
+    return tuple(fact for fact in wanted if not holds(fact, world, nodes))
 
 
 def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
     """Whether every fact holds in a world."""
-    return all(holds(fact, nodes, world) for fact in wanted)
-
-
-def holds(fact: Fact, nodes: Mapping[Key, int], world: World) -> bool:
-    """Whether one fact holds; one about an object that is bound to no node does not."""
-    index = world.home.index
-    i = index.get(nodes.get(fact.subject, -1), -1)
-    if i < 0:
-        return False
-    if fact.target is None:
-        return bool(world.states[STATE_ID[fact.name]] >> i & 1)
-    j = index.get(nodes.get(fact.target, -1), -1)
-    return j >= 0 and bool(_row(world, fact.name, i) >> j & 1)
+    return all(holds(fact, world, nodes) for fact in wanted)
 
 
 def nodes_of(program: Program, world: World) -> dict[Key, int]:
@@ -105,31 +74,12 @@ def nodes_of(program: Program, world: World) -> dict[Key, int]:
     return nodes
 
 
-def _order(fact: Fact) -> tuple[str, Key, Key]:
-    return (fact.name, fact.subject, fact.target or ("", 0))
-
-
-def _row(world: World, relation: str, i: int) -> int:
-    """What node i is ON or INSIDE, or HOLDS."""
-    if world.home.characters >> i & 1:
-        agent = rows.character(world, i)
-        return agent.on if relation == "ON" else agent.inside if relation == "INSIDE" else agent.held
-    if relation == "HOLDS":
-        return 0
-    bit = 1 << i
-    row = rows.on(world, i) if relation == "ON" else rows.inside(world, i)
-    for other in world.agents:
-        if (other.worn if relation == "ON" else other.contents) & bit:
-            row |= other.bit
-    return row
-
-
 def facts(
     world: World,
     nodes: Mapping[Key, int],
     states: Sequence[str] = STATES,
-    relations: Sequence[str] = ("ON", "INSIDE", "HOLDS"),
-) -> Iterable[Fact]:
+    relations: Sequence[str] = ("ON", "INSIDE", HOLDS),
+) -> Iterable[Literal[Key]]:
     """All states and relations, or these, of some objects in a world."""
     index = world.home.index
     keys: dict[int, list[Key]] = {}
@@ -137,17 +87,18 @@ def facts(
         keys.setdefault(index[node], []).append(key)
     named = mask_of(keys)
     known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
+    read = [(relation, related(relation)) for relation in relations]
     for i, subjects in keys.items():
-        found: list[tuple[str, Key | None]] = [(state, None) for state, row in known if row >> i & 1]
-        for relation in relations:
-            row = _row(world, relation, i) & named
+        found: list[tuple[str, tuple[Key, ...]]] = [(state, ()) for state, row in known if row >> i & 1]
+        for relation, row_of in read:
+            row = row_of(world, i) & named
             if row:
-                found.extend((relation, key) for j in indices(row) for key in keys[j])
+                found.extend((relation, (key,)) for j in indices(row) for key in keys[j])
         for subject in subjects:
-            yield from (Fact(name, subject, target) for name, target in found)
+            yield from (Literal(name, (subject, *target)) for name, target in found)
 
 
-def _residues(program: Program, now: tuple[Fact, ...], held: set[Key | None], rooms: set[Key]) -> set[Fact]:
+def _residues(program: Program, now: Postconditions, held: set[Key | None], rooms: set[Key]) -> set[Literal[Key]]:
     """What pouring has left: a thing is INSIDE what it was poured into, although it is held or stands elsewhere."""
     pours = {(s.objects[0].key, s.objects[1].key) for s in program.steps if s.action == "Pour"}
     if not pours:

@@ -13,6 +13,7 @@ from hearth.grounding.habits import habits
 from hearth.grounding.sketch_home import SketchHome, sketch
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules
@@ -49,7 +50,7 @@ def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> t
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
     """The conditions found, the last try with them, and the step it failed at, if it did."""
     conditions = Preconditions(tuple(habits(program, knowledge)))
-    tried: dict[int, set[tuple[str, object]]] = {}
+    tried: dict[int, set[Literal[Key]]] = {}
     for _ in range(MAX_CONDITIONS):
         place = sketch(program, conditions, knowledge)
         execution = run(World.start(place.home), place.program, rules)
@@ -68,7 +69,7 @@ def _next(
     execution: Execution,
     place: SketchHome,
     step: int,
-    tried: set[tuple[str, object]],
+    tried: set[Literal[Key]],
     knowledge: Knowledge,
 ) -> Preconditions | None:
     """The conditions with one more that may help at this step, or with a habit in its way given up."""
@@ -78,8 +79,8 @@ def _next(
         return None
     moment = Moment(place.program, step, failure, execution.final, execution.worlds[0], place.keys, knowledge)
     for condition in conditions_for(moment):
-        if condition.fact not in tried and not _against(condition, conditions):
-            tried.add(condition.fact)
+        if condition.literal not in tried and not _against(condition, conditions):
+            tried.add(condition.literal)
             return _settled(conditions, condition)
     key = moment.key() if failure.objects else None
     soft = [c for c in conditions if not c.hard and (key is None or key in c.objects)]
@@ -99,7 +100,7 @@ def _settled(conditions: Preconditions, new: Condition) -> Preconditions:
         for c in conditions
         if not c.hard
         and c.objects[0] == new.objects[0]
-        and c.fact != new.fact
+        and c.literal != new.literal
         and (c.name == _OPPOSITES.get(new.name) or (c.name in _PLACES and new.name in _PLACES))
     ]
     return conditions.without(*rivals).plus(new)

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.sketch_home import sketch
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import CHARACTER, Key, Literal
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT, Rules
@@ -48,9 +49,9 @@ def compare(
     program: Program, ours: Preconditions, knowledge: Knowledge, rules: Rules = DEFAULT
 ) -> tuple[Compared, ...]:
     """Each of the release's conditions beside ours: the same, or why it is not among them."""
-    facts = {condition.fact for condition in ours}
+    facts = {condition.literal for condition in ours}
     return tuple(
-        Compared(condition, True) if condition.fact in facts else _tried(condition, program, ours, knowledge, rules)
+        Compared(condition, True) if condition.literal in facts else _tried(condition, program, ours, knowledge, rules)
         for condition in by_rules(program, knowledge)
     )
 
@@ -77,7 +78,7 @@ def _by_rules(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _soft(name: str, step: int, *objects: Key) -> Condition:
-    return Condition(name, objects, step, hard=False)
+    return Condition(Literal(name, objects), step, hard=False)
 
 
 def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hearth.grounding.base import Base, prepared
-from hearth.grounding.checking import unmet
-from hearth.grounding.conditions import CHARACTER, Condition, Key, Preconditions
+from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.demands import Moment, conditions_for
 from hearth.grounding.draft import Draft
 from hearth.grounding.filling import fill
@@ -16,6 +15,7 @@ from hearth.grounding.preconditions import infer
 from hearth.grounding.soundness import unsound
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.literals import CHARACTER, HANDS, Key
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.simulation.bits import indices
@@ -144,7 +144,7 @@ def sample(
     for attempt in range(TRIES):
         environment = draw(program, base, found, seed, record_id, attempt, size)
         execution = run(environment.world, environment.program, rules)
-        missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
+        missing = environment.conditions.unmet(environment.world, _nodes(environment.program))
         fault = unsound(environment.world)
         if not missing and fault is None and (execution.failure is None or not must_run):
             return environment, execution
@@ -214,7 +214,7 @@ def settle_character(draft: Draft, program: Program, conditions: Preconditions) 
 
 def _bring(draft: Draft, me: int, room: int) -> None:
     """What the character holds is where it is, unless it is said to be elsewhere."""
-    held = [edge.target for edge in draft.added if edge.source == me and edge.relation in ("HOLDS_RH", "HOLDS_LH")]
+    held = [edge.target for edge in draft.added if edge.source == me and edge.relation in HANDS]
     for node_id in held:
         if draft.room_of(node_id) < 0:
             draft.settle(node_id, room)
@@ -230,6 +230,6 @@ def _with_demand(
     moment = Moment(
         environment.program, failure.tick, failure, execution.final, environment.world, keys, base.knowledge
     )
-    known = {c.fact for c in conditions}
-    new = next((c for c in conditions_for(moment) if c.fact not in known), None)
+    known = {c.literal for c in conditions}
+    new = next((c for c in conditions_for(moment) if c.literal not in known), None)
     return conditions if new is None else conditions.plus(new)

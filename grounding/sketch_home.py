@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.grounding.conditions import CHARACTER, RELATION_OF, STATE_OF, Key, Preconditions
+from hearth.grounding.conditions import Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.literals import CHARACTER, HANDS, RELATION_OF, STATE_OF, Key
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation.home import Home
@@ -135,4 +136,4 @@ def _beside(ids: dict[Key, int], stands: dict[int, int], conditions: Preconditio
 
 
 def _hand(edges: list[Edge]) -> str:
-    return "HOLDS_LH" if any(edge.relation == "HOLDS_RH" for edge in edges) else "HOLDS_RH"
+    return HANDS[any(edge.relation == HANDS[0] for edge in edges)]

@@ -10,9 +10,10 @@ import re
 from collections.abc import Mapping
 from functools import lru_cache
 
-from hearth.grounding.conditions import Key, Preconditions
-from hearth.grounding.postconditions import Fact, Postconditions, facts, nodes_of
+from hearth.grounding.conditions import Preconditions
+from hearth.grounding.postconditions import Postconditions, facts, nodes_of
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution
@@ -49,18 +50,19 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
     reached_into = {c.objects[1]: c.objects[0] for c in conditions if c.name in ("in", "inside")}
     poured = {tuple(ref.key for ref in step.objects) for step in program.steps if step.action == "Pour"}
 
-    def is_meant(name: str, subject: Key, target: Key | None) -> bool:
+    def is_meant(fact: Literal[Key]) -> bool:
+        name, subject, target = fact.name, fact.subject, fact.target
         if name == "INSIDE" and target is not None:
             return (
                 not knowledge.is_room(target[0]) and subject[0] != CHARACTER_CLASS and (subject, target) not in poured
             )
         if name == "OPEN":
             return subject not in reached_into and not _used_after(program, "Open", subject)
-        if name == "HOLDS" and target is not None:
+        if name == HOLDS and target is not None:
             return not _used_after(program, "Grab", target) and not _is_tool(program, target)
         return True
 
-    return tuple(fact for fact in goal if is_meant(*fact))
+    return tuple(fact for fact in goal if is_meant(fact))
 
 
 def milestones(execution: Execution) -> Postconditions:
@@ -72,8 +74,8 @@ def milestones(execution: Execution) -> Postconditions:
     nodes = nodes_of(program, worlds[0])
     steps = [tick[0] for tick in program.ticks()]
     first, last = frozenset(_worked_with(worlds[0], nodes)), frozenset(_worked_with(worlds[-1], nodes))
-    found: list[Fact] = []
-    since: dict[Fact, int] = {}
+    found: list[Literal[Key]] = []
+    since: dict[Literal[Key], int] = {}
     for tick, world in enumerate(worlds):
         now = frozenset(_worked_with(world, nodes))
         for fact in sorted(since.keys() - now, key=str):
@@ -85,7 +87,7 @@ def milestones(execution: Execution) -> Postconditions:
     return tuple(dict.fromkeys(found))
 
 
-def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Fact]:
+def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
     """What is switched on, and what is ON or INSIDE what, characters left out."""
     found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from hearth.grounding.base import Base
-from hearth.grounding.conditions import PETS, Condition, Key
+from hearth.grounding.conditions import Condition
 from hearth.grounding.draft import Draft
 from hearth.schemas.graph import Edge
+from hearth.schemas.literals import HANDS, Key
 from hearth.simulation.bits import indices
+from hearth.simulation.holds import PETS
 
 Spot = tuple[int, str]
 """Index of a place, and ON or INSIDE it."""
@@ -72,7 +74,7 @@ def full_hands(draft: Draft, condition: Condition) -> None:
     me = draft.base.character
     taken = {edge.relation for edge in draft.added if edge.source == me}
     fillers = draft.base.fillers.choices
-    for hand in ("HOLDS_RH", "HOLDS_LH"):
+    for hand in HANDS:
         if hand not in taken and fillers:
             node_id = draft.add(draft.rng.choice(fillers)[0], -1)
             draft.added.append(Edge(me, hand, node_id))

@@ -2,7 +2,7 @@
 
 A formula is one of
 
-    NAME(term, ...)            an atom: `CLOSE(a, o)`, `state(o, OPEN)`, `close(a, o)`
+    NAME(term, ...)            a literal: `CLOSE(a, o)`, `state(o, OPEN)`, `close(a, o)`
     not F, F & F, F | F, (F)   as usual; `not` binds tightest, then `&`, then `|`
     some x: F                  for at least one thing x; reaches as far right as it can
     count x: F < limit(o)      fewer things than a number known of o
@@ -26,6 +26,7 @@ from functools import lru_cache
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 
 FUNCTIONS = frozenset({"room", "origin", "place"})
 """Terms that find a thing from a thing; they may find nothing."""
@@ -51,19 +52,8 @@ class Term:
 
 
 @dataclass(frozen=True, slots=True)
-class Atom:
-    """A predicate of terms."""
-
-    name: str
-    terms: tuple[Term, ...] = ()
-
-    def __str__(self) -> str:
-        return f"{self.name}({', '.join(map(str, self.terms))})"
-
-
-@dataclass(frozen=True, slots=True)
 class Not:
-    """Holds when its part does not."""
+    """Holds when its part does not; a literal says so itself."""
 
     part: Formula
 
@@ -114,30 +104,27 @@ class Count:
         return f"count {self.variable}: {self.part} < {self.limit}"
 
 
-Formula = Atom | Not | And | Or | Some | Count
+Formula = Literal[Term] | Not | And | Or | Some | Count
 
 TRUE = And(())
 
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """A change: `atom` becomes true (or false when `delete`), for all `variables` for which `condition` held before."""
+    """A change: `literal` becomes true, for all `variables` for which `condition` held before."""
 
-    atom: Atom
-    delete: bool = False
+    literal: Literal[Term]
     condition: Formula = TRUE
     variables: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        text = f"not {self.atom}" if self.delete else str(self.atom)
-        if self.condition != TRUE:
-            text = f"{self.condition} -> {text}"
+        text = str(self.literal) if self.condition == TRUE else f"{self.condition} -> {self.literal}"
         return f"for {', '.join(self.variables)}: {text}" if self.variables else text
 
 
 def free(formula: Formula) -> set[str]:
     """The variables a formula mentions and does not bind itself; names (of states, classes) are none."""
-    if isinstance(formula, Atom):
+    if isinstance(formula, Literal):
         terms = formula.terms[:1] if formula.name in NAMED else formula.terms
         return {term.name for term in terms}
     if isinstance(formula, Not):
@@ -150,14 +137,14 @@ def free(formula: Formula) -> set[str]:
 
 def predicates(formula: Formula) -> set[str]:
     """The names of the predicates it uses."""
-    if isinstance(formula, Atom):
+    if isinstance(formula, Literal):
         return {formula.name}
     parts = formula.parts if isinstance(formula, And | Or) else (formula.part,)
     return {name for part in parts for name in predicates(part)}
 
 
 def _grouped(part: Formula) -> str:
-    return str(part) if isinstance(part, Atom | Not) else f"({part})"
+    return str(part) if isinstance(part, Literal | Not) else f"({part})"
 
 
 _TOKEN = re.compile(r"\s*(?:(->|[()&|:,<])|([A-Za-z_][A-Za-z_0-9]*))")
@@ -190,8 +177,8 @@ def parse_effect(text: str) -> Effect:
 
 
 @lru_cache(maxsize=512)
-def parse_atom(text: str) -> Atom:
-    """Read a single atom, such as the head of a definition.
+def parse_atom(text: str) -> Literal[Term]:
+    """Read a single predicate of terms, such as the head of a definition.
 
     Raises:
         HearthError: SYNTAX.
@@ -255,13 +242,11 @@ class _Parser:
             self.take("->")
             if self.peek() == "for":
                 inner = self.effect()
-                return Effect(
-                    inner.atom, inner.delete, _both(condition, inner.condition), (*variables, *inner.variables)
-                )
-        delete = self.peek() == "not"
-        if delete:
+                return Effect(inner.literal, _both(condition, inner.condition), (*variables, *inner.variables))
+        negated = self.peek() == "not"
+        if negated:
             self.take()
-        return Effect(self.atom(), delete, condition, tuple(variables))
+        return Effect(self.atom()._replace(negated=negated), condition, tuple(variables))
 
     def alternatives(self) -> Formula:
         parts = [self.conjunction()]
@@ -281,7 +266,8 @@ class _Parser:
         token = self.peek()
         if token == "not":
             self.take()
-            return Not(self.unit())
+            part = self.unit()
+            return part._replace(negated=True) if isinstance(part, Literal) and not part.negated else Not(part)
         if token == "(":
             self.take()
             inner = self.alternatives()
@@ -301,8 +287,8 @@ class _Parser:
         function = self.name()
         return Count(variable, part, Term(self.arguments()[0].name, function))
 
-    def atom(self) -> Atom:
-        return Atom(self.name(), self.arguments())
+    def atom(self) -> Literal[Term]:
+        return Literal(self.name(), self.arguments())
 
     def arguments(self) -> tuple[Term, ...]:
         self.take("(")

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from hearth.kb.formula import Atom, Effect, Formula
+from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 
 _DROPPED = {ord(letter): None for letter in " _-"}
 
@@ -43,7 +44,7 @@ class Knowledge:
     state_groups: Mapping[str, StateGroup]
     table_like: frozenset[str]
     defaults: Mapping[str, Mapping[str, tuple[str, ...]]]
-    derived: Mapping[str, tuple[Atom, Formula]]
+    derived: Mapping[str, tuple[Literal[Term], Formula]]
     kinds: Mapping[str, Kind]
     associations: tuple[Association, ...]
     repairs: Mapping[str, Repair]
@@ -80,9 +81,9 @@ class Knowledge:
         found: dict[str, list[tuple[Action, Effect]]] = {}
         for action in self.actions.values():
             for effect in action.effects:
-                if not effect.delete:
-                    atom = effect.atom
-                    name = atom.terms[1].name if atom.name == "state" else atom.name
+                if not effect.literal.negated:
+                    name, terms, _ = effect.literal
+                    name = terms[1].name if name == "state" else name
                     found.setdefault(name, []).append((action, effect))
         return {name: tuple(pairs) for name, pairs in found.items()}
 

@@ -10,9 +10,9 @@ from hearth.kb.formula import (
     BUILT_IN,
     TRUE,
     And,
-    Atom,
     Effect,
     Formula,
+    Term,
     free,
     parse_atom,
     parse_effect,
@@ -23,6 +23,7 @@ from hearth.kb.layers import Layers, check_ids, check_properties, parsed, yaml_e
 from hearth.kb.reading import Entry, Faults, strings
 from hearth.kb.records import Action, Condition, Repair, RepairStep, Requirement
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
@@ -131,10 +132,10 @@ def _under(condition: Formula, effect: Effect) -> Effect:
     if condition == TRUE:
         return effect
     both = condition if effect.condition == TRUE else And((condition, effect.condition))
-    return Effect(effect.atom, effect.delete, both, effect.variables)
+    return Effect(effect.literal, both, effect.variables)
 
 
-def load_derived(layers: Layers, faults: Faults) -> dict[str, tuple[Atom, Formula]]:
+def load_derived(layers: Layers, faults: Faults) -> dict[str, tuple[Literal[Term], Formula]]:
     """Definitions by predicate: `close` -> (close(a, x), its formula)."""
     result = {}
     for head, entry in yaml_entries(layers, "derived.yaml", faults).items():
@@ -149,7 +150,7 @@ def _check_literals(action: Action, known: set[str], at: Entry, faults: Faults) 
     """Note predicates that nothing defines and variables that nothing binds."""
     bound = {"a", *"os"[: action.arity]}
     parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
-    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.atom)]
+    parts += [(part, bound | {*e.variables}) for e in action.effects for part in (e.condition, e.literal.atom)]
     for part, variables in parts:
         for unknown in sorted(predicates(part) - known):
             faults.at(at, f"in `{part}`: nothing says what `{unknown}` is", "see derived.yaml")

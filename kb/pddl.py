@@ -8,10 +8,12 @@ remembers all of them, which is the only way it differs from the engine.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
-from hearth.kb.formula import FUNCTIONS, TRUE, And, Atom, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import FUNCTIONS, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action, Requirement
+from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS, STATES
 
 REQUIREMENTS = (":adl", ":derived-predicates")
@@ -92,7 +94,7 @@ def _need_predicates(need: Requirement) -> set[str]:
 
 def _named_predicates(formula: Formula) -> Iterator[str]:
     """The one-place predicates a formula uses for properties and classes."""
-    if isinstance(formula, Atom):
+    if isinstance(formula, Literal):
         makers = {"property": property_predicate, "class": class_predicate, "class_contains": named_predicate}
         if formula.name in makers:
             yield makers[formula.name](formula.terms[1].name)
@@ -119,7 +121,7 @@ def _axioms(knowledge: Knowledge) -> Iterator[str]:
         yield f"    {_formula(knowledge, body, None)})"
 
 
-def _head(atom: Atom) -> str:
+def _head(atom: Literal[Term]) -> str:
     return f"({_derived(atom.name)} {' '.join(f'?{term.name}' for term in atom.terms)})"
 
 
@@ -145,36 +147,34 @@ def _action(knowledge: Knowledge, action: Action) -> Iterator[str]:
 
 def _effects(knowledge: Knowledge, effect: Effect, action: Action) -> Iterator[str]:
     """An effect as one or more PDDL effects: symmetric ones twice, a state with the end of its opposite."""
-    atom, delete = effect.atom, effect.delete
-    changes = [(atom, delete)]
-    if atom.name == "CLOSE":
-        changes.append((Atom("CLOSE", tuple(reversed(atom.terms))), delete))
-    if atom.name == "state" and not delete:
-        subject = atom.terms[0]
-        changes += [(Atom("state", (subject, Term(other))), True) for other in knowledge.excludes(atom.terms[1].name)]
-    if atom.name == "REMEMBERS":
-        changes = list(_memory(effect))
-    for change, gone in changes:
-        yield _quantified(knowledge, Effect(change, gone, effect.condition, effect.variables), action)
+    literal = effect.literal
+    changes = [literal]
+    if literal.name == "CLOSE":
+        changes.append(literal._replace(terms=literal.terms[::-1]))
+    if literal.name == "state" and not literal.negated:
+        subject, state = literal.terms
+        changes += [Literal("state", (subject, Term(other)), True) for other in knowledge.excludes(state.name)]
+    if literal.name == "REMEMBERS":
+        changes = list(_memory(literal))
+    for change in changes:
+        yield _quantified(knowledge, replace(effect, literal=change), action)
 
 
-def _memory(effect: Effect) -> Iterator[tuple[Atom, bool]]:
+def _memory(literal: Literal[Term]) -> Iterator[Literal[Term]]:
     """What Grab remembers and Drop forgets: the place, and how the thing was there."""
-    thing = effect.atom.terms[0]
-    if effect.delete:
-        yield Atom("REMEMBERS", (thing, Term("p"))), True
-    else:
-        yield effect.atom, False
+    thing, negated = literal.subject, literal.negated
+    yield Literal("REMEMBERS", (thing, Term("p")), True) if negated else literal
     for relation in ("ON", "INSIDE"):
-        yield Atom("came_from", (thing, Term(relation))), effect.delete
+        yield Literal("came_from", (thing, Term(relation)), negated)
 
 
 def _quantified(knowledge: Knowledge, effect: Effect, action: Action) -> str:
     """One change under its variables and condition, found things turned into variables of their own."""
+    literal = effect.literal
     variables = list(effect.variables)
     guards = [] if effect.condition == TRUE else [_formula(knowledge, effect.condition, action)]
     terms: list[Term] = []
-    for number, term in enumerate(effect.atom.terms):
+    for number, term in enumerate(literal.terms):
         if term.function:
             fresh = f"{term.function[0]}{number}"
             variables.append(fresh)
@@ -182,19 +182,19 @@ def _quantified(knowledge: Knowledge, effect: Effect, action: Action) -> str:
             terms.append(Term(fresh))
         else:
             terms.append(term)
-    if effect.atom.name == "REMEMBERS" and effect.delete:
+    if literal.name == "REMEMBERS" and literal.negated:
         variables.append("p")
-    if effect.atom.name == "came_from" and not effect.delete:
-        guards.append(_came(effect.atom))
-    text = _plain(effect.atom.name, tuple(terms))
-    text = f"(not {text})" if effect.delete else text
+    if literal.name == "came_from" and not literal.negated:
+        guards.append(_came(literal))
+    text = _plain(literal.name, tuple(terms))
+    text = f"(not {text})" if literal.negated else text
     if guards:
         guard = guards[0] if len(guards) == 1 else f"(and {' '.join(guards)})"
         text = f"(when {guard} {text})"
     return f"(forall ({' '.join(f'?{name}' for name in variables)}) {text})" if variables else text
 
 
-def _came(atom: Atom) -> str:
+def _came(atom: Literal[Term]) -> str:
     thing, relation = atom.terms[0].name, _dashed(atom.terms[1].name)
     there = f"(exists (?q) (and ({relation} ?{thing} ?q) (not (is-room ?q))))"
     if relation == "on":
@@ -217,8 +217,9 @@ def _plain(name: str, terms: tuple[Term, ...]) -> str:
 
 
 def _formula(knowledge: Knowledge, formula: Formula, action: Action | None) -> str:
-    if isinstance(formula, Atom):
-        return _atom(formula, action, knowledge)
+    if isinstance(formula, Literal):
+        text = _atom(formula, action, knowledge)
+        return f"(not {text})" if formula.negated else text
     if isinstance(formula, Not):
         return f"(not {_formula(knowledge, formula.part, action)})"
     if isinstance(formula, And | Or):
@@ -243,17 +244,17 @@ def _fewer(knowledge: Knowledge, formula: Count, action: Action | None) -> str:
 
 
 def _renamed(formula: Formula, old: str, new: str) -> Formula:
-    if not isinstance(formula, Atom):
+    if not isinstance(formula, Literal):
         raise TypeError("only plain facts are counted")
-    return Atom(formula.name, tuple(Term(new) if term.name == old else term for term in formula.terms))
+    return formula._replace(terms=tuple(Term(new) if term.name == old else term for term in formula.terms))
 
 
-def _atom(atom: Atom, action: Action | None, knowledge: Knowledge) -> str:
+def _atom(atom: Literal[Term], action: Action | None, knowledge: Knowledge) -> str:
     """An atom; one about a found thing holds of some thing that is found so."""
     for position, term in enumerate(atom.terms):
         if term.function in FUNCTIONS:
             fresh = f"{term.function[0]}{position}"
-            inner = Atom(atom.name, (*atom.terms[:position], Term(fresh), *atom.terms[position + 1 :]))
+            inner = Literal(atom.name, (*atom.terms[:position], Term(fresh), *atom.terms[position + 1 :]))
             return f"(exists (?{fresh}) (and {_found(term, fresh)} {_atom(inner, action, knowledge)}))"
     first = f"?{atom.terms[0].name}"
     named = {"property": property_predicate, "class": class_predicate, "class_contains": named_predicate}

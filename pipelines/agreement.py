@@ -34,9 +34,9 @@ def agreement(programs: Iterable[Script | Reject], knowledge: Knowledge) -> dict
             continue
         for one in compare(script.program, ours, knowledge):
             counts[one.condition.name]["ours" if one.ours else one.why.partition(":")[0]] += 1
-        theirs = {condition.fact for condition in by_rules(script.program, knowledge)}
+        theirs = {condition.literal for condition in by_rules(script.program, knowledge)}
         for condition in ours:
-            if condition.fact not in theirs:
+            if condition.literal not in theirs:
                 counts[condition.name]["missed, needed" if condition.hard else "missed, usual"] += 1
     kinds = ("ours", "not needed", "refused", "missed, needed", "missed, usual")
     rows = [{"condition": name, "by_rules": sum(found[kind] for kind in kinds[:3]),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any
 
-from hearth.grounding.conditions import CHARACTER, Preconditions
+from hearth.grounding.conditions import Preconditions
 from hearth.grounding.perturbing import Chances, Perturbation
 from hearth.grounding.sampling import Environment
 from hearth.pipelines.augmenting import Augmented, Options, Pair, augment, default_chances
@@ -31,6 +31,7 @@ from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
 from hearth.pipelines.stage import Job, Output, Plan, Record, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
 from hearth.schemas.syntax import print_step

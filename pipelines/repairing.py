@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from hearth.grounding.conditions import Key
 from hearth.grounding.postconditions import Postconditions, missing, nodes_of
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import canonical
 from hearth.pipelines.handlers.common import Edit, Handler, Trouble
 from hearth.pipelines.handlers.registry import HANDLERS, UNREPAIRABLE
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules

@@ -10,6 +10,7 @@ from hearth.grounding.conditions import Condition, Preconditions
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.change import Change
@@ -226,8 +227,7 @@ def conditions_of(rows: Iterable[Mapping[str, Any]]) -> Preconditions:
     return Preconditions(
         tuple(
             Condition(
-                row["name"],
-                tuple((ref["name"], ref["instance"]) for ref in row["objects"]),
+                Literal(row["name"], tuple((ref["name"], ref["instance"]) for ref in row["objects"])),
                 row["step"] or 0,
                 bool(row["hard"]),
             )

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from hearth.grounding.conditions import Key, Preconditions
-from hearth.grounding.postconditions import Postconditions, achieved, holds, nodes_of
+from hearth.grounding.conditions import Preconditions
+from hearth.grounding.postconditions import Postconditions, achieved, nodes_of
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.sketches import REPLACEABLE, asked, meant, milestones
@@ -15,8 +15,10 @@ from hearth.pipelines.handlers.common import Handler
 from hearth.pipelines.handlers.registry import HANDLERS
 from hearth.pipelines.repairing import repair
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
+from hearth.simulation.holds import holds
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
@@ -123,7 +125,7 @@ def _suffices(
 
 def _passes(nodes: Mapping[Key, int], execution: Execution, passed: Postconditions) -> bool:
     """Whether each of some effects is there at some time."""
-    return all(any(holds(fact, nodes, world) for world in execution.worlds) for fact in passed)
+    return all(any(holds(fact, world, nodes) for world in execution.worlds) for fact in passed)
 
 
 def _with_asked(program: Program, keep: Keep, wanted: Sequence[bool]) -> Keep:

@@ -6,20 +6,21 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from hearth.schemas.goals import Goal, Predicate
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATES
 from hearth.scoring.signature import signature
-from hearth.scoring.views import View, view_of
+from hearth.scoring.views import nodes_of
 from hearth.simulation.bits import indices
+from hearth.simulation.holds import candidates
+from hearth.simulation.home import Home
 from hearth.simulation.moved import INSIDE, NOTHING, ON
 from hearth.simulation.world import World
 
 SIGNATURE = signature("goal", level="program", empty=1)
 
-AGENT = "agent"
-HOLDS = "HOLDS"
-HANDS = ("HOLDS_RH", "HOLDS_LH")
 LASTING = ("ON", "INSIDE", *HANDS)
 """Relations that a goal made from an execution is about; CLOSE and FACING say only where the character stood."""
 
@@ -29,36 +30,42 @@ class Satisfaction:
     """How much of a goal holds.
 
     Attributes:
-        counts: of each predicate: how many distinct subjects satisfy it, and how many are wanted.
+        counts: of each literal: how often it holds, and how often it is wanted.
     """
 
-    counts: tuple[tuple[Predicate, int, int], ...]
+    counts: tuple[tuple[Literal[Name], int, int], ...]
 
     @property
     def satisfied(self) -> bool:
-        """Whether every count is reached; a goal without predicates is."""
+        """Whether every count is reached; an empty goal is."""
         return all(found >= wanted for _, found, wanted in self.counts)
 
     @property
     def fraction(self) -> float:
-        """How much of what is wanted is found, from 0 to 1; 1 for a goal without predicates."""
+        """How much of what is wanted is found, from 0 to 1; 1 for an empty goal."""
         wanted = sum(count for _, _, count in self.counts)
         return sum(min(found, count) for _, found, count in self.counts) / wanted if wanted else 1.0
 
     @property
-    def unmet(self) -> tuple[tuple[Predicate, int], ...]:
+    def unmet(self) -> tuple[tuple[Literal[Name], int], ...]:
         """What is missing, and how often."""
-        return tuple((predicate, wanted - found) for predicate, found, wanted in self.counts if found < wanted)
+        return tuple((literal, wanted - found) for literal, found, wanted in self.counts if found < wanted)
 
 
-def satisfaction(goal: Goal, final: EnvironmentGraph | World) -> Satisfaction:
-    """Count how many distinct subjects satisfy each predicate of a goal.
+def satisfaction(goal: Goal, final: EnvironmentGraph | World, knowledge: Knowledge | None = None) -> Satisfaction:
+    """Count how often each literal of a goal holds; one about what there is not, never.
 
-    A subject or target is a class name (any instance), a node id, `agent` (any character) or `agent:1` (the second by
-    id). HOLDS is either hand.
+    Args:
+        goal: counted literals.
+        final: the graph, or the world, that is to be as the goal says.
+        knowledge: other names of a graph's classes; a world has its own.
     """
-    view = view_of(final)
-    return Satisfaction(tuple((predicate, len(_subjects(predicate, view)), wanted) for predicate, wanted in goal))
+    world = final if isinstance(final, World) else World.start(Home.from_graph(final, knowledge=knowledge))
+    return Satisfaction(tuple((literal, _count(literal, world), wanted) for literal, wanted in goal))
+
+
+def _count(literal: Literal[Name], world: World) -> int:
+    return sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
 
 
 def goal_of(start: World, final: World) -> Goal:
@@ -66,20 +73,23 @@ def goal_of(start: World, final: World) -> Goal:
 
     Being in a room is not counted, nor what was true at the start. Both worlds are of one home.
     """
-    nodes = view_of(final).nodes
-    counts: Counter[Predicate] = Counter()
+    nodes = nodes_of(final.home)
+    counts: Counter[Literal[Name]] = Counter()
 
     def name(node: int) -> str:
         return AGENT if node in nodes.characters else nodes.classes[node]
 
     entered, added = _achieved(start, final)
     for node, state in entered:
-        counts[Predicate(state, name(node))] += 1
-    subjects: dict[Predicate, set[int]] = {}
+        counts[Literal(state, (name(node),))] += 1
+    met: dict[Literal[Name], set[Edge | int]] = {}
     for edge in added:
         if edge.target not in nodes.left_out:
-            subjects.setdefault(_as_predicate(edge, name(edge.source), name(edge.target)), set()).add(_counted(edge))
-    counts.update({predicate: len(found) for predicate, found in subjects.items()})
+            relation = HOLDS if edge.relation in HANDS else edge.relation
+            of_character = edge.source in nodes.characters
+            literal = Literal(relation, (name(edge.source), name(edge.target)))
+            met.setdefault(literal, set()).add(edge if of_character else edge.source)
+    counts.update({literal: len(found) for literal, found in met.items()})
     return Goal.of(*sorted(counts.items(), key=lambda item: str(item[0])))
 
 
@@ -114,33 +124,3 @@ def _lasting(start: World, final: World) -> Iterator[Edge]:
         yield from (Edge(me, relation, ids[j]) for j in indices(after & ~before))
     for relation, before, after in (("ON", old.worn, new.worn), ("INSIDE", old.contents, new.contents)):
         yield from (Edge(ids[j], relation, me) for j in indices(after & ~before & ~new.bit))
-
-
-def _as_predicate(edge: Edge, source: str, target: str) -> Predicate:
-    """A character's holding counts the things held, so these stand first."""
-    return Predicate(HOLDS, source, target) if edge.relation in HANDS else Predicate(edge.relation, source, target)
-
-
-def _counted(edge: Edge) -> int:
-    return edge.target if edge.relation in HANDS else edge.source
-
-
-def _subjects(predicate: Predicate, view: View) -> set[int]:
-    """The distinct nodes that satisfy a predicate: of HOLDS the things held, else the subjects."""
-    subjects = _nodes(predicate.subject, view)
-    if predicate.target is None:
-        return {node for node in subjects if predicate.name in view.states(node)}
-    targets = _nodes(predicate.target, view)
-    relations = HANDS if predicate.name == HOLDS else (predicate.name,)
-    edges = (Edge(node, name, other) for name in relations for node in subjects for other in view.targets(node, name))
-    return {_counted(edge) for edge in edges if edge.target in targets}
-
-
-def _nodes(term: str | int, view: View) -> frozenset[int]:
-    if isinstance(term, int):
-        return frozenset({term}) & view.nodes.classes.keys()
-    name, _, number = term.partition(":")
-    if name != AGENT:
-        return frozenset(view.nodes.instances.get(term, ()))
-    agents = sorted(view.nodes.characters)
-    return frozenset(agents[int(number) : int(number) + 1] if number.isdecimal() else agents)

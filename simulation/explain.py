@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from hearth.kb.formula import And, Atom, Formula, Not, Or, Some, Term
+from hearth.kb.formula import And, Formula, Or, Some, Term
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation import rows
@@ -61,14 +62,11 @@ def checks(world: World, step: Step, rules: Rules) -> Iterator[Check]:
 def _witness(formula: Formula, cast: _Cast) -> str:
     if isinstance(formula, Or):
         return next((text for part in formula.parts if (text := _witness(part, cast))), "")
-    if isinstance(formula, Atom):
-        tell = _TELL.get(formula.name)
+    if isinstance(formula, Literal):
+        tell = (_TELL_NOT if formula.negated else _TELL).get(formula.name)
         return tell(formula, cast) if tell else ""
     if isinstance(formula, And):
         return ", ".join(text for part in formula.parts if (text := _witness(part, cast)))
-    if isinstance(formula, Not) and isinstance(formula.part, Atom):
-        tell = _TELL_NOT.get(formula.part.name)
-        return tell(formula.part, cast) if tell else ""
     if isinstance(formula, Some) and "REMEMBERS" in str(formula):
         return f"it came from {cast.name(cast.index(Term('o', 'origin')))}"
     if isinstance(formula, Some):
@@ -76,7 +74,7 @@ def _witness(formula: Formula, cast: _Cast) -> str:
     return ""
 
 
-def _close(atom: Atom, cast: _Cast) -> str:
+def _close(atom: Literal[Term], cast: _Cast) -> str:
     agent, x = cast.agent, cast.index(atom.terms[1])
     if x < 0:
         return ""
@@ -90,7 +88,7 @@ def _close(atom: Atom, cast: _Cast) -> str:
     return f"character CLOSE {cast.name(lowest(hop))} CLOSE {cast.name(x)}" if hop else ""
 
 
-def _facing(atom: Atom, cast: _Cast) -> str:
+def _facing(atom: Literal[Term], cast: _Cast) -> str:
     agent, x = cast.agent, cast.index(atom.terms[1])
     if agent.facing >> x & 1:
         return f"character FACING {cast.name(x)}"
@@ -98,17 +96,17 @@ def _facing(atom: Atom, cast: _Cast) -> str:
     return f"character FACING {cast.name(lowest(hop))} FACING {cast.name(x)}" if hop else ""
 
 
-def _holds(atom: Atom, cast: _Cast) -> str:
+def _holds(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[1])
     hand = "right" if cast.agent.right >> x & 1 else "left"
     return f"{cast.name(x)} in the {hand} hand"
 
 
-def _hands(atom: Atom, cast: _Cast) -> str:
+def _hands(atom: Literal[Term], cast: _Cast) -> str:
     return "the right hand is free" if not cast.agent.right else "the left hand is free"
 
 
-def _states(atom: Atom, cast: _Cast) -> str:
+def _states(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[0])
     if x < 0:
         return ""
@@ -119,43 +117,43 @@ def _states(atom: Atom, cast: _Cast) -> str:
     return f"{cast.name(x)} is {' and '.join(now) or ' nor '.join(('neither ' + STATES[pair], STATES[pair + 1]))}"
 
 
-def _affords(atom: Atom, cast: _Cast) -> str:
+def _affords(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[0])
     home = cast.world.home
     names = sorted(name for name, mask in home.properties.items() if mask >> x & 1)
     return f"{cast.name(x)} is {' '.join(names) or 'without properties'}"
 
 
-def _room(atom: Atom, cast: _Cast) -> str:
+def _room(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[0])
     return f"in {cast.name(rows.room_of(cast.world, x))}"
 
 
-def _seat(atom: Atom, cast: _Cast) -> str:
+def _seat(atom: Literal[Term], cast: _Cast) -> str:
     on = [cast.name(i) for i in indices(rows.bearing(cast.world, cast.o))]
     return f"on it: {', '.join(on) or 'nothing'}"
 
 
-def _same_room(atom: Atom, cast: _Cast) -> str:
+def _same_room(atom: Literal[Term], cast: _Cast) -> str:
     return f"both in {cast.name(rows.agent_room(cast.world, cast.agent))}"
 
 
-def _open(atom: Atom, cast: _Cast) -> str:
+def _open(atom: Literal[Term], cast: _Cast) -> str:
     around = rows.inside(cast.world, cast.index(atom.terms[0])) & ~cast.world.home.rooms
     return f"inside {cast.name(lowest(around))}, which is not CLOSED" if around else "inside nothing but its room"
 
 
-def _edge(atom: Atom, cast: _Cast) -> str:
+def _edge(atom: Literal[Term], cast: _Cast) -> str:
     x = cast.index(atom.terms[1])
     return f"character {atom.name} {cast.name(x)}" if atom.name == "FACING" and cast.agent.facing >> x & 1 else ""
 
 
-_TELL_NOT: dict[str, Callable[[Atom, _Cast], str]] = {
+_TELL_NOT: dict[str, Callable[[Literal[Term], _Cast], str]] = {
     "hidden": _open,
     "state": _states,
 }
 
-_TELL: dict[str, Callable[[Atom, _Cast], str]] = {
+_TELL: dict[str, Callable[[Literal[Term], _Cast], str]] = {
     "FACING": _edge,
     "affords": _affords,
     "close": _close,

@@ -212,6 +212,13 @@ class Home:
                 found.extend((self.ids[i], relation, self.ids[j]) for j in indices(row))
         return found
 
+    def instances(self, name: str) -> int:
+        """What a class name stands for: the nodes of that class, else those of the first of its other names that the
+        home knows.
+        """
+        names = (name, *self.knowledge.same_class(name))
+        return next((mask for each in names if (mask := self.by_class.get(each, 0))), 0)
+
     def limit(self, index: int, lying: bool = False) -> int:
         """How many things may be ON a seat before one may sit, or on a bed before one may lie."""
         name = self.classes[index]

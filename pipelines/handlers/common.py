@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from hearth.grounding.conditions import Key
 from hearth.grounding.postconditions import Postconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
+from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hearth.grounding.postconditions import Fact
 from hearth.pipelines.handlers.common import Edit, Splice, Trouble
+from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
@@ -28,13 +28,13 @@ def goal_lost(trouble: Trouble) -> Edit | None:
     return None
 
 
-def _rank(fact: Fact) -> tuple[bool, bool, bool]:
+def _rank(fact: Literal[Key]) -> tuple[bool, bool, bool]:
     """What moves the character comes after what moves things; what it rests on comes last."""
     resting = fact.name in ("SITTING", "LYING") or (fact.name == "ON" and fact.subject[0] == CHARACTER_CLASS)
-    return (resting, fact.name == "HOLDS", fact.target is not None)
+    return (resting, fact.name == HOLDS, fact.target is not None)
 
 
-def _steps(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
+def _steps(trouble: Trouble, fact: Literal[Key]) -> tuple[Step, ...]:
     index, nodes = trouble.world.home.index, trouble.nodes
     if fact.subject[0] == CHARACTER_CLASS:
         return _of_character(trouble, fact)
@@ -53,7 +53,7 @@ def _steps(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
     return (*fetched, Step("Walk", (place,)), Step(_putting(trouble, fact, thing, place), (thing, place)))
 
 
-def _putting(trouble: Trouble, fact: Fact, thing: ObjectRef, place: ObjectRef) -> str:
+def _putting(trouble: Trouble, fact: Literal[Key], thing: ObjectRef, place: ObjectRef) -> str:
     """PutBack, PutIn, or Pour where the program pours it."""
     if fact.name == "ON":
         return "PutBack"
@@ -61,7 +61,7 @@ def _putting(trouble: Trouble, fact: Fact, thing: ObjectRef, place: ObjectRef) -
     return "Pour" if pours else "PutIn"
 
 
-def _of_character(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
+def _of_character(trouble: Trouble, fact: Literal[Key]) -> tuple[Step, ...]:
     """Rest on the seat of the goal, take what it holds, or go to the room where it ends."""
     agent = fact.subject[1] - 1
     target = fact.target
@@ -72,7 +72,7 @@ def _of_character(trouble: Trouble, fact: Fact) -> tuple[Step, ...]:
         return ()
     thing = trouble.ref(trouble.world.home.index[trouble.nodes[target]])
     walk = Step("Walk", (thing,), agent)
-    if fact.name == "HOLDS":
+    if fact.name == HOLDS:
         return (walk, Step("Grab", (thing,), agent))
     if fact.name == "INSIDE":
         return (walk,)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from hearth.pipelines.handlers.common import HAND_FREEING, Edit, Trouble, around, before, removed, replaced
+from hearth.schemas.literals import HOLDS
 from hearth.schemas.program import ObjectRef
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
@@ -60,7 +61,7 @@ def _idleness(trouble: Trouble, thing: ObjectRef) -> tuple[bool, int]:
 
 def _is_wanted(trouble: Trouble, thing: ObjectRef) -> bool:
     """Whether the program is to end up holding the thing."""
-    return any(fact.name == "HOLDS" and fact.target == thing.key for fact in trouble.goal)
+    return any(fact.name == HOLDS and fact.target == thing.key for fact in trouble.goal)
 
 
 def _needed_in(trouble: Trouble, thing: ObjectRef) -> int:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from hearth.grounding.conditions import PETS
 from hearth.pipelines.handlers.common import Edit, Splice, Trouble, before, removed
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
+from hearth.simulation.holds import PETS
 
 
 def sitting(trouble: Trouble) -> Edit | None:

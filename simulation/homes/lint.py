@@ -11,6 +11,7 @@ from hearth.kb.loading import default
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
+from hearth.schemas.literals import HANDS
 from hearth.schemas.vocabulary import (
     CHARACTER_CLASS,
     PROPERTIES,
@@ -28,7 +29,6 @@ CATEGORIES = (
 NEEDS_STATES = {"CAN_OPEN": ("OPEN", "CLOSED"), "HAS_SWITCH": ("ON", "OFF")}
 """A thing with the property is in one of the states."""
 
-HANDS = ("HOLDS_RH", "HOLDS_LH")
 SITTING_ON_EDGES = "SITTING"
 """A relation that some files of the release have; nothing follows from it."""
 

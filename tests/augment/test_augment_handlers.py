@@ -7,12 +7,12 @@ import re
 import pytest
 from repair_worlds import ROOMS, small_world, steps_of
 
-from hearth.grounding.postconditions import Fact
 from hearth.kb.loading import default
 from hearth.pipelines.handlers import registry
 from hearth.pipelines.handlers.common import Edit, Splice
 from hearth.pipelines.repairing import repair
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 from hearth.simulation.engine import run
 
 CASES = {
@@ -220,7 +220,7 @@ def test_who_sits_on_a_couch_fetches_and_returns(repaired):
     program = (
         "[Walk] <couch> (1.20)\n[Sit] <couch> (1.20)\n[Find] <book> (1.21)\n[Grab] <book> (1.21)\n[Read] <book> (1.21)"
     )
-    goal = (Fact("SITTING", ("character", 1)), Fact("HOLDS", ("character", 1), ("book", 1)))
+    goal = (Literal.of("SITTING", ("character", 1)), Literal.of("HOLDS", ("character", 1), ("book", 1)))
     result, steps, _ = repaired(world, program, goal)
     assert result.failure is None
     assert steps == [
@@ -241,7 +241,7 @@ def test_who_sits_on_a_chair_sits_down_later_instead(repaired):
     program = (
         "[Walk] <chair> (1.20)\n[Sit] <chair> (1.20)\n[Find] <book> (1.21)\n[Grab] <book> (1.21)\n[Read] <book> (1.21)"
     )
-    goal = (Fact("SITTING", ("character", 1)), Fact("HOLDS", ("character", 1), ("book", 1)))
+    goal = (Literal.of("SITTING", ("character", 1)), Literal.of("HOLDS", ("character", 1), ("book", 1)))
     result, steps, _ = repaired(world, program, goal)
     assert result.failure is None
     assert (
@@ -270,7 +270,7 @@ def test_wiping_takes_a_cloth_and_cutting_a_knife(repaired):
 
 def test_a_lost_goal_is_brought_about_at_the_end(repaired):
     world = ROOMS + "20 table inside 1\n21 cup inside 2\n22 television OFF PLUGGED_IN inside 2"
-    goal = (Fact("ON", ("cup", 1), ("table", 1)), Fact("ON", ("television", 1)))
+    goal = (Literal.of("ON", ("cup", 1), ("table", 1)), Literal.of("ON", ("television", 1)))
     program = "[Walk] <table> (1.20)\n[TurnTo] <cup> (1.21)\n[TurnTo] <television> (1.22)"
     result, steps, names = repaired(world, program, goal)
     assert result.failure is None

@@ -9,13 +9,13 @@ import pytest
 from repair_worlds import steps_of
 
 from hearth.grounding.base import prepared
-from hearth.grounding.checking import unmet
-from hearth.grounding.conditions import CHARACTER, Preconditions
+from hearth.grounding.conditions import Preconditions
 from hearth.grounding.perturbing import PERTURBATIONS, Case, Chances, applied, candidates, distinct
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, draw
 from hearth.pipelines.augmenting import CHANCES_FILE, default_chances, load_chances
 from hearth.schemas.errors import HearthError
+from hearth.schemas.literals import CHARACTER
 from hearth.schemas.rng import rng
 
 TELEVISION = """[Walk] <living_room> (1)
@@ -88,10 +88,10 @@ def test_environments_are_as_the_perturbation_says(kind, maple):
     for seed in range(3):
         environment = draw(case.program, case.base, found[0].conditions, seed, "", 0, Size())
         nodes = {ref.key: ref.node for ref in environment.program.objects()}
-        assert unmet(found[0].conditions, environment.world, nodes) == ()
+        assert found[0].conditions.unmet(environment.world, nodes) == ()
         dropped = [c for one in found[0].perturbations for c in one.dropped if c.name not in ("location", "nearby")]
         gone = Preconditions(tuple(dropped))
-        assert not dropped or unmet(gone, environment.world, nodes), f"{dropped} still hold"
+        assert not dropped or gone.unmet(environment.world, nodes), f"{dropped} still hold"
 
 
 def test_a_swap_takes_the_condition_for_its_opposite(maple):
@@ -113,9 +113,9 @@ def test_a_thing_that_is_elsewhere_keeps_no_other_place(maple):
 def test_no_two_draws_are_the_same_and_none_is_the_original(maple):
     case = case_of(TELEVISION, maple)
     found = list(distinct(case, default_chances(), rng(5), 40))
-    facts = [frozenset(c.fact for c in one.conditions) for one in found]
+    facts = [frozenset(c.literal for c in one.conditions) for one in found]
     assert len(set(facts)) == len(facts) > 10
-    assert frozenset(c.fact for c in case.conditions) not in facts
+    assert frozenset(c.literal for c in case.conditions) not in facts
     assert found == list(distinct(case, default_chances(), rng(5), 40))
 
 

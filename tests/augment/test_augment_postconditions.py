@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from repair_worlds import ROOMS, small_world, steps_of
 
-from hearth.grounding.postconditions import Fact, achieved, missing, nodes_of, reached
+from hearth.grounding.postconditions import achieved, missing, nodes_of, reached
+from hearth.schemas.literals import Literal
 from hearth.simulation.engine import run
 
 ME = ("character", 1)
@@ -66,7 +67,7 @@ def test_what_is_poured_stays_but_a_bottle_is_where_it_was_put():
 
 
 def test_goals_are_said_of_instances_and_asked_of_any_binding():
-    goal = (Fact("ON", ("cup", 1), ("table", 1)), Fact("SITTING", ME))
+    goal = (Literal.of("ON", ("cup", 1), ("table", 1)), Literal.of("SITTING", ME))
     world = small_world(ROOMS + "30 table inside 1\n31 cup on 30 inside 1\n32 cup inside 1")
     assert missing(goal, {("cup", 1): 31, ("table", 1): 30, ME: 10}, world) == goal[1:]
     assert missing(goal, {("cup", 1): 32, ("table", 1): 30, ME: 10}, world) == goal

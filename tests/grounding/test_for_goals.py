@@ -5,17 +5,18 @@ import pytest
 from hearth.grounding.for_goals import sample_for_goal
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Literal
 from hearth.simulation.homes.lint import lint
 
-PLATES = Predicate("ON", "plate", "kitchen_table")
+PLATES = Literal.of("ON", "plate", "kitchen_table")
 GOALS = {
     "nine plates": Goal.of((PLATES, 9)),
-    "what is so already": Goal.of(Predicate("CLOSED", "fridge")),
-    "milk, which is there": Goal.of(Predicate("INSIDE", "milk", "fridge")),
-    "what no home has": Goal.of((Predicate("INSIDE", "giraffe", "fridge"), 2)),
-    "hands": Goal.of((Predicate("HOLDS", "agent", "book"), 2)),
-    "several": Goal.of((PLATES, 2), (Predicate("ON", "fork", "kitchen_table"), 3), Predicate("CLEAN", "stove")),
+    "what is so already": Goal.of(Literal.of("CLOSED", "fridge")),
+    "milk, which is there": Goal.of(Literal.of("INSIDE", "milk", "fridge")),
+    "what no home has": Goal.of((Literal.of("INSIDE", "giraffe", "fridge"), 2)),
+    "hands": Goal.of((Literal.of("HOLDS", "agent", "book"), 2)),
+    "several": Goal.of((PLATES, 2), (Literal.of("ON", "fork", "kitchen_table"), 3), Literal.of("CLEAN", "stove")),
 }
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from hearth.grounding.conditions import CHARACTER
 from hearth.grounding.preconditions import infer
 from hearth.kb import grammar
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import CHARACTER
 from hearth.schemas.syntax import parse_program
 
 

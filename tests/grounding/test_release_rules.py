@@ -2,10 +2,10 @@
 
 import pytest
 
-from hearth.grounding.conditions import CHARACTER
 from hearth.grounding.preconditions import at_odds, infer
 from hearth.grounding.release_rules import by_rules, compare
 from hearth.kb import grammar
+from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.syntax import parse_program
 
 
@@ -40,7 +40,7 @@ def read(knowledge):
     ],
 )
 def test_each_rule_says_its_condition(read, knowledge, lines, fact):
-    assert fact in {condition.fact for condition in by_rules(read(*lines), knowledge)}
+    assert Literal(*fact) in {condition.literal for condition in by_rules(read(*lines), knowledge)}
 
 
 def test_what_is_not_ours_is_explained(read, knowledge):

@@ -6,7 +6,6 @@ import orjson
 import pytest
 
 from hearth.grounding.base import prepared
-from hearth.grounding.checking import unmet
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.soundness import unsound
@@ -14,6 +13,7 @@ from hearth.kb import grammar
 from hearth.kb.loading import load
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.edit import extended
 from hearth.simulation.engine import run
@@ -58,10 +58,10 @@ def breakfast(knowledge):
 def test_what_is_sampled_holds_and_runs(breakfast, maple):
     environment, execution = sample(breakfast, maple, 0)
     assert execution.executable
-    assert not unmet(environment.conditions, environment.world, nodes_of(environment))
+    assert not environment.conditions.unmet(environment.world, nodes_of(environment))
     milk = environment.program.steps[3].objects[0].node
     fridge = environment.program.steps[1].objects[0].node
-    assert ("inside", (("milk", 1), ("fridge", 1))) in {c.fact for c in environment.conditions}
+    assert Literal.of("inside", ("milk", 1), ("fridge", 1)) in {c.literal for c in environment.conditions}
     assert any(edge[:3] == (milk, "INSIDE", fridge) for edge in environment.world.edges())
 
 
@@ -70,7 +70,7 @@ def test_the_check_can_fail(breakfast, maple, knowledge):
     nodes = {
         ref.key: base.home.ids[base.instances(ref.name)[0]] for ref in breakfast.objects() if base.instances(ref.name)
     }
-    assert unmet(infer(breakfast, knowledge), base.start, nodes)
+    assert infer(breakfast, knowledge).unmet(base.start, nodes)
 
 
 def test_equal_seeds_give_equal_environments_and_others_differ(breakfast, maple):

@@ -6,10 +6,10 @@ import random
 from itertools import product
 
 import pytest
+from oracles.facts import Facts
+from oracles.formulas import changes, first_failure
 from small_worlds import random_graph, random_step
 
-from hearth.kb.evaluate import changes, first_failure
-from hearth.kb.facts import Facts
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step

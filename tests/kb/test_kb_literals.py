@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from oracles.facts import Facts
+from oracles.formulas import changes, first_failure, holds
 
-from hearth.kb.evaluate import changes, first_failure, holds
-from hearth.kb.facts import Facts
 from hearth.kb.formula import (
     And,
-    Atom,
     Count,
     Effect,
     Not,
@@ -25,16 +24,17 @@ from hearth.kb.formula import (
 )
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.literals import Literal
 
 names = st.sampled_from(["close", "ON", "holds", "hidden", "x_2"])
 terms = st.builds(Term, st.sampled_from("aosxy")) | st.builds(
     Term, st.sampled_from("aos"), st.sampled_from(["room", "origin", "place"])
 )
-atoms = st.builds(Atom, names, st.lists(terms, min_size=1, max_size=3).map(tuple))
+atoms = st.builds(Literal, names, st.lists(terms, min_size=1, max_size=3).map(tuple))
 formulas = st.recursive(
     atoms,
     lambda inner: st.one_of(
-        st.builds(Not, inner),
+        st.builds(lambda part: part._replace(negated=True) if isinstance(part, Literal) else Not(part), inner),
         st.builds(And, st.lists(inner.filter(lambda f: not isinstance(f, And)), min_size=2, max_size=3).map(tuple)),
         st.builds(Or, st.lists(inner.filter(lambda f: not isinstance(f, Or)), min_size=2, max_size=3).map(tuple)),
         st.builds(Some, st.sampled_from("xyz"), inner),
@@ -53,9 +53,9 @@ def test_printing_and_reading_a_formula_gives_it_back(formula):
 @settings(max_examples=60)
 @given(atoms, st.booleans(), formulas, st.lists(st.sampled_from("xyz"), max_size=2, unique=True).map(tuple))
 def test_printing_and_reading_an_effect_gives_it_back(atom, delete, condition, variables):
-    effect = Effect(atom, delete, condition, variables)
+    effect = Effect(atom._replace(negated=delete), condition, variables)
     assert parse_effect(str(effect)) == effect
-    bare = Effect(atom, delete)
+    bare = Effect(atom._replace(negated=delete))
     assert parse_effect(str(bare)) == bare
 
 

@@ -6,9 +6,10 @@ import json
 import re
 import zipfile
 
+from oracles.facts import Facts
+from oracles.formulas import changes, first_failure
+
 from hearth.kb.compare import compare, rejection
-from hearth.kb.evaluate import changes, first_failure
-from hearth.kb.facts import Facts
 from hearth.kb.release_facts import read_release
 from hearth.kb.views import tables
 from hearth.schemas.graph import edge_set, from_release

@@ -78,7 +78,7 @@ def test_what_does_the_same_needs_no_more():
             mine, theirs = ({str(check.formula) for check in actions[each].preconditions} for each in (name, other))
             assert theirs <= mine
             assert {str(effect) for effect in actions[name].effects} == {str(e) for e in actions[other].effects}
-    facing = {str(effect.atom.name) for effect in actions["TurnTo"].effects}
+    facing = {str(effect.literal.name) for effect in actions["TurnTo"].effects}
     assert facing == {"FACING"}
     needs = (name for name, a in actions.items() for c in a.preconditions if "acing" in str(c.formula) and a.effects)
     assert not list(needs)

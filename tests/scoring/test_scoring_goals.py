@@ -1,6 +1,7 @@
 import pytest
 
-from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.goals import goal_of, satisfaction
 from hearth.simulation.engine import run
@@ -19,17 +20,17 @@ def ran(world, text):
 @pytest.mark.parametrize(
     ("predicate", "wanted", "found"),
     [
-        (Predicate("ON", "cup", "table"), 2, 1),
-        (Predicate("ON", 20, "table"), 1, 1),
-        (Predicate("ON", 20, 10), 1, 1),
-        (Predicate("ON", 21, 10), 1, 0),
-        (Predicate("ON", "cup", "piano"), 1, 0),
-        (Predicate("INSIDE", "agent", "kitchen"), 1, 1),
-        (Predicate("INSIDE", "agent:1", "kitchen"), 1, 0),
-        (Predicate("HOLDS", "agent", "cup"), 1, 1),
-        (Predicate("HOLDS_RH", "agent", "cup"), 1, 0),
-        (Predicate("CLEAN", "cup"), 2, 2),
-        (Predicate("CLOSE", "agent:0", "table"), 1, 1),
+        (Literal.of("ON", "cup", "table"), 2, 1),
+        (Literal.of("ON", 20, "table"), 1, 1),
+        (Literal.of("ON", 20, 10), 1, 1),
+        (Literal.of("ON", 21, 10), 1, 0),
+        (Literal.of("ON", "cup", "piano"), 1, 0),
+        (Literal.of("INSIDE", "agent", "kitchen"), 1, 1),
+        (Literal.of("INSIDE", "agent:1", "kitchen"), 1, 0),
+        (Literal.of("HOLDS", "agent", "cup"), 1, 1),
+        (Literal.of("HOLDS_RH", "agent", "cup"), 1, 0),
+        (Literal.of("CLEAN", "cup"), 2, 2),
+        (Literal.of("CLOSE", "agent:0", "table"), 1, 1),
     ],
 )
 def test_counts_distinct_subjects(world, predicate, wanted, found):
@@ -40,7 +41,7 @@ def test_counts_distinct_subjects(world, predicate, wanted, found):
 
 
 def test_fraction_does_not_count_more_than_is_wanted(world):
-    goal = Goal.of(Predicate("CLEAN", "cup"), (Predicate("ON", "cup", "table"), 3))
+    goal = Goal.of(Literal.of("CLEAN", "cup"), (Literal.of("ON", "cup", "table"), 3))
     assert satisfaction(goal, ran(world, BOTH_CUPS)).fraction == 2 / 4
 
 
@@ -66,5 +67,5 @@ def test_a_goal_is_reached_by_the_execution_it_was_made_of(world):
 
 def test_holding_two_things_counts_both(world):
     final = ran(world, "\n".join(BOTH_CUPS.splitlines()[:3]))
-    assert goal_of(world, final) == Goal.of((Predicate("HOLDS", "agent", "cup"), 2))
+    assert goal_of(world, final) == Goal.of((Literal.of("HOLDS", "agent", "cup"), 2))
     assert satisfaction(goal_of(world, final), final).satisfied

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Failure
-from hearth.schemas.goals import Goal, Predicate
+from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
@@ -27,7 +28,9 @@ GRAPH = EnvironmentGraph(
     ),
     (Edge(2, "INSIDE", 1), *(Edge(i, "INSIDE", 1) for i in (3, 4, 5, 6)), Edge(3, "INSIDE", 6), Edge(4, "ON", 5)),
 )
-SET_TABLE = Goal.of((Predicate("ON", "plate", "table"), 2), Predicate("CLEAN", 3), Predicate("HOLDS", "agent", "plate"))
+SET_TABLE = Goal.of(
+    (Literal.of("ON", "plate", "table"), 2), Literal.of("CLEAN", 3), Literal.of("HOLDS", "agent", "plate")
+)
 
 
 def start():
@@ -63,14 +66,14 @@ def test_counts_follow_what_is_done():
 
 
 def test_a_satisfied_goal_has_nothing_unmet():
-    goal = Goal.of(Predicate("ON", "plate", "table"), Predicate("INSIDE", 3, "dishwasher"))
+    goal = Goal.of(Literal.of("ON", "plate", "table"), Literal.of("INSIDE", 3, "dishwasher"))
     progress = Progress.start(goal, start())
     assert progress.satisfied and progress.unmet() == Goal(())
 
 
 def test_two_books_in_two_hands_are_two():
     world = start()
-    goal = Goal.of((Predicate("HOLDS", "agent:0", "plate"), 2))
+    goal = Goal.of((Literal.of("HOLDS", "agent:0", "plate"), 2))
     progress = Progress.start(goal, world)
     _, progress = follow(world, progress, step("Walk", 5), step("Grab", 4), step("Walk", 6), step("Open", 6))
     assert progress.counts == (1,)
@@ -79,11 +82,11 @@ def test_two_books_in_two_hands_are_two():
 @pytest.mark.parametrize(
     "predicate",
     [
-        Predicate("ON", "plato", "table"),
-        Predicate("UNDER", "plate", "table"),
-        Predicate("SHINY", "plate"),
-        Predicate("HOLDS", "agent:3", "plate"),
-        Predicate("ON", 99, "table"),
+        Literal.of("ON", "plato", "table"),
+        Literal.of("UNDER", "plate", "table"),
+        Literal.of("SHINY", "plate"),
+        Literal.of("HOLDS", "agent:3", "plate"),
+        Literal.of("ON", 99, "table"),
     ],
 )
 def test_a_goal_about_nothing_is_refused(predicate):
@@ -93,14 +96,14 @@ def test_a_goal_about_nothing_is_refused(predicate):
 
 ACTIONS = ["Walk", "Find", "Grab", "PutBack", "PutIn", "Open", "Close", "Wash", "Drop", "Sit", "TurnTo"]
 GOAL = Goal.of(
-    Predicate("ON", "plate", "table"),
-    Predicate("INSIDE", "plate", "dishwasher"),
-    Predicate("CLOSE", "agent", "plate"),
-    Predicate("CLOSE", "plate", "agent"),
-    Predicate("HOLDS", "agent", "plate"),
-    Predicate("OPEN", "dishwasher"),
-    Predicate("FACING", "agent", 5),
-    Predicate("CLEAN", "plate"),
+    Literal.of("ON", "plate", "table"),
+    Literal.of("INSIDE", "plate", "dishwasher"),
+    Literal.of("CLOSE", "agent", "plate"),
+    Literal.of("CLOSE", "plate", "agent"),
+    Literal.of("HOLDS", "agent", "plate"),
+    Literal.of("OPEN", "dishwasher"),
+    Literal.of("FACING", "agent", 5),
+    Literal.of("CLEAN", "plate"),
 )
 
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from hearth.kb.evaluate import Changes, Memory
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.vocabulary import ROOM_CATEGORY
+from oracles.formulas import Changes, Memory
 
 T = TypeVar("T")
 

@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from hearth.kb.formula import And, Atom, Count, Effect, Formula, Not, Or, Some, Term, free
+from hearth.kb.formula import And, Count, Effect, Formula, Not, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action, Condition
+from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 
 Binding = Mapping[str, int]
@@ -113,18 +114,18 @@ class _Draft:
 
     def note(self, effect: Effect, bound: Mapping[str, int]) -> None:
         """Add what one effect changes under one binding."""
-        atom = effect.atom
-        first = self.reading.thing(atom.terms[0], bound)
+        name, terms, delete = effect.literal
+        first = self.reading.thing(terms[0], bound)
         if first is None:
             return
-        if atom.name == "REMEMBERS":
-            self.remembered[first] = None if effect.delete else self.reading.view.place(first)
-        elif atom.name == "state":
-            self._state(first, atom.terms[1].name, effect.delete)
+        if name == "REMEMBERS":
+            self.remembered[first] = None if delete else self.reading.view.place(first)
+        elif name == "state":
+            self._state(first, terms[1].name, delete)
         else:
-            second = self.reading.thing(atom.terms[1], bound)
+            second = self.reading.thing(terms[1], bound)
             if second is not None:
-                self._edge(atom.name, first, second, effect.delete)
+                self._edge(name, first, second, delete)
 
     def _state(self, node: int, name: str, delete: bool) -> None:
         (self.removed if delete else self.added).add(("state", node, name))
@@ -159,11 +160,11 @@ class _Reading:
     def solutions(self, effect: Effect, bound: dict[str, int]) -> Iterator[dict[str, int]]:
         """The bindings under which an effect takes place."""
         conjuncts = effect.condition.parts if isinstance(effect.condition, And) else (effect.condition,)
-        subject = Atom(effect.atom.name, effect.atom.terms) if effect.delete else None
+        subject = effect.literal.atom if effect.literal.negated else None
         yield from self._extend(list(effect.variables), list(_flat(conjuncts)), subject, bound)
 
     def _extend(
-        self, variables: list[str], conjuncts: list[Formula], deleted: Atom | None, bound: dict[str, int]
+        self, variables: list[str], conjuncts: list[Formula], deleted: Literal[Term] | None, bound: dict[str, int]
     ) -> Iterator[dict[str, int]]:
         """Bind the variables one after the other, checking each conjunct as soon as all it mentions is bound."""
         waiting = [part for part in conjuncts if free(part) - bound.keys()]
@@ -179,8 +180,8 @@ class _Reading:
 
     def holds(self, formula: Formula, bound: Mapping[str, int]) -> bool:
         """Whether a formula holds under a binding of its variables."""
-        if isinstance(formula, Atom):
-            return self._atom(formula, bound)
+        if isinstance(formula, Literal):
+            return self._atom(formula, bound) != formula.negated
         if isinstance(formula, Not):
             return not self.holds(formula.part, bound)
         if isinstance(formula, And):
@@ -204,7 +205,7 @@ class _Reading:
     def _candidates(self, variable: str, conjuncts: Iterable[Formula], bound: Mapping[str, int]) -> Iterable[int]:
         """The nodes worth trying for a variable: those an edge leads to, or all."""
         for part in conjuncts:
-            if not isinstance(part, Atom) or part.name not in _EDGES:
+            if not isinstance(part, Literal) or part.negated or part.name not in _EDGES:
                 continue
             first, second = part.terms
             if second.name == variable and not second.function and first.name in bound:
@@ -215,7 +216,7 @@ class _Reading:
                 return () if target is None else tuple(self.view.sources(part.name, target))
         return self.view.nodes()
 
-    def _atom(self, atom: Atom, bound: Mapping[str, int]) -> bool:
+    def _atom(self, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
         if atom.name in _EDGES:
             first, second = (self.thing(term, bound) for term in atom.terms)
             return first is not None and second is not None and second in self.view.targets(atom.name, first)
@@ -230,42 +231,42 @@ class _Reading:
             inner[variable.name] = node
         return self.holds(body, inner)
 
-    def about(self, atom: Atom, bound: Mapping[str, int]) -> tuple[int | None, str]:
+    def about(self, atom: Literal[Term], bound: Mapping[str, int]) -> tuple[int | None, str]:
         """The thing and the name an atom such as `state(o, OPEN)` is about."""
         return self.thing(atom.terms[0], bound), atom.terms[1].name if len(atom.terms) > 1 else ""
 
 
-def _state(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _state(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, name = reading.about(atom, bound)
     return node is not None and reading.view.has_state(node, name)
 
 
-def _property(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _property(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, name = reading.about(atom, bound)
     return node is not None and name in reading.view.properties(node)
 
 
-def _class(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _class(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, name = reading.about(atom, bound)
     return node is not None and reading.view.class_name(node) == name
 
 
-def _class_contains(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _class_contains(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, name = reading.about(atom, bound)
     return node is not None and name in reading.view.class_name(node)
 
 
-def _is_room(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _is_room(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, _ = reading.about(atom, bound)
     return node is not None and reading.view.is_room(node)
 
 
-def _same(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _same(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     first, second = (reading.thing(term, bound) for term in atom.terms)
     return first is not None and first == second
 
 
-def _affords(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _affords(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, _ = reading.about(atom, bound)
     if reading.action is None or node is None:
         return False
@@ -274,13 +275,13 @@ def _affords(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
     return need.accepts(view.properties(node), view.class_name(node), view.is_room(node))
 
 
-def _remembers(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _remembers(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, _ = reading.about(atom, bound)
     memory = reading.view.origin(node) if node is not None else None
     return memory is not None and memory[1] == reading.thing(atom.terms[1], bound)
 
 
-def _came_from(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
+def _came_from(reading: _Reading, atom: Literal[Term], bound: Mapping[str, int]) -> bool:
     node, name = reading.about(atom, bound)
     memory = reading.view.origin(node) if node is not None else None
     return memory is not None and memory[0] == name
@@ -288,7 +289,7 @@ def _came_from(reading: _Reading, atom: Atom, bound: Mapping[str, int]) -> bool:
 
 _EDGES = frozenset(RELATIONS)
 
-_BUILT_IN: dict[str, Callable[[_Reading, Atom, Mapping[str, int]], bool]] = {
+_BUILT_IN: dict[str, Callable[[_Reading, Literal[Term], Mapping[str, int]], bool]] = {
     "affords": _affords,
     "came_from": _came_from,
     "class": _class,
