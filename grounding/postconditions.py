@@ -13,7 +13,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
 from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.engine import Execution
-from hearth.simulation.holds import holds, related
+from hearth.simulation.holds import RELATED, holds
 from hearth.simulation.world import World
 
 GOING = frozenset({"Walk", "Run", "Find"})
@@ -87,12 +87,10 @@ def facts(
         keys.setdefault(index[node], []).append(key)
     named = mask_of(keys)
     known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
-    read = [(relation, related(relation)) for relation in relations]
     for i, subjects in keys.items():
         found: list[tuple[str, tuple[Key, ...]]] = [(state, ()) for state, row in known if row >> i & 1]
-        for relation, row_of in read:
-            row = row_of(world, i) & named
-            if row:
+        for relation in relations:
+            if row := RELATED[relation](world, i, named):
                 found.extend((relation, (key,)) for j in indices(row) for key in keys[j])
         for subject in subjects:
             yield from (Literal(name, (subject, *target)) for name, target in found)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading import load
-from hearth.kb.reasons import FIELDS, Fact, Reasons, root_of
-from hearth.kb.release_facts import is_release, read_release
+from hearth.kb.reasons import FIELDS, Reasons, root_of
+from hearth.kb.release_facts import Fact, is_release, read_release
 
 
 class Difference(NamedTuple):

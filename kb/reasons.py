@@ -8,9 +8,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.reading import Faults, read_yaml, strings
-
-Fact = tuple[str, ...]
-"""Names; what they mean depends on the table."""
+from hearth.kb.release_facts import Fact
 
 FIELDS: dict[str, tuple[str, ...]] = {
     "properties": ("class", "property"),

@@ -11,6 +11,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
 Fact = tuple[str, ...]
+"""Names; what they mean depends on the table."""
 
 
 def is_release(directory: Path) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from hearth.schemas.errors import HearthError
@@ -10,11 +11,12 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
-from hearth.simulation import holds
 from hearth.simulation.change import Change
-from hearth.simulation.holds import Candidates
+from hearth.simulation.holds import Candidates, candidates
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
+
+_RELATIONS = frozenset({*RELATIONS, HOLDS})
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +51,14 @@ class Progress:
         """
         watches = []
         for literal, wanted in goal:
-            _check(literal, world.home)
-            found = holds.candidates(literal, world.home)
+            found = candidates(literal, world.home)
+            _check(literal, found, world.home)
             watches.append(Watch(literal, wanted, found, found.met(world)))
         return cls(goal, tuple(watches))
 
     def after(self, world: World, change: Change) -> Progress:
         """The progress in a world that came of the last by a change; looks only at what the change names."""
-        touched = set(_touched(change, world.home))
+        touched = _touched(change, world.home)
         if not touched:
             return self
         watches = tuple(_updated(watch, world, touched) for watch in self.watches)
@@ -78,31 +80,33 @@ class Progress:
         return Goal(tuple((literal, number) for literal, number in missing if number > 0))
 
 
-def _updated(watch: Watch, world: World, touched: set[tuple[str, int]]) -> Watch:
+def _updated(watch: Watch, world: World, touched: Mapping[str, int]) -> Watch:
     name = watch.literal.name
-    names = HANDS if name == HOLDS else (name,)
-    nodes = [i for relation, i in touched if relation in names]
-    if not nodes:
+    changed = touched.get(HANDS[0], 0) | touched.get(HANDS[1], 0) if name == HOLDS else touched.get(name, 0)
+    if not changed:
         return watch
-    met = watch.candidates.updated(watch.met, world, nodes)
+    met = watch.candidates.updated(watch.met, world, changed)
     return watch if met == watch.met else replace(watch, met=met)
 
 
-def _touched(change: Change, home: Home) -> Iterator[tuple[str, int]]:
-    """(relation or state, node's index) of everything a change is about; both ends of an edge."""
-    for edge in (*change.added, *change.removed):
-        yield edge.relation, home.index[edge.source]
-        yield edge.relation, home.index[edge.target]
+def _touched(change: Change, home: Home) -> Mapping[str, int]:
+    """The nodes that a change is about by relation or state; both ends of an edge."""
+    found: defaultdict[str, int] = defaultdict(int)
+    index = home.index
+    for source, relation, target in (*change.added, *change.removed):
+        found[relation] |= 1 << index[source] | 1 << index[target]
     for node, state in (*change.set_states, *change.cleared_states):
-        yield state, home.index[node]
+        found[state] |= 1 << index[node]
+    return found
 
 
-def _check(literal: Literal[Name], home: Home) -> None:
-    kind, known = ("state", STATE_ID.keys()) if len(literal.terms) == 1 else ("relation", {*RELATIONS, HOLDS})
+def _check(literal: Literal[Name], found: Candidates, home: Home) -> None:
+    """Refuse a literal that no change could make hold, or about what the home and its knowledge do not have."""
+    kind, known = ("state", STATE_ID.keys()) if len(literal.terms) == 1 else ("relation", _RELATIONS)
     if literal.name not in known:
         raise _fault(Code.SYNTAX, literal, f"{literal.name} is no {kind}")
-    for term in literal.terms:
-        if term == AGENT or holds.nodes(term, home):
+    for term, nodes in zip(literal.terms, (found.subjects, found.targets), strict=False):
+        if nodes or term == AGENT:
             continue
         if isinstance(term, int):
             raise _fault(Code.UNKNOWN_OBJECT, literal, f"the home has no node {term}")

@@ -141,7 +141,10 @@ def closed_container(world: World, i: int) -> int:
 
 def character(world: World, i: int) -> Agent:
     """The character whose node has that index."""
-    return next(agent for agent in world.agents if agent.index == i)
+    for agent in world.agents:
+        if agent.index == i:
+            return agent
+    raise LookupError(i)
 
 
 def containers(world: World, i: int) -> int:

@@ -1,12 +1,12 @@
 """Whether a repair helped is decided by what failed, never by the sentence that says so."""
 
-from hearth.grounding.postconditions import Fact
 from hearth.pipelines.repairing import Attempt, successes
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 
 OPENED = (Step("Open", (ObjectRef("fridge", 1, 7),)),)
-ON, OFF = Fact("ON", ("tv", 1)), Fact("OFF", ("lamp", 1))
+ON, OFF = Literal.of("ON", ("tv", 1)), Literal.of("OFF", ("lamp", 1))
 
 
 def attempt(number, failure, after=OPENED, missed=()):
