@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from hearth.schemas.literals import Key, Literal
-from hearth.simulation.holds import holds
-from hearth.simulation.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +74,3 @@ class Preconditions:
         """Without some conditions."""
         literals = {c.literal for c in gone}
         return Preconditions(tuple(c for c in self.conditions if c.literal not in literals))
-
-    def unmet(self, world: World, nodes: Mapping[Key, int]) -> tuple[Condition, ...]:
-        """The conditions that do not hold in a world; one about an object that is bound to no node does not."""
-        return tuple(c for c in self.conditions if not holds(c.literal, world, nodes))

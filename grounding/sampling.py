@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hearth.grounding.base import Base, prepared
+from hearth.grounding.checking import unmet
 from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.demands import Moment, conditions_for
 from hearth.grounding.draft import Draft
@@ -144,7 +145,7 @@ def sample(
     for attempt in range(TRIES):
         environment = draw(program, base, found, seed, record_id, attempt, size)
         execution = run(environment.world, environment.program, rules)
-        missing = environment.conditions.unmet(environment.world, _nodes(environment.program))
+        missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
         fault = unsound(environment.world)
         if not missing and fault is None and (execution.failure is None or not must_run):
             return environment, execution

@@ -8,6 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from hearth.grounding.base import Base, prepared
+from hearth.grounding.checking import unmet
 from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.perturbing import MOST, PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
 from hearth.grounding.postconditions import Postconditions, achieved
@@ -171,7 +172,7 @@ def _drawn(
     for attempt in range(DRAWS):
         environment = draw(program, base, perturbed.conditions, seed, record_id, attempt, Size())
         nodes = {ref.key: ref.node for ref in environment.program.objects() if ref.node is not None}
-        missing = perturbed.conditions.unmet(environment.world, nodes)
+        missing = unmet(perturbed.conditions, environment.world, nodes)
         if not missing:
             return environment
     return environment, missing[0]

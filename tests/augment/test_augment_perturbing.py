@@ -9,6 +9,7 @@ import pytest
 from repair_worlds import steps_of
 
 from hearth.grounding.base import prepared
+from hearth.grounding.checking import unmet
 from hearth.grounding.conditions import Preconditions
 from hearth.grounding.perturbing import PERTURBATIONS, Case, Chances, applied, candidates, distinct
 from hearth.grounding.preconditions import infer
@@ -88,10 +89,10 @@ def test_environments_are_as_the_perturbation_says(kind, maple):
     for seed in range(3):
         environment = draw(case.program, case.base, found[0].conditions, seed, "", 0, Size())
         nodes = {ref.key: ref.node for ref in environment.program.objects()}
-        assert found[0].conditions.unmet(environment.world, nodes) == ()
+        assert unmet(found[0].conditions, environment.world, nodes) == ()
         dropped = [c for one in found[0].perturbations for c in one.dropped if c.name not in ("location", "nearby")]
         gone = Preconditions(tuple(dropped))
-        assert not dropped or gone.unmet(environment.world, nodes), f"{dropped} still hold"
+        assert not dropped or unmet(gone, environment.world, nodes), f"{dropped} still hold"
 
 
 def test_a_swap_takes_the_condition_for_its_opposite(maple):

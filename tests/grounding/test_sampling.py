@@ -6,6 +6,7 @@ import orjson
 import pytest
 
 from hearth.grounding.base import prepared
+from hearth.grounding.checking import unmet
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.soundness import unsound
@@ -58,7 +59,7 @@ def breakfast(knowledge):
 def test_what_is_sampled_holds_and_runs(breakfast, maple):
     environment, execution = sample(breakfast, maple, 0)
     assert execution.executable
-    assert not environment.conditions.unmet(environment.world, nodes_of(environment))
+    assert not unmet(environment.conditions, environment.world, nodes_of(environment))
     milk = environment.program.steps[3].objects[0].node
     fridge = environment.program.steps[1].objects[0].node
     assert Literal.of("inside", ("milk", 1), ("fridge", 1)) in {c.literal for c in environment.conditions}
@@ -70,7 +71,7 @@ def test_the_check_can_fail(breakfast, maple, knowledge):
     nodes = {
         ref.key: base.home.ids[base.instances(ref.name)[0]] for ref in breakfast.objects() if base.instances(ref.name)
     }
-    assert infer(breakfast, knowledge).unmet(base.start, nodes)
+    assert unmet(infer(breakfast, knowledge), base.start, nodes)
 
 
 def test_equal_seeds_give_equal_environments_and_others_differ(breakfast, maple):
