@@ -82,13 +82,11 @@ def goal_of(start: World, final: World) -> Goal:
     entered, added = _achieved(start, final)
     for node, state in entered:
         counts[Literal(state, (name(node),))] += 1
-    met: dict[Literal[Name], set[Edge | int]] = {}
-    for edge in added:
-        if edge.target not in nodes.left_out:
-            relation = HOLDS if edge.relation in HANDS else edge.relation
-            of_character = edge.source in nodes.characters
-            literal = Literal(relation, (name(edge.source), name(edge.target)))
-            met.setdefault(literal, set()).add(edge if of_character else edge.source)
+    met: dict[Literal[Name], set[tuple[int, ...]]] = {}
+    for source, relation, target in added:
+        if target not in nodes.left_out:
+            literal = Literal(HOLDS if relation in HANDS else relation, (name(source), name(target)))
+            met.setdefault(literal, set()).add((source, target) if source in nodes.characters else (source,))
     counts.update({literal: len(found) for literal, found in met.items()})
     return Goal.of(*sorted(counts.items(), key=lambda item: str(item[0])))
 

@@ -5,7 +5,7 @@ Two graphs that are compared number their nodes alike, so that what they share i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -111,10 +111,6 @@ class View:
         if found is None:
             found = self._read[i] = self._edges(i)
         return found
-
-    def targets(self, node: int, relation: str) -> Iterator[int]:
-        """What a node's edges of a relation go to."""
-        return (self.ids[j] for j in indices(self.rows(self.index[node]).get((relation, True), 0)))
 
 
 def view_of(final: Final) -> View:
