@@ -17,14 +17,9 @@ from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
-from hearth.exports.planning_domain import (
-    LIMITS,
-    planning_domain,
-    relation_predicate,
-    unary_predicates,
-)
+from hearth.exports.planning_domain import planning_domain, relation_predicate
 from hearth.exports.reading import Wanted, file_name, runs, write
-from hearth.kb.pddl import class_predicate, limit_predicate, named_predicate, property_predicate, state_predicate
+from hearth.kb.pddl import LIMITS, limit_predicate, predicate, unary_predicates
 from hearth.pipelines.dataset import Dataset, Run
 from hearth.pipelines.rows import change_of
 from hearth.pipelines.verify import StoredHomes
@@ -150,7 +145,7 @@ def problem(task: Task) -> str:
     world, names = task.world, object_names(task)
     agents = {world.home.ids[i] for i in world.home.agents}
     objects = (f"    {name} - {'agent' if node in agents else 'object'}" for node, name in names.items())
-    goals = [_literal(f"({state_predicate(state)} {names[node]})", holds) for node, state, holds in task.states]
+    goals = [_literal(f"({predicate('state', state)} {names[node]})", holds) for node, state, holds in task.states]
     goals += [_literal(_edge(edge, names), holds) for edge, holds in task.edges]
     lines = [
         f"; {task.name.splitlines()[0]}",
@@ -252,11 +247,10 @@ def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:
     bit, name = 1 << i, home.classes[i]
     if home.rooms & bit:
         yield "is-room"
-    yield from (property_predicate(prop) for prop, mask in sorted(home.properties.items()) if mask & bit)
-    if class_predicate(name) in known:
-        yield class_predicate(name)
+    yield from (predicate("property", prop) for prop, mask in sorted(home.properties.items()) if mask & bit)
+    if predicate("class", name) in known:
+        yield predicate("class", name)
     parts = sorted(kind.removeprefix("named-") for kind in known if kind.startswith("named-"))
-    yield from (named_predicate(part) for part in parts if part in name)
-    for kind, word in LIMITS.items():
-        yield limit_predicate(word, home.limit(i, lying=kind == "bed_limit"))
-    yield from (state_predicate(state) for state in STATES if world.states[STATE_ID[state]] & bit)
+    yield from (predicate("class_contains", part) for part in parts if part in name)
+    yield from (limit_predicate(kind, home.limit(i, lying=kind == "bed_limit")) for kind in LIMITS)
+    yield from (predicate("state", state) for state in STATES if world.states[STATE_ID[state]] & bit)

@@ -1,106 +1,72 @@
-"""The executed actions as a PDDL domain, written from their literals.
+"""The knowledge as PDDL: how formulas, requirements and effects are written, and the domain of all executed actions.
 
-Places, states and properties become predicates; derived predicates become axioms; what depends on a found thing
-(`room(o)`) is said of every thing that is found so. Where a Grab would remember one of several places, the domain
-remembers all of them, which is the only way it differs from the engine.
+In that domain places, states and properties become predicates; derived predicates become axioms; what depends on a
+found thing (`room(o)`) is said of every thing that is found so. Where a Grab would remember one of several places, the
+domain remembers all of them, which is the only way it differs from the engine.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from itertools import combinations
 
-from hearth.kb.formula import FUNCTIONS, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action, Requirement
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS, STATES
 
-REQUIREMENTS = (":adl", ":derived-predicates")
+Names = Mapping[str, str]
+"""What each variable of a formula is called in PDDL."""
+
+LIMITS = ("seat_limit", "bed_limit")
 
 
-def domain(knowledge: Knowledge, name: str = "hearth") -> str:
-    """The domain as text: predicates, axioms, and one action for each that is executed.
-
-    Preconditions that depend on an option are left out. The acting character is the first parameter.
-    """
-    actions = [action for action in knowledge.actions.values() if action.executed]
-    parts = [
-        f"(define (domain {name})",
-        f"  (:requirements {' '.join(REQUIREMENTS)})",
-        "  (:predicates",
-        *(f"    {line}" for line in _predicates(knowledge, actions)),
-        "  )",
-        *_axioms(knowledge),
-        *(line for action in actions for line in _action(knowledge, action)),
-        ")",
-    ]
-    return "\n".join(parts) + "\n"
+def dashed(name: str) -> str:
+    """`HOLDS_RH` -> `holds-rh`."""
+    return name.lower().replace("_", "-")
 
 
-def state_predicate(state: str) -> str:
-    """`PLUGGED_IN` -> `is-plugged-in`."""
-    return f"is-{_dashed(state)}"
+_PREFIXES = {"state": "is", "property": "p", "class": "class", "class_contains": "named", "came_from": "came-from"}
+"""Literals whose second term is part of the predicate, and how this begins."""
 
 
-def property_predicate(prop: str) -> str:
-    """`CAN_OPEN` -> `p-can-open`."""
-    return f"p-{_dashed(prop)}"
-
-
-def class_predicate(name: str) -> str:
-    """`hands_both` -> `class-hands-both`."""
-    return f"class-{_dashed(name)}"
-
-
-def named_predicate(part: str) -> str:
-    """A class with `knife` in its name -> `named-knife`."""
-    return f"named-{_dashed(part)}"
+def predicate(name: str, word: str) -> str:
+    """`state`, `PLUGGED_IN` -> `is-plugged-in`; `property`, `CAN_OPEN` -> `p-can-open`; see `_PREFIXES`."""
+    return f"{_PREFIXES[name]}-{dashed(word)}"
 
 
 def limit_predicate(kind: str, limit: int) -> str:
     """A seat or bed that takes `limit` things -> `seat-limit-4`."""
-    return f"{_dashed(kind)}-{limit}"
+    return f"{dashed(kind)}-{limit}"
 
 
-def _predicates(knowledge: Knowledge, actions: Iterable[Action]) -> list[str]:
-    unary = {"is-room", *map(state_predicate, STATES)}
-    for action in actions:
-        for need in action.needs:
-            unary.update(_need_predicates(need))
-        for literal in (*(c.formula for c in action.preconditions), *(e.condition for e in action.effects)):
-            unary.update(_named_predicates(literal))
-    for _, body in knowledge.derived.values():
-        unary.update(_named_predicates(body))
-    unary |= {
-        limit_predicate(kind, limit) for kind in ("seat_limit", "bed_limit") for limit in _limits(knowledge, kind)
-    }
-    binary = {_dashed(relation) for relation in RELATIONS} | {"remembers", "same"}
-    binary |= {f"came-from-{_dashed(relation)}" for relation in ("ON", "INSIDE")} - binary
-    lines = [f"({name} ?x)" for name in sorted(unary)]
-    lines += [f"({name} ?x ?y)" for name in sorted(binary) if name != "same" and not name.startswith("came-from")]
-    lines += [f"({name} ?x)" for name in sorted(binary) if name.startswith("came-from")]
-    heads = [atom for atom, _ in knowledge.derived.values()]
-    return [*lines, "(in-room ?x ?r)", "(place ?x ?p)", *(_head(atom) for atom in heads)]
+def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> list[str]:
+    """The predicates of one thing, sorted: these properties and all that executed actions need, and its states."""
+    words = {("state", state) for state in STATES} | {("property", name) for name in properties}
+    formulas = [body for _, body in knowledge.derived.values()]
+    for action in knowledge.actions.values():
+        if action.executed:
+            formulas += [check.formula for check in action.preconditions]
+            formulas += [effect.condition for effect in action.effects]
+            for need in action.needs:
+                words.update(("property", name) for name in need.any_of | need.all_of)
+                words.update(("class", name) for name in need.classes | need.also | need.never)
+                words.update(("class_contains", part) for part in need.contains)
+    words.update(pair for formula in formulas for pair in _named(formula))
+    limits = {limit_predicate(kind, limit) for kind in LIMITS for limit in _limits(knowledge, kind)}
+    return sorted({"is-room", *limits, *(predicate(*pair) for pair in words)})
 
 
-def _need_predicates(need: Requirement) -> set[str]:
-    return {
-        *(property_predicate(name) for name in need.any_of | need.all_of),
-        *(class_predicate(name) for name in need.classes),
-        *(named_predicate(part) for part in need.contains),
-    }
-
-
-def _named_predicates(formula: Formula) -> Iterator[str]:
-    """The one-place predicates a formula uses for properties and classes."""
+def _named(formula: Formula) -> Iterator[tuple[str, str]]:
+    """The properties and classes that a formula names."""
     if isinstance(formula, Literal):
-        makers = {"property": property_predicate, "class": class_predicate, "class_contains": named_predicate}
-        if formula.name in makers:
-            yield makers[formula.name](formula.terms[1].name)
+        if formula.name in ("property", "class", "class_contains"):
+            yield formula.name, formula.terms[1].name
         return
     for part in formula.parts if isinstance(formula, And | Or) else (formula.part,):
-        yield from _named_predicates(part)
+        yield from _named(part)
 
 
 def _limits(knowledge: Knowledge, kind: str) -> list[int]:
@@ -108,177 +74,228 @@ def _limits(knowledge: Knowledge, kind: str) -> list[int]:
     return sorted({limit(name) for name in knowledge.objects})
 
 
-def _axioms(knowledge: Knowledge) -> Iterator[str]:
-    yield "  (:derived (in-room ?x ?r)"
-    yield "    (and (is-room ?r) (or (= ?x ?r) (inside ?x ?r) (exists (?y) (and (inside ?x ?y) (in-room ?y ?r))))))"
-    yield "  (:derived (place ?x ?p)"
-    on, inside = (f"(exists (?q) (and ({name} ?x ?q) (not (is-room ?q))))" for name in ("on", "inside"))
-    yield "    (and (not (is-room ?p)) (or (on ?x ?p)"
-    yield f"      (and (inside ?x ?p) (not {on}))"
-    yield f"      (and (close ?x ?p) (not {on}) (not {inside})))))"
-    for atom, body in knowledge.derived.values():
-        yield f"  (:derived {_head(atom)}"
-        yield f"    {_formula(knowledge, body, None)})"
+def both(parts: list[str]) -> str:
+    """All of some formulas; one stands alone."""
+    return parts[0] if len(parts) == 1 else f"(and {' '.join(parts)})"
 
 
-def _head(atom: Literal[Term]) -> str:
-    return f"({_derived(atom.name)} {' '.join(f'?{term.name}' for term in atom.terms)})"
+class Writer:
+    """Writes actions. A subclass says what finds a thing, what derived predicates are, and how variables are called."""
+
+    agent = typed = ""
+    """The types of a character and of other things, as ` - object`."""
+
+    def __init__(self, knowledge: Knowledge) -> None:
+        self.knowledge = knowledge
+        self._needs: dict[str, Requirement] = {}
+
+    def fresh(self, name: str, number: object = "") -> str:
+        """A variable that a formula binds."""
+        return f"?{name}{number}"
+
+    def both(self, parts: list[str]) -> str:
+        """All of the parts of a conjunction."""
+        return both(parts)
+
+    def found(self, term: Term, names: Names, variable: str) -> str:
+        """The condition under which a variable is the thing that a function finds."""
+        raise NotImplementedError
+
+    def derived(self, literal: Literal[Term], names: Names) -> str:
+        """A derived predicate of some terms."""
+        raise NotImplementedError
+
+    def relation(self, name: str) -> str:
+        """`HOLDS_RH` -> `holds-rh`."""
+        return dashed(name)
+
+    def action(self, action: Action, name: str = "", more: Iterable[str] = ()) -> Iterator[str]:
+        """The lines of one action, the acting character first.
+
+        Args:
+            action: to write. Preconditions that depend on an option are left out.
+            name: what it is called, if otherwise.
+            more: preconditions.
+        """
+        variables = "os"[: action.arity]
+        self._needs = dict(zip("os", action.needs, strict=False))
+        names = {variable: f"?{variable}" for variable in ("a", *variables)}
+        before = [self.formula(check.formula, names) for check in action.preconditions if not check.option]
+        yield f"  (:action {name or action.name}"
+        yield f"    :parameters (?a{self.agent}{''.join(f' ?{variable}{self.typed}' for variable in variables)})"
+        yield f"    :precondition {self.both([*before, *more])}"
+        yield "    :effect (and"
+        yield from (f"      {self._effect(change, names)}" for each in action.effects for change in self.changes(each))
+        yield "    ))"
+
+    def formula(self, formula: Formula, names: Names) -> str:
+        """A formula whose free variables have these names."""
+        if isinstance(formula, Literal):
+            text = self._literal(formula, names)
+            return f"(not {text})" if formula.negated else text
+        if isinstance(formula, Not):
+            return f"(not {self.formula(formula.part, names)})"
+        if isinstance(formula, And):
+            return self.both([self.formula(part, names) for part in formula.parts])
+        if isinstance(formula, Or):
+            return f"(or {' '.join(self.formula(part, names) for part in formula.parts)})"
+        if isinstance(formula, Some):
+            fresh = self.fresh(formula.variable)
+            return self.some([fresh], self.formula(formula.part, {**names, formula.variable: fresh}))
+        return self._fewer(formula, names)
+
+    def some(self, variables: Iterable[str], part: str) -> str:
+        """There are such things."""
+        return f"(exists ({' '.join(f'{name}{self.typed}' for name in variables)}) {part})"
+
+    def _fewer(self, formula: Count, names: Names) -> str:
+        """Fewer than n: for each limit n there is, not n different things; classes say which limit is theirs."""
+        kind, cases = formula.limit.function, []
+        for limit in _limits(self.knowledge, kind):
+            fresh = [self.fresh(formula.variable, number) for number in range(1, limit + 1)]
+            each = [self.formula(formula.part, {**names, formula.variable: name}) for name in fresh]
+            apart = [f"(not (= {one} {other}))" for one, other in combinations(fresh, 2)]
+            many = self.some(fresh, self.both([*each, *apart]))
+            cases.append(f"(and ({limit_predicate(kind, limit)} {names[formula.limit.name]}) (not {many}))")
+        return f"(or {' '.join(cases)})"
+
+    def _literal(self, literal: Literal[Term], names: Names) -> str:
+        """A literal, whether or not it is negated; one about a found thing holds of some thing that is found so."""
+        for position, term in enumerate(literal.terms):
+            if term.function:
+                fresh = self.fresh(term.function[0], position)
+                plain = (*literal.terms[:position], Term(fresh), *literal.terms[position + 1 :])
+                found = self.found(term, names, fresh)
+                inner = self._literal(literal._replace(terms=plain), {**names, fresh: fresh})
+                return self.some([fresh], f"(and {found} {inner})")
+        if literal.name == "affords":
+            return self._need(self._needs[literal.terms[0].name], names[literal.terms[0].name])
+        if literal.name in self.knowledge.derived:
+            return self.derived(literal, names)
+        return self.plain(literal, names)
+
+    def plain(self, literal: Literal[Term], names: Names) -> str:
+        """A literal about things that have names."""
+        first, *second = literal.terms
+        if literal.name in _PREFIXES:
+            return f"({predicate(literal.name, second[0].name)} {names[first.name]})"
+        word = "=" if literal.name == "same" else self.relation(literal.name)
+        return f"({' '.join([word, *(names[term.name] for term in literal.terms)])})"
+
+    def _need(self, need: Requirement, subject: str) -> str:
+        if need.anything:
+            return f"(not (is-room {subject}))" if need.no_rooms else self.both([])
+        any_of, all_of, classes, never = (
+            [f"({predicate(kind, name)} {subject})" for name in sorted(names)]
+            for kind, names in (
+                ("property", need.any_of),
+                ("property", need.all_of),
+                ("class", need.classes | need.also),
+                ("class", need.never),
+            )
+        )
+        named = [f"({predicate('class_contains', part)} {subject})" for part in need.contains]
+        cases = [*any_of, *([self.both(all_of)] if all_of else []), *classes, *named]
+        allowed = cases[0] if len(cases) == 1 else f"(or {' '.join(cases)})"
+        return both([allowed, *(f"(not {each})" for each in never)])
+
+    def changes(self, effect: Effect) -> Iterator[Effect]:
+        """An effect as one or more: CLOSE both ways, a state with the end of its opposite."""
+        literal = effect.literal
+        yield effect
+        if literal.name == "CLOSE":
+            yield replace(effect, literal=literal._replace(terms=literal.terms[::-1]))
+        if literal.name == "state" and not literal.negated:
+            subject, state = literal.terms
+            opposites = (other for other in self.knowledge.excludes(state.name) if other in STATES)
+            yield from (replace(effect, literal=Literal("state", (subject, Term(each)), True)) for each in opposites)
+
+    def _effect(self, effect: Effect, names: Names) -> str:
+        """One change under its variables and condition, found things turned into variables of their own."""
+        bound = {name: self.fresh(name) for name in effect.variables}
+        names = {**names, **bound}
+        guards = [] if effect.condition == TRUE else [self.formula(effect.condition, names)]
+        terms = list(effect.literal.terms)
+        for number, term in enumerate(terms):
+            if term.function:
+                fresh = self.fresh(term.function[0], number)
+                guards.append(self.found(term, names, fresh))
+                bound[fresh] = names[fresh] = fresh
+                terms[number] = Term(fresh)
+        text = self.plain(effect.literal._replace(terms=tuple(terms)), names)
+        text = f"(not {text})" if effect.literal.negated else text
+        text = f"(when {both(guards)} {text})" if guards else text
+        return f"(forall ({' '.join(f'{name}{self.typed}' for name in bound.values())}) {text})" if bound else text
 
 
-def _derived(name: str) -> str:
-    """Derived predicates differ from relations in more than case, which PDDL does not see: close -> near-close."""
-    dashed = _dashed(name)
-    return f"loosely-{dashed}" if name.upper() in RELATIONS else dashed
+def domain(knowledge: Knowledge, name: str = "hearth") -> str:
+    """The domain as text: predicates, axioms, and one action for each that is executed."""
+    writer, axioms = _AxiomWriter(knowledge), {}
+    for head, body in knowledge.derived.values():
+        names = {term.name: f"?{term.name}" for term in head.terms}
+        axioms[writer.derived(head, names)] = writer.formula(body, names)
+    lines = [
+        f"(define (domain {name})",
+        "  (:requirements :adl :derived-predicates)",
+        "  (:predicates",
+        *(f"    ({name} ?x)" for name in unary_predicates(knowledge)),
+        *(f"    ({name} ?x ?y)" for name in sorted({*map(dashed, RELATIONS), "remembers"})),
+        "    (came-from-inside ?x)",
+        "    (came-from-on ?x)",
+        *(f"    {head}" for head in ("(in-room ?x ?r)", "(place ?x ?p)", *axioms)),
+        "  )",
+        _PLACES,
+        *(f"  (:derived {head}\n    {body})" for head, body in axioms.items()),
+        *(line for action in knowledge.actions.values() if action.executed for line in writer.action(action)),
+        ")",
+    ]
+    return "\n".join(lines) + "\n"
 
 
-def _action(knowledge: Knowledge, action: Action) -> Iterator[str]:
-    checks = [c.formula for c in action.preconditions if not c.option]
-    before = " ".join(_formula(knowledge, formula, action) for formula in checks)
-    parameters = " ".join(f"?{name}" for name in ("a", *"os"[: action.arity]))
-    yield f"  (:action {action.name}"
-    yield f"    :parameters ({parameters})"
-    yield f"    :precondition (and {before})".replace("(and )", "(and)")
-    yield "    :effect (and"
-    for effect in action.effects:
-        for text in _effects(knowledge, effect, action):
-            yield f"      {text}"
-    yield "    ))"
+_PLACES = """\
+  (:derived (in-room ?x ?r)
+    (and (is-room ?r) (or (= ?x ?r) (inside ?x ?r) (exists (?y) (and (inside ?x ?y) (in-room ?y ?r))))))
+  (:derived (place ?x ?p)
+    (and (not (is-room ?p)) (or (on ?x ?p)
+      (and (inside ?x ?p) (not (exists (?q) (and (on ?x ?q) (not (is-room ?q))))))
+      (and (close ?x ?p) (not (exists (?q) (and (on ?x ?q) (not (is-room ?q)))))\
+ (not (exists (?q) (and (inside ?x ?q) (not (is-room ?q)))))))))"""
+"""What the functions `room` and `place` find."""
 
 
-def _effects(knowledge: Knowledge, effect: Effect, action: Action) -> Iterator[str]:
-    """An effect as one or more PDDL effects: symmetric ones twice, a state with the end of its opposite."""
-    literal = effect.literal
-    changes = [literal]
-    if literal.name == "CLOSE":
-        changes.append(literal._replace(terms=literal.terms[::-1]))
-    if literal.name == "state" and not literal.negated:
-        subject, state = literal.terms
-        changes += [Literal("state", (subject, Term(other)), True) for other in knowledge.excludes(state.name)]
-    if literal.name == "REMEMBERS":
-        changes = list(_memory(literal))
-    for change in changes:
-        yield _quantified(knowledge, replace(effect, literal=change), action)
+class _AxiomWriter(Writer):
+    """Derived predicates are axioms of the domain, and variables keep their names."""
+
+    def both(self, parts: list[str]) -> str:
+        """All of the parts of a conjunction."""
+        return f"(and {' '.join(parts)})" if parts else "(and)"
+
+    def found(self, term: Term, names: Names, variable: str) -> str:
+        """The condition under which a variable is the thing that a function finds."""
+        name = {"room": "in-room", "origin": "remembers", "place": "place"}[term.function]
+        return f"({name} {names[term.name]} {variable})"
+
+    def derived(self, literal: Literal[Term], names: Names) -> str:
+        """Its axiom's head, which differs from relations in more than case, which PDDL ignores: loosely-close."""
+        name = f"loosely-{dashed(literal.name)}" if literal.name.upper() in RELATIONS else dashed(literal.name)
+        return f"({' '.join([name, *(names[term.name] for term in literal.terms)])})"
+
+    def changes(self, effect: Effect) -> Iterator[Effect]:
+        """An effect as one or more; Grab remembers the place and how the thing was there, Drop forgets both."""
+        literal = effect.literal
+        if literal.name != "REMEMBERS":
+            yield from super().changes(effect)
+            return
+        thing, forgotten = literal.terms[0], literal.negated
+        every = replace(effect, literal=literal._replace(terms=(thing, Term("p"))), variables=(*effect.variables, "p"))
+        yield every if forgotten else effect
+        on, inside = (_somewhere(thing, relation) for relation in ("ON", "INSIDE"))
+        for relation, so in (("ON", on), ("INSIDE", And((inside, Not(on))))):
+            came = replace(effect, literal=Literal("came_from", (thing, Term(relation)), forgotten))
+            yield came if forgotten else replace(came, condition=so)
 
 
-def _memory(literal: Literal[Term]) -> Iterator[Literal[Term]]:
-    """What Grab remembers and Drop forgets: the place, and how the thing was there."""
-    thing, negated = literal.subject, literal.negated
-    yield Literal("REMEMBERS", (thing, Term("p")), True) if negated else literal
-    for relation in ("ON", "INSIDE"):
-        yield Literal("came_from", (thing, Term(relation)), negated)
-
-
-def _quantified(knowledge: Knowledge, effect: Effect, action: Action) -> str:
-    """One change under its variables and condition, found things turned into variables of their own."""
-    literal = effect.literal
-    variables = list(effect.variables)
-    guards = [] if effect.condition == TRUE else [_formula(knowledge, effect.condition, action)]
-    terms: list[Term] = []
-    for number, term in enumerate(literal.terms):
-        if term.function:
-            fresh = f"{term.function[0]}{number}"
-            variables.append(fresh)
-            guards.append(_found(term, fresh))
-            terms.append(Term(fresh))
-        else:
-            terms.append(term)
-    if literal.name == "REMEMBERS" and literal.negated:
-        variables.append("p")
-    if literal.name == "came_from" and not literal.negated:
-        guards.append(_came(literal))
-    text = _plain(literal.name, tuple(terms))
-    text = f"(not {text})" if literal.negated else text
-    if guards:
-        guard = guards[0] if len(guards) == 1 else f"(and {' '.join(guards)})"
-        text = f"(when {guard} {text})"
-    return f"(forall ({' '.join(f'?{name}' for name in variables)}) {text})" if variables else text
-
-
-def _came(atom: Literal[Term]) -> str:
-    thing, relation = atom.terms[0].name, _dashed(atom.terms[1].name)
-    there = f"(exists (?q) (and ({relation} ?{thing} ?q) (not (is-room ?q))))"
-    if relation == "on":
-        return there
-    return f"(and {there} (not (exists (?q) (and (on ?{thing} ?q) (not (is-room ?q))))))"
-
-
-def _found(term: Term, variable: str) -> str:
-    """The condition under which a variable is the thing that a function finds."""
-    name = {"room": "in-room", "origin": "remembers", "place": "place"}[term.function]
-    return f"({name} ?{term.name} ?{variable})"
-
-
-def _plain(name: str, terms: tuple[Term, ...]) -> str:
-    if name == "state":
-        return f"({state_predicate(terms[1].name)} ?{terms[0].name})"
-    if name == "came_from":
-        return f"(came-from-{_dashed(terms[1].name)} ?{terms[0].name})"
-    return f"({_dashed(name)} {' '.join(f'?{term.name}' for term in terms)})"
-
-
-def _formula(knowledge: Knowledge, formula: Formula, action: Action | None) -> str:
-    if isinstance(formula, Literal):
-        text = _atom(formula, action, knowledge)
-        return f"(not {text})" if formula.negated else text
-    if isinstance(formula, Not):
-        return f"(not {_formula(knowledge, formula.part, action)})"
-    if isinstance(formula, And | Or):
-        word = "and" if isinstance(formula, And) else "or"
-        return f"({word} {' '.join(_formula(knowledge, part, action) for part in formula.parts)})"
-    if isinstance(formula, Some):
-        return f"(exists (?{formula.variable}) {_formula(knowledge, formula.part, action)})"
-    return _fewer(knowledge, formula, action)
-
-
-def _fewer(knowledge: Knowledge, formula: Count, action: Action | None) -> str:
-    """Fewer than n: for each limit n there is, not n different things; classes say which limit is theirs."""
-    subject, kind = formula.limit.name, formula.limit.function
-    cases = []
-    for limit in _limits(knowledge, kind):
-        names = [f"{formula.variable}{number}" for number in range(1, limit + 1)]
-        each = [_formula(knowledge, _renamed(formula.part, formula.variable, name), action) for name in names]
-        apart = [f"(not (= ?{x} ?{y}))" for i, x in enumerate(names) for y in names[i + 1 :]]
-        many = f"(exists ({' '.join(f'?{name}' for name in names)}) (and {' '.join([*each, *apart])}))"
-        cases.append(f"(and ({limit_predicate(kind, limit)} ?{subject}) (not {many}))")
-    return f"(or {' '.join(cases)})"
-
-
-def _renamed(formula: Formula, old: str, new: str) -> Formula:
-    if not isinstance(formula, Literal):
-        raise TypeError("only plain facts are counted")
-    return formula._replace(terms=tuple(Term(new) if term.name == old else term for term in formula.terms))
-
-
-def _atom(atom: Literal[Term], action: Action | None, knowledge: Knowledge) -> str:
-    """An atom; one about a found thing holds of some thing that is found so."""
-    for position, term in enumerate(atom.terms):
-        if term.function in FUNCTIONS:
-            fresh = f"{term.function[0]}{position}"
-            inner = Literal(atom.name, (*atom.terms[:position], Term(fresh), *atom.terms[position + 1 :]))
-            return f"(exists (?{fresh}) (and {_found(term, fresh)} {_atom(inner, action, knowledge)}))"
-    first = f"?{atom.terms[0].name}"
-    named = {"property": property_predicate, "class": class_predicate, "class_contains": named_predicate}
-    if atom.name in named:
-        return f"({named[atom.name](atom.terms[1].name)} {first})"
-    if atom.name == "same":
-        return f"(= {first} ?{atom.terms[1].name})"
-    if atom.name == "affords" and action is not None:
-        return _need(action.needs["os".index(atom.terms[0].name)], first)
-    if atom.name in knowledge.derived:
-        return f"({_derived(atom.name)} {' '.join(f'?{term.name}' for term in atom.terms)})"
-    return _plain(atom.name, atom.terms)
-
-
-def _need(need: Requirement, subject: str) -> str:
-    if need.anything:
-        return f"(not (is-room {subject}))" if need.no_rooms else "(and)"
-    cases = [f"({property_predicate(name)} {subject})" for name in sorted(need.any_of)]
-    if need.all_of:
-        cases.append(f"(and {' '.join(f'({property_predicate(name)} {subject})' for name in sorted(need.all_of))})")
-    cases += [f"({class_predicate(name)} {subject})" for name in sorted(need.classes | need.also)]
-    cases += [f"({named_predicate(part)} {subject})" for part in need.contains]
-    return cases[0] if len(cases) == 1 else f"(or {' '.join(cases)})"
-
-
-def _dashed(name: str) -> str:
-    return name.lower().replace("_", "-")
+def _somewhere(thing: Term, relation: str) -> Formula:
+    """A thing is ON or INSIDE something that is not a room."""
+    place = Term("q")
+    return Some("q", And((Literal(relation, (thing, place)), Literal("is_room", (place,), True))))
