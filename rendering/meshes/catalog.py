@@ -1,48 +1,134 @@
-"""Every recipe by its name. To add one: a function and a row in its module, and its classes in `looks.yaml`."""
+"""Every model by its name. To add one, write an entry in the file of its family, and its classes in `looks.yaml`."""
 
 from __future__ import annotations
 
-from hearth.rendering.meshes import (
-    animals,
-    appliances,
-    bath,
-    cleaning,
-    clothing,
-    decor,
-    electronics,
-    food,
-    kitchen_tools,
-    lighting,
-    oddments,
-    playthings,
-    seats,
-    stationery,
-    storage,
-    structure,
-    tables,
-    tableware,
-    toiletries,
-)
-from hearth.rendering.meshes.look import Recipe
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any
 
-RECIPES: dict[str, Recipe] = {
-    **seats.RECIPES,
-    **tables.RECIPES,
-    **storage.RECIPES,
-    **appliances.RECIPES,
-    **electronics.RECIPES,
-    **lighting.RECIPES,
-    **bath.RECIPES,
-    **toiletries.RECIPES,
-    **tableware.RECIPES,
-    **kitchen_tools.RECIPES,
-    **food.RECIPES,
-    **cleaning.RECIPES,
-    **clothing.RECIPES,
-    **stationery.RECIPES,
-    **decor.RECIPES,
-    **oddments.RECIPES,
-    **playthings.RECIPES,
-    **animals.RECIPES,
-    **structure.RECIPES,
-}
+import yaml
+
+from hearth.rendering.meshes.expressions import Expression, Names, Node, Scope
+from hearth.rendering.meshes.interpreter import Draw, Interpreter
+from hearth.rendering.meshes.look import Look, Recipe, Region, Regions, nowhere, top
+from hearth.rendering.meshes.primitives import FUNCTIONS, KNOWN, names_of
+
+FAMILIES = (
+    "seats.yaml", "tables.yaml", "storage.yaml", "appliances.yaml", "electronics.yaml", "lighting.yaml",
+    "bath.yaml", "toiletries.yaml", "tableware.yaml", "kitchen_tools.yaml", "food.yaml", "cleaning.yaml",
+    "clothing.yaml", "stationery.yaml", "decor.yaml", "oddments.yaml", "playthings.yaml", "animals.yaml",
+    "structure.yaml", "joinery.yaml",
+)  # fmt: skip
+"""The files of models."""
+FACTS = ("size", "variants", "kinds", "states", "lamp", "on", "inside")
+"""Keys of an entry that describe the model as a whole: fields of `Recipe`."""
+ENTRY = re.compile(r"^(\w+)(\(.*\))?:", re.MULTILINE)
+"""Where an entry begins: a model, or a shape with its parameters."""
+
+
+class Catalog(Mapping[str, Recipe]):
+    """The models; each is compiled when it is first asked for, and its file read then."""
+
+    def __getitem__(self, name: str) -> Recipe:
+        """The model's recipe."""
+        return _recipe(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, (_, takes) in _index().items() if not takes)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return _index().get(str(name), ("", "()"))[1] == ""
+
+
+RECIPES: Mapping[str, Recipe] = Catalog()
+
+
+@cache
+def _index() -> dict[str, tuple[str, str]]:
+    """Entry -> its family and its parameters. Entries begin at the margin, so that nothing is parsed for it."""
+    found = ((family, *entry) for family in FAMILIES for entry in ENTRY.findall(_text(family)))
+    return {name: (family, takes) for family, name, takes in found if name != "shared"}
+
+
+def _text(family: str) -> str:
+    return (files("hearth.rendering.meshes") / family).read_text(encoding="utf-8")
+
+
+@cache
+def _entries(family: str) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.load(_text(family), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+    return found
+
+
+def _scope(family: str, name: str, known: frozenset[str]) -> Scope:
+    return Scope(f"rendering/meshes/{family}", name, known)
+
+
+@cache
+def _shared(family: str) -> Names:
+    """What all entries of a family can name, from its entry `shared`; mappings are tables."""
+    names, found = dict(FUNCTIONS), Names()
+    for name, node in _entries(family).get("shared", {}).items():
+        scope = _scope(family, "shared", frozenset(names)).at(name)
+        table = {key: scope.expression(value)(names) for key, value in node.items()} if isinstance(node, dict) else None
+        found[name] = names[name] = scope.expression(node)(names) if table is None else table
+    return found
+
+
+@cache
+def _drawn(name: str) -> Draw | None:
+    """The shape that an entry defines, if there is one of that name."""
+    family, takes = _index().get(name, ("", ""))
+    if not family:
+        return None
+    entry = {key: node for key, node in _entries(family)[name + takes].items() if key not in FACTS}
+    scope = _scope(family, name, KNOWN).knowing(_shared(family))
+    return INTERPRETER.definition(entry, takes.strip("()"), _shared(family), scope)
+
+
+INTERPRETER = Interpreter(_drawn)
+
+
+@cache
+def _recipe(name: str) -> Recipe:
+    draw = _drawn(name)
+    if not draw:
+        raise KeyError(name)
+    family = _index()[name][0]
+    entry = _entries(family)[name]
+    scope = _scope(family, name, KNOWN).knowing(_shared(family))
+    return Recipe(
+        draw=lambda look: draw(names_of(look), (), {}),
+        size=scope.at("size").expression(entry["size"])(dict(FUNCTIONS)),
+        variants=int(entry.get("variants", 1)),
+        on=_regions("on", entry, scope) if "on" in entry else top,
+        inside=_regions("inside", entry, scope) if "inside" in entry else nowhere,
+        kinds=tuple(entry.get("kinds", ())),
+        lamp=float(entry["lamp"]) if "lamp" in entry else None,
+        states=tuple(entry.get("states", ())),
+    )
+
+
+def _regions(key: str, entry: dict[str, Node], scope: Scope) -> Regions:
+    """Where things stand, as `key` says; it may use what the model's `let` names."""
+    named, inside = INTERPRETER.named(entry.get("let", {}), scope)
+    regions = inside.at(key).expression(entry[key])
+    needed, needs = [], regions.needs
+    for name, value in reversed(named):
+        if name in needs and isinstance(value, Expression):
+            needed.append((name, value))
+            needs |= value.needs
+    shared = _shared(scope.file.split("/")[-1])
+
+    def found(look: Look) -> tuple[Region, ...]:
+        names = {**names_of(look), **shared}
+        for name, value in reversed(needed):
+            names[name] = value(names)
+        return tuple(regions(names))
+
+    return found
