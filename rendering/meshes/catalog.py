@@ -16,7 +16,7 @@ from hearth.rendering.meshes.look import Look, Recipe, Region, Regions, nowhere,
 from hearth.rendering.meshes.primitives import FUNCTIONS, KNOWN, names_of
 
 FAMILIES = (
-    "seats.yaml", "tables.yaml", "storage.yaml", "appliances.yaml", "electronics.yaml", "lighting.yaml",
+    "seats.yaml", "tables_and_counters.yaml", "storage.yaml", "appliances.yaml", "electronics.yaml", "lighting.yaml",
     "bath.yaml", "toiletries.yaml", "tableware.yaml", "kitchen_tools.yaml", "food.yaml", "cleaning.yaml",
     "clothing.yaml", "stationery.yaml", "decor.yaml", "oddments.yaml", "playthings.yaml", "animals.yaml",
     "structure.yaml", "joinery.yaml",

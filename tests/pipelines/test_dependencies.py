@@ -49,7 +49,9 @@ def test_data_files_count_with_the_modules_that_name_them():
     assert data_of("sample") == knowledge | homes
     assert data_of("augment") == data_of("sample") | {"pipelines/augment.yaml"}
     assert data_of("publish") == data_of("sample") | {"pipelines/catalog.sql"}
-    assert data_of("render") == data_of("sample") | {"rendering/looks.yaml"}
+    models = {path.relative_to(ROOT).as_posix() for path in (ROOT / "rendering/meshes").glob("*.yaml")}
+    assert len(models) > 10
+    assert data_of("render") == data_of("sample") | models | {"rendering/looks.yaml"}
     assert {"data_raw/crowd/special_blocks.yaml", "pipelines/off_topic.yaml"} <= data_of("validate")
 
 
