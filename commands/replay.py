@@ -78,7 +78,12 @@ def _json(one: Replayed) -> dict[str, Any]:
         "home": one.home,
         "faults": [output.diagnostic_json(fault) for fault in one.faults],
         "failure": None if one.failure is None else asdict(one.failure),
-        "difference": asdict(one.difference),
+        "difference": {
+            "missing": one.difference.added,
+            "surplus": one.difference.removed,
+            "missing_states": one.difference.set_states,
+            "surplus_states": one.difference.cleared_states,
+        },
     }
 
 
@@ -88,9 +93,9 @@ def _explain(one: Replayed) -> None:
         print(output.explain(fault))
     if one.failure is not None:
         print(f"  {one.failure.message()}")
-    for sign, edges in (("missing", one.difference.missing), ("surplus", one.difference.surplus)):
+    for sign, edges in (("missing", one.difference.added), ("surplus", one.difference.removed)):
         for edge in edges:
             print(f"  {sign}: {edge.source} {edge.relation} {edge.target}")
-    for sign, states in (("missing", one.difference.missing_states), ("surplus", one.difference.surplus_states)):
+    for sign, states in (("missing", one.difference.set_states), ("surplus", one.difference.cleared_states)):
         for node_id, name in states:
             print(f"  {sign}: {node_id} {name}")

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
     from hearth.grounding.stances import Stance
     from hearth.grounding.trial import Trial
+    from hearth.schemas.change import Change
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
-    from hearth.simulation.change import Change
     from hearth.simulation.home import Home
     from hearth.simulation.rules import Rules
     from hearth.simulation.world import World
@@ -155,13 +155,14 @@ def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
 
 
 def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, Any]:
+    from hearth.pipelines.rows import change_row
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 
     if isinstance(trial, Failure):
         return {"home": place.name, "executable": False, "failure": asdict(trial)}
     execution = trial.execution
-    changes = [asdict(change) for change in execution.changes()]
+    changes = [change_row(change) for change in execution.changes()]
     return {
         "home": place.name,
         "executable": execution.executable,

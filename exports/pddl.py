@@ -23,6 +23,7 @@ from hearth.kb.pddl import LIMITS, limit_predicate, predicate, unary_predicates
 from hearth.pipelines.dataset import Dataset, Run
 from hearth.pipelines.rows import change_of
 from hearth.pipelines.verify import StoredHomes
+from hearth.schemas.change import compose
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATE_ID, STATES
 from hearth.simulation import rows
@@ -92,23 +93,10 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
 
 def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
     """What all ticks together came to: what came and went again is none of it."""
-    edges: dict[Edge, list[bool]] = {}
-    states: dict[tuple[int, str], list[bool]] = {}
-    for tick in run.row["ticks"]:
-        change = change_of(tick)
-        for holds, moved, entered in (
-            (False, change.removed, change.cleared_states),
-            (True, change.added, change.set_states),
-        ):
-            for edge in moved:
-                edges.setdefault(edge, []).append(holds)
-            for state in entered:
-                states.setdefault(state, []).append(holds)
-    # Of an even number of turns nothing is left.
-    return (
-        tuple((*state, turns[-1]) for state, turns in sorted(states.items()) if len(turns) % 2),
-        tuple((edge, turns[-1]) for edge, turns in sorted(edges.items()) if len(turns) % 2 and edge.relation in WANTED),
-    )
+    whole = compose(map(change_of, run.row["ticks"]))
+    states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
+    edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
+    return tuple(sorted(states)), tuple(sorted((edge, holds) for edge, holds in edges if edge.relation in WANTED))
 
 
 def _objects(world: World, nodes: set[int]) -> list[int]:

@@ -18,11 +18,10 @@ from hearth.pipelines.parts import Row
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.repairing import Attempt, successes
 from hearth.pipelines.rows import (
-    change_row,
     condition_rows,
     conditions_of,
+    environment_row,
     failure_row,
-    node_row,
     program_of,
     step_rows,
 )
@@ -36,7 +35,6 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED, TRIED
-from hearth.simulation.change import Change
 from hearth.simulation.engine import Execution
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
@@ -194,14 +192,9 @@ def _environment(environment: Environment, name: str, context: Context) -> Row:
     change = environment.world.changes(World.start(context.homes.home(name)))
     new = {node.id for node in environment.nodes}
     states = dict(environment.states)
-    nodes = [node_row(replace(node, states=tuple(states.get(node.id, node.states)))) for node in environment.nodes]
-    kept = Change(
-        change.added,
-        change.removed,
-        tuple(pair for pair in change.set_states if pair[0] not in new),
-        tuple(pair for pair in change.cleared_states if pair[0] not in new),
-    )
-    return {"added_nodes": nodes, "removed_nodes": [], **change_row(kept)}
+    nodes = (replace(node, states=tuple(states.get(node.id, node.states))) for node in environment.nodes)
+    kept = change.where(node=lambda node_id: node_id not in new)
+    return environment_row(replace(kept, added_nodes=tuple(nodes)))
 
 
 def _perturbation(perturbation: Perturbation) -> Row:

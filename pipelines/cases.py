@@ -13,18 +13,16 @@ from hearth.pipelines.rows import (
     binding_rows,
     bindings_of,
     change_of,
-    change_row,
-    edges_of,
+    environment_change,
+    environment_row,
     failure_row,
-    node_of,
-    node_row,
     program_of,
     tick_rows,
 )
-from hearth.schemas.graph import Edge, Node
-from hearth.schemas.vocabulary import STATE_ID
-from hearth.simulation.change import Change
-from hearth.simulation.edit import extended
+from hearth.schemas.change import Change, State
+from hearth.schemas.graph import Edge
+from hearth.simulation.change import encode_whole
+from hearth.simulation.derived import changed
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import states_of
@@ -49,9 +47,8 @@ def environment_of(environment: Environment, edges: frozenset[Edge]) -> Row:
     added = set(_both_ways(environment.added))
     removed = set(_both_ways(environment.removed)) - added
     came, went = _restated(home, states)
-    change = Change(tuple(sorted(added - edges)), tuple(sorted(removed & edges)), came, went)
-    gone = list(environment.gone)
-    return {"added_nodes": [node_row(node) for node in nodes], "removed_nodes": gone, **change_row(change)}
+    moved = (tuple(sorted(added - edges)), tuple(sorted(removed & edges)))
+    return environment_row(Change(*moved, came, went, tuple(nodes), tuple(environment.gone)))
 
 
 def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:
@@ -61,9 +58,9 @@ def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:
             yield Edge(edge.target, _SYMMETRIC, edge.source)
 
 
-def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    came: list[tuple[int, str]] = []
-    went: list[tuple[int, str]] = []
+def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[State, ...], tuple[State, ...]]:
+    came: list[State] = []
+    went: list[State] = []
     for node, names in states.items():
         before = set(states_of(home.index[node], home.states))
         now = set(names)
@@ -77,30 +74,10 @@ def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> Row:
 
     Args:
         world: a start.
-        home: what to tell it from.
+        home: what to compare it with.
         edges: those of `home`.
     """
-    known = {node_id: home.node(i) for i, node_id in enumerate(home.ids)}
-    nodes = {node_id: world.home.node(i) for i, node_id in enumerate(world.home.ids)}
-    removed = {node_id for node_id, node in known.items() if not _same(node, nodes.get(node_id))}
-    new = [node for node_id, node in nodes.items() if node_id not in known or node_id in removed]
-    kept = edges
-    if removed:
-        kept = frozenset(edge for edge in edges if edge.source not in removed and edge.target not in removed)
-    now = frozenset(world.edges())
-    states = {node_id: states_of(world.home.index[node_id], world.states) for node_id in known.keys() - removed}
-    came, went = _restated(home, states)
-    change = Change(tuple(sorted(now - kept)), tuple(sorted(kept - now)), came, went)
-    return {"added_nodes": [node_row(node) for node in new], "removed_nodes": sorted(removed), **change_row(change)}
-
-
-def _same(one: Node, other: Node | None) -> bool:
-    """Whether two nodes are equal, simulated states aside."""
-    return other is not None and (one == other or _still(one) == _still(other))
-
-
-def _still(node: Node) -> Node:
-    return replace(node, states=tuple(name for name in node.states if name not in STATE_ID))
+    return environment_row(encode_whole(World.start(home), world, edges))
 
 
 _without = lru_cache(maxsize=32)(without)
@@ -109,18 +86,10 @@ _without = lru_cache(maxsize=32)(without)
 
 def home_of(environment: Mapping[str, Any], base: Home) -> Home:
     """The home that a row of `tables.ENVIRONMENT` describes."""
-    nodes = [node_of(row) for row in environment["added_nodes"]]
-    added = list(edges_of(environment["added"]))
-    removed = list(edges_of(environment["removed"]))
-    states: dict[int, set[str]] = {}
-    for name, came in (("cleared_states", False), ("set_states", True)):
-        for row in environment[name]:
-            node = row["node"]
-            found = states.setdefault(node, set(states_of(base.index[node], base.states)))
-            (found.add if came else found.discard)(row["state"])
-    if environment["removed_nodes"]:
-        base = _without(base, tuple(environment["removed_nodes"]))
-    return extended(base, nodes, added, removed, {node: sorted(found) for node, found in states.items()})
+    change = environment_change(environment)
+    if change.removed_nodes:
+        base = _without(base, change.removed_nodes)
+    return changed(base, change)
 
 
 class Source(Protocol):

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.pipelines.catalog import attach
 from hearth.pipelines.manifest import FORMAT, NAME
+from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 
 if TYPE_CHECKING:
@@ -172,13 +173,20 @@ class Dataset:
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
         """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks; see `tensors`.
 
+        A run that is shorter gives its last graph.
+
         Raises:
             KeyError: there is no program of that id.
         """
-        from hearth.pipelines.tensors import to_tensors
+        from hearth.pipelines.tensors import Moment, to_tensors
 
         entries = [self[program_id] for program_id in program_ids]
-        return to_tensors(self, [(entry.program, run) for entry in entries for run in entry.runs], tick)
+        moments = (
+            Moment(entry.program, run.graph(min(tick, len(run.row["ticks"]))), run.bindings())
+            for entry in entries
+            for run in entry.runs
+        )
+        return to_tensors(moments, self.rows("SELECT kind, name, id FROM vocabulary")[1])
 
     def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Row]:
         if not ids:
@@ -261,15 +269,12 @@ class Run:
         Raises:
             IndexError: the run has fewer ticks.
         """
+        from hearth.pipelines.rows import change_of
+
         ticks = self.row["ticks"]
         if not 0 <= tick <= len(ticks):
             raise IndexError(f"tick {tick} of a run of {len(ticks)}")
-        state = self._start
-        edges, states = set(state.edges), {node: set(names) for node, names in state.states.items()}
-        for change in ticks[:tick]:
-            _apply(change, edges, states)
-        nodes = tuple(replace(node, states=tuple(sorted(states[node.id]))) for node in state.nodes)
-        return EnvironmentGraph(nodes, tuple(sorted(edges)))
+        return self._start.copy().apply(*map(change_of, ticks[:tick])).graph()
 
     @property
     def start(self) -> EnvironmentGraph:
@@ -300,50 +305,30 @@ class Run:
         return found
 
     @cached_property
-    def _start(self) -> _Home:
-        from hearth.pipelines.rows import edge_of, node_of
+    def _start(self) -> WorkingGraph:
+        from hearth.pipelines.rows import environment_change
 
-        home, differs = self.dataset._homes(self.home), self.row["environment"]
-        gone = frozenset(differs["removed_nodes"])
-        nodes = [node for node in home.nodes if node.id not in gone] + [node_of(row) for row in differs["added_nodes"]]
-        nodes.sort(key=lambda node: node.id)
-        edges = {edge for edge in home.edges if edge.source not in gone and edge.target not in gone}
-        edges -= {edge_of(row) for row in differs["removed"]}
-        states = {node.id: set(node.states) for node in nodes}
-        _apply({**differs, "removed": []}, edges, states)
-        return _Home(tuple(nodes), edges, states)
+        change = environment_change(self.row["environment"])
+        added = tuple(in_states(node, node.states) for node in change.added_nodes)
+        return self.dataset._homes(self.home).working.copy().apply(replace(change, added_nodes=added))
 
 
-@dataclass(frozen=True, slots=True)
-class _Home:
-    nodes: tuple[Node, ...]
-    edges: set[Edge]
-    states: dict[int, set[str]]
+class _Home(NamedTuple):
+    """A home as it is published, and one whose nodes have their states sorted, for runs to start from."""
+
+    graph: EnvironmentGraph
+    working: WorkingGraph
 
     @classmethod
     def read(cls, dataset: Dataset, name: str) -> _Home:
-        from hearth.pipelines.rows import edge_of, node_of
+        from hearth.pipelines.rows import edges_of, node_of
 
         nodes = tuple(map(node_of, dataset._rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
         if not nodes:
             raise KeyError(name)
-        edges = set(map(edge_of, dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
-        return cls(nodes, edges, {node.id: set(node.states) for node in nodes})
-
-    @property
-    def graph(self) -> EnvironmentGraph:
-        return EnvironmentGraph(self.nodes, tuple(sorted(self.edges)))
-
-
-def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]]) -> None:
-    from hearth.pipelines.rows import edge_of
-
-    edges -= {edge_of(row) for row in change["removed"]}
-    edges |= {edge_of(row) for row in change["added"]}
-    for row in change["cleared_states"]:
-        states[row["node"]].discard(row["state"])
-    for row in change["set_states"]:
-        states[row["node"]].add(row["state"])
+        edges = set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
+        working = WorkingGraph((in_states(node, node.states) for node in nodes), edges)
+        return cls(EnvironmentGraph(nodes, tuple(sorted(edges))), working)
 
 
 def _absent(folder: Path, content: Row) -> list[str]:

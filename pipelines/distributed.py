@@ -11,9 +11,8 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Any
 
-from hearth.pipelines.engines import Done, Seen
 from hearth.pipelines.parts import Counts
-from hearth.pipelines.stage import Job, Partition
+from hearth.pipelines.stage import Done, Job, Partition, Seen
 from hearth.pipelines.workers import AHEAD, run_here
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code

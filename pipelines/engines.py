@@ -6,13 +6,9 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Protocol, Self
 
-from hearth.pipelines.parts import Counts
-from hearth.pipelines.stage import Job, Partition
+from hearth.pipelines.stage import Done, Job, Partition, Seen
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-
-Seen = Callable[[int, int], None]
-Done = tuple[Partition, Counts]
 
 
 class Engine(Protocol):

@@ -11,11 +11,11 @@ from typing import Any
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import release
+from hearth.schemas.change import Change
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
-from hearth.simulation.compare import Mismatch, mismatch
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
 from hearth.simulation.rules import REPLAY, Rules
@@ -32,7 +32,7 @@ class Replayed:
         steps: steps done.
         faults: why it could not be read, if it could not.
         failure: why it stopped, if it did.
-        difference: how its end differs from the stored one.
+        difference: what its end would have to change to be the stored one.
         seconds: spent reading, building worlds and executing.
     """
 
@@ -41,7 +41,7 @@ class Replayed:
     steps: int = 0
     faults: tuple[Diagnostic, ...] = ()
     failure: Failure | None = None
-    difference: Mismatch = field(default_factory=Mismatch)
+    difference: Change = field(default_factory=Change)
     seconds: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
@@ -99,7 +99,7 @@ def _one(value: dict[str, Any], home: str, knowledge: Knowledge, rules: Rules) -
     if execution.failure is not None or not graphs.get("final_graph"):
         return Replayed(key, home, steps, failure=execution.failure, seconds=seconds)
     expected = World.start(Home.from_release(graphs["final_graph"], home, knowledge))
-    return Replayed(key, home, steps, difference=mismatch(execution.final, expected), seconds=seconds)
+    return Replayed(key, home, steps, difference=expected.changes(execution.final), seconds=seconds)
 
 
 def _read(value: dict[str, Any], home: str, knowledge: Knowledge) -> tuple[Program, Any] | tuple[Diagnostic, ...]:

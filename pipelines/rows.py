@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from hearth.grounding.conditions import Condition, Preconditions
+from hearth.schemas.change import Change
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.vocabulary import STATE_ID
-from hearth.simulation.change import Change
 
 if TYPE_CHECKING:
     from hearth.simulation.engine import Execution
@@ -95,30 +95,21 @@ def change_of(row: Mapping[str, Any]) -> Change:
     )
 
 
-def edge_of(row: Mapping[str, Any]) -> Edge:
-    """An edge of a row read back."""
-    return Edge(row["source"], row["relation"], row["target"])
+def environment_row(change: Change) -> Row:
+    """What differs from a home, as `tables.ENVIRONMENT`."""
+    nodes = {"added_nodes": list(map(node_row, change.added_nodes)), "removed_nodes": list(change.removed_nodes)}
+    return {**nodes, **change_row(change)}
+
+
+def environment_change(row: Mapping[str, Any]) -> Change:
+    """The inverse of `environment_row`."""
+    nodes = (tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"]))
+    return replace(change_of(row), added_nodes=nodes[0], removed_nodes=nodes[1])
 
 
 def edges_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Edge]:
-    """The edges of rows read back; three times as fast as `edge_of` one by one."""
+    """The edges of rows read back."""
     return map(Edge._make, map(_EDGE, rows))
-
-
-def difference(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
-    """What differs between two graphs over the same nodes: edges, and simulated states."""
-    old, new = edge_set(before.edges), edge_set(after.edges)
-    past, now = _states(before), _states(after)
-    return Change(
-        tuple(Edge(*edge) for edge in sorted(new - old)),
-        tuple(Edge(*edge) for edge in sorted(old - new)),
-        tuple(sorted(now - past)),
-        tuple(sorted(past - now)),
-    )
-
-
-def _states(graph: EnvironmentGraph) -> set[tuple[int, str]]:
-    return {(node.id, state) for node in graph.nodes for state in node.states if state in STATE_ID}
 
 
 def step_rows(program: Program) -> list[Row]:

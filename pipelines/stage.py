@@ -154,8 +154,15 @@ class Job:
         return value_digest([self.key, partition.number, partition.digest])
 
 
-def run_partition(job: Job, partition: Partition, seen: Callable[[int, int], None]) -> Counts:
-    """Process one partition and write it. `seen(records, rejects)` is told of progress."""
+Seen = Callable[[int, int], None]
+"""Called with the numbers of records and of rejects that were added."""
+
+Done = tuple[Partition, Counts]
+"""A partition that is written, and what became of its records."""
+
+
+def run_partition(job: Job, partition: Partition, seen: Seen) -> Counts:
+    """Process one partition and write it."""
     stage = job.stage
     writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
     deadline = Deadline(job.settings.time_limit * stage.patience)

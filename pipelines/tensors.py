@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hearth.pipelines.rows import Bindings
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import PROPERTY_ID, RELATION_ID, ROOM_CATEGORY, STATE_ID
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from hearth.pipelines.dataset import Dataset, Run
 
 INSIDE_ROOM = len(RELATION_ID)
 """The type of an edge INSIDE a room, apart from INSIDE a thing (thesis 5.4.1); the others are `RELATION_ID`."""
@@ -18,6 +19,14 @@ INSIDE_ROOM = len(RELATION_ID)
 EDGE_TYPES = (*RELATION_ID, "INSIDE_ROOM")
 
 PADDING = -1
+
+
+class Moment(NamedTuple):
+    """A program, the graph of one of its runs at some tick, and which node each of its objects is in that run."""
+
+    program: Program
+    graph: EnvironmentGraph
+    bound: Bindings
 
 
 class Tensors(NamedTuple):
@@ -49,22 +58,19 @@ class Tensors(NamedTuple):
     lengths: np.ndarray
 
 
-def to_tensors(dataset: Dataset, runs: Sequence[tuple[Any, Run]], tick: int = 0) -> Tensors:
-    """Programs and the graphs of their runs after `tick` ticks, as arrays.
+def to_tensors(moments: Iterable[Moment], vocabulary: Iterable[tuple[str, str, int]]) -> Tensors:
+    """Programs and graphs of their runs, as arrays.
 
     Args:
-        dataset: whose vocabulary gives the ids.
-        runs: programs with one of their executions each.
-        tick: of each run; a run that is shorter gives its last graph.
+        moments: programs with one of their graphs each.
+        vocabulary: kind (`action` or `class`), name and id.
     """
     import numpy as np
 
-    ids = _ids(dataset)
+    ids = _Ids({(kind, name): number for kind, name, number in vocabulary})
     parts: dict[str, list[Any]] = {name: [] for name in Tensors._fields}
-    longest = max((len(program.steps) for program, _ in runs), default=0)
     first = 0
-    for number, (program, run) in enumerate(runs):
-        graph = run.graph(min(tick, len(run.row["ticks"])))
+    for number, (program, graph, bound) in enumerate(moments):
         row = {node.id: first + place for place, node in enumerate(graph.nodes)}
         rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
         parts["node_class"] += [ids["class", node.class_name] for node in graph.nodes]
@@ -77,17 +83,20 @@ def to_tensors(dataset: Dataset, runs: Sequence[tuple[Any, Run]], tick: int = 0)
             INSIDE_ROOM if edge.relation == "INSIDE" and edge.target in rooms else RELATION_ID[edge.relation]
             for edge in graph.edges
         ]
-        actions, objects = _steps(program, run, row, ids, longest)
+        actions, objects = _steps(program, bound, row, ids)
         parts["actions"].append(actions)
         parts["objects"].append(objects)
         parts["lengths"].append(len(program.steps))
         first += len(row)
+    _pad(parts["actions"], PADDING)
+    _pad(parts["objects"], (PADDING, PADDING))
     marks = {"node_states": len(STATE_ID), "node_properties": len(PROPERTY_ID)}
     stacked = {
         name: np.concatenate(parts[name]) if parts[name] else np.zeros((0, width), np.float32)
         for name, width in marks.items()
     }
-    shapes = {"edge_index": (-1, 2), "actions": (len(runs), longest), "objects": (len(runs), longest, 2)}
+    steps = (len(parts["lengths"]), max(parts["lengths"], default=0))
+    shapes = {"edge_index": (-1, 2), "actions": steps, "objects": (*steps, 2)}
     rest = {
         name: np.array(parts[name], dtype=np.int64).reshape(shapes.get(name, (-1,)))
         for name in Tensors._fields
@@ -101,11 +110,6 @@ class _Ids(dict[tuple[str, str], int]):
         return PADDING
 
 
-def _ids(dataset: Dataset) -> _Ids:
-    rows = dataset.rows("SELECT kind, name, id FROM vocabulary WHERE kind IN ('action', 'class')")[1]
-    return _Ids({(kind, name): number for kind, name, number in rows})
-
-
 def _marks(found: Iterable[Iterable[str]], known: dict[str, int]) -> np.ndarray:
     import numpy as np
 
@@ -117,13 +121,18 @@ def _marks(found: Iterable[Iterable[str]], known: dict[str, int]) -> np.ndarray:
 
 
 def _steps(
-    program: Any, run: Run, row: dict[int, int], ids: _Ids, longest: int
+    program: Program, bound: Bindings, row: dict[int, int], ids: _Ids
 ) -> tuple[list[int], list[tuple[int, int]]]:
-    bound = run.bindings()
     actions, objects = [], []
     for step in program.steps:
         nodes = [row.get(bound.get(ref.key, PADDING), PADDING) for ref in step.objects]
         actions.append(ids["action", step.action])
         objects.append(((*nodes, PADDING, PADDING)[0], (*nodes, PADDING, PADDING)[1]))
-    more = longest - len(actions)
-    return actions + [PADDING] * more, objects + [(PADDING, PADDING)] * more
+    return actions, objects
+
+
+def _pad(rows: list[list[Any]], filling: object) -> None:
+    """Make all rows as long as the longest."""
+    longest = max(map(len, rows), default=0)
+    for row in rows:
+        row.extend([filling] * (longest - len(row)))

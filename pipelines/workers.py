@@ -11,11 +11,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from hearth.pipelines.engines import Done, Seen
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Counts, part_path, rejects_path
 from hearth.pipelines.spread import begin, context
-from hearth.pipelines.stage import Job, Partition, run_partition
+from hearth.pipelines.stage import Done, Job, Partition, Seen, run_partition
 from hearth.pipelines.stores import store
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from difflib import SequenceMatcher
 from functools import cached_property
 from typing import Any
 
 from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.rows import edges_of, program_of
-from hearth.schemas.graph import Edge
+from hearth.pipelines.rows import change_of, edges_of, program_of
+from hearth.schemas.change import Change, WorkingGraph
+from hearth.schemas.graph import Edge, Node
 from hearth.schemas.syntax import print_step
 
 Row = dict[str, Any]
@@ -72,11 +74,9 @@ class Stories:
         home, environment = self._home(run["home"]), run["environment"]
         names = {**home.names, **{node["id"]: node["class_name"] for node in environment["added_nodes"]}}
         bound = [binding["node"] for binding in run["bindings"]]
-        start, states = home.around(bound, environment)
-        final, ended = set(start), {node: set(found) for node, found in states.items()}
         shown = {*bound, *home.characters}
-        for tick in run["ticks"]:
-            _apply(tick, final, ended, shown)
+        start = home.around(shown, environment)
+        final = start.copy().apply(*(_about(change_of(tick), shown) for tick in run["ticks"]))
         failure = run["failure"]
         return {
             "id": run["execution_id"],
@@ -84,8 +84,8 @@ class Stories:
             "failure": failure and _failure(failure),
             "conditions": [_condition(row) for row in environment["conditions"]],
             "ticks": [_tick(tick, names) for tick in run["ticks"]],
-            "start": _graph(start, states, names, shown, home.characters),
-            "final": _graph(final, ended, names, shown, home.characters),
+            "start": _graph(start, names, shown, home.characters),
+            "final": _graph(final, names, shown, home.characters),
             "frames": self.frames.get(run["execution_id"], []),
             "film": self.films.get(run["execution_id"]),
         }
@@ -100,7 +100,7 @@ class _Home:
     def __init__(self, dataset: Dataset, name: str) -> None:
         graph = dataset.home(name)
         self.names = {node.id: node.class_name for node in graph.nodes}
-        self.states = {node.id: set(node.states) for node in graph.nodes}
+        self.nodes = {node.id: node for node in graph.nodes}
         self.characters = {node.id for node in graph.nodes if node.class_name == "character"}
         self.edges: dict[int, set[Edge]] = defaultdict(set)
         for edge in graph.edges:
@@ -108,37 +108,34 @@ class _Home:
                 self.edges[edge.source].add(edge)
                 self.edges[edge.target].add(edge)
 
-    def around(self, bound: list[int], environment: Row) -> tuple[set[Edge], dict[int, set[str]]]:
-        """Edges at the start that touch what a program names, and these things' states."""
-        shown = {*bound, *self.characters}
-        gone = set(environment["removed_nodes"])
-        found = {edge for node in shown for edge in self.edges.get(node, ()) if not gone & {edge.source, edge.target}}
-        states = {node: set(self.states.get(node, ())) for node in shown}
-        states.update((node["id"], set(node["states"])) for node in environment["added_nodes"] if node["id"] in shown)
-        _apply(environment, found, states, shown)
-        return found, states
+    def around(self, shown: set[int], environment: Row) -> WorkingGraph:
+        """These nodes at the start, and the edges that touch them."""
+        edges = (edge for node in shown for edge in self.edges.get(node, ()))
+        graph = WorkingGraph((self.nodes[node] for node in shown & self.nodes.keys()), edges)
+        change = replace(
+            change_of(environment),
+            added_nodes=tuple(
+                Node(node["id"], node["class_name"], states=tuple(node["states"]))
+                for node in environment["added_nodes"]
+            ),
+            removed_nodes=tuple(environment["removed_nodes"]),
+        )
+        return graph.apply(_about(change, shown))
 
 
-def _apply(change: Row, edges: set[Edge], states: dict[int, set[str]], shown: set[int]) -> None:
-    edges.difference_update(edges_of(change["removed"]))
-    edges.update(edge for edge in edges_of(change["added"]) if edge.source in shown or edge.target in shown)
-    for row in change["cleared_states"]:
-        states.get(row["node"], set()).discard(row["state"])
-    for row in change["set_states"]:
-        if row["node"] in states:
-            states[row["node"]].add(row["state"])
+def _about(change: Change, shown: set[int]) -> Change:
+    return change.where(lambda edge: edge.source in shown or edge.target in shown, shown.__contains__)
 
 
-def _graph(
-    edges: set[Edge], states: dict[int, set[str]], names: dict[int, str], shown: set[int], people: set[int]
-) -> Row:
+def _graph(graph: WorkingGraph, names: dict[int, str], shown: set[int], people: set[int]) -> Row:
     # Rooms hold everything, and pictures face everything: said is where things are that a program names, and what
     # people face.
-    kept = sorted(e for e in edges if e.source in shown and (e.relation != "FACING" or e.source in people))
+    kept = sorted(e for e in graph.edges if e.source in shown and (e.relation != "FACING" or e.source in people))
     kept = kept[:_MOST_RELATIONS]
-    nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & states.keys())})
+    nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & graph.nodes.keys())})
+    states = {node: sorted(known.states) for node, known in graph.nodes.items()}
     return {
-        "nodes": [[node, names.get(node, "?"), sorted(states.get(node, ()))] for node in nodes],
+        "nodes": [[node, names.get(node, "?"), states.get(node, [])] for node in nodes],
         "edges": [list(edge) for edge in kept],
     }
 

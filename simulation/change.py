@@ -1,42 +1,24 @@
-"""What one world has that another has not: the unit that traces, environments and reports are stored in."""
+"""What one world has that another has not, at a cost that follows what moved: `schemas.change` for worlds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Set
 
-from hearth.schemas.graph import Edge
+from hearth.schemas.change import Change, Parts, State, difference
+from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation import rows
 from hearth.simulation.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.bits import indices
+from hearth.simulation.home import Home
 from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
-
-if TYPE_CHECKING:
-    from hearth.simulation.home import Home
-    from hearth.simulation.world import World
-
-State = tuple[int, str]
+from hearth.simulation.world_state import WorldState
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
-    """Sorted edges and (node id, state) pairs that came and went."""
-
-    added: tuple[Edge, ...] = ()
-    removed: tuple[Edge, ...] = ()
-    set_states: tuple[State, ...] = ()
-    cleared_states: tuple[State, ...] = ()
-
-    def __bool__(self) -> bool:
-        return bool(self.added or self.removed or self.set_states or self.cleared_states)
-
-
-def between(before: World, after: World) -> Change:
+def encode(before: WorldState, after: WorldState) -> Change:
     """What must be done to `before` to get `after`.
 
-    Nodes that only one of them has are not told, but their edges and states are. Cost follows what differs between
+    Nodes that only one of them has are left out, but their edges and states are not. Cost follows what differs between
     worlds of one home and of homes derived from one another (see `edit`); other homes are compared whole.
     """
     ids = before.home.ids
@@ -44,7 +26,7 @@ def between(before: World, after: World) -> Change:
     if before.home is not after.home:
         ids, other = sorted((ids, after.home.ids), key=len, reverse=True)
         if ids[: len(other)] != other:
-            return _of_sets(before, after)
+            return difference(_parts(before), _parts(after))
         extra = _home_differences(before.home, after.home)
     added: set[Edge] = set()
     removed: set[Edge] = set()
@@ -58,18 +40,25 @@ def between(before: World, after: World) -> Change:
     return Change(tuple(sorted(added)), tuple(sorted(removed)), tuple(sorted(entered)), tuple(sorted(left)))
 
 
-def _of_sets(before: World, after: World) -> Change:
-    past, now = set(before.edges()), set(after.edges())
-    left, entered = (
-        {(world.home.ids[i], name) for name, row in zip(STATES, world.states, strict=True) for i in indices(row)}
-        for world in (before, after)
-    )
-    return Change(
-        tuple(sorted(now - past)),
-        tuple(sorted(past - now)),
-        tuple(sorted(entered - left)),
-        tuple(sorted(left - entered)),
-    )
+def encode_whole(before: WorldState, after: WorldState, edges: Set[Edge] | None = None) -> Change:
+    """What must be done to `before` to get `after`, nodes included; both at their start, and their homes may be any.
+
+    Args:
+        before, after: starts.
+        edges: all of those of `before`, where they are known.
+    """
+    past = _parts(before, edges)._replace(nodes=_nodes(before.home))
+    return difference(past, _parts(after)._replace(nodes=_nodes(after.home)))
+
+
+def _parts(world: WorldState, edges: Set[Edge] | None = None) -> Parts:
+    ids = world.home.ids
+    states = {(ids[i], name) for name, row in zip(STATES, world.states, strict=True) for i in indices(row)}
+    return Parts(rows.edges(world) if edges is None else edges, states)
+
+
+def _nodes(home: Home) -> dict[int, Node]:
+    return {home.ids[i]: home.node(i) for i in indices(home.everything)}
 
 
 def _home_differences(one: Home, other: Home) -> int:
@@ -90,7 +79,7 @@ def _home_differences(one: Home, other: Home) -> int:
     return differing
 
 
-def _state_changes(before: World, after: World, ids: list[int]) -> tuple[list[State], list[State]]:
+def _state_changes(before: WorldState, after: WorldState, ids: list[int]) -> tuple[list[State], list[State]]:
     came: list[State] = []
     went: list[State] = []
     for name, old, new in zip(STATES, before.states, after.states, strict=True):
@@ -100,7 +89,7 @@ def _state_changes(before: World, after: World, ids: list[int]) -> tuple[list[St
     return came, went
 
 
-def _edge_changes(before: World, after: World, extra: int) -> Iterator[tuple[int, str, int, bool]]:
+def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator[tuple[int, str, int, bool]]:
     olds = {agent.index: agent for agent in before.agents}
     news = {agent.index: agent for agent in after.agents}
     for i in olds | news:
@@ -132,9 +121,7 @@ def _agent_changes(old: Agent, new: Agent) -> Iterator[tuple[int, str, int, bool
             yield from ((j, relation, me, False) for j in indices(past & ~now))
 
 
-Reader = Callable[["World", int], int]
-
-_KINDS: tuple[tuple[str, Reader, bool], ...] = (
+_KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
     ("ON", rows.on, True),
     ("ON", rows.bears, False),
     ("INSIDE", rows.inside, True),
@@ -149,7 +136,7 @@ _ONE_WAY = ((ON, BEARS), (INSIDE, CONTENTS), (CLOSE,), (FACING, FACED))
 """The kinds of rows of each relation that `Moved` knows gone nodes of, in its order."""
 
 
-def _touched(before: World, after: World) -> set[int]:
+def _touched(before: WorldState, after: WorldState) -> set[int]:
     """Keys (8 * node + kind) of rows that may differ because something moved.
 
     Where an edge came or went without its own row being among them, the row of its other end is.
@@ -163,7 +150,7 @@ def _touched(before: World, after: World) -> set[int]:
     return keys
 
 
-def _row_changes(before: World, after: World, i: int, kind: int) -> Iterator[tuple[int, str, int, bool]]:
+def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[tuple[int, str, int, bool]]:
     relation, read, outwards = _KINDS[kind]
     old = read(before, i) if i < len(before.home) else 0
     new = read(after, i) if i < len(after.home) else 0

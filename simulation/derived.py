@@ -11,6 +11,7 @@ from operator import attrgetter
 from types import MappingProxyType
 from typing import NamedTuple
 
+from hearth.schemas.change import Change, restated
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
@@ -19,6 +20,7 @@ from hearth.simulation.agent import AGENT_IN, AGENT_OUT, AgentRow
 from hearth.simulation.bits import indices
 from hearth.simulation.building import CHARACTER_PROPERTIES
 from hearth.simulation.home import Home
+from hearth.simulation.nodes import states_of
 
 
 class Loose(NamedTuple):
@@ -93,6 +95,17 @@ def extended(
         raise HearthError.of(Code.BAD_GRAPH, f"no node has the id {error.args[0]}") from None
     new.derive(home, touched & new.everything)
     return new
+
+
+def changed(home: Home, change: Change) -> Home:
+    """A home after a change by which no nodes go, or none that it has.
+
+    Raises:
+        HearthError: BAD_GRAPH, when an id is used twice or an edge names a node that there is not.
+    """
+    states = restated(change, lambda node_id: states_of(home.index[node_id], home.states))
+    ordered = {node_id: sorted(names) for node_id, names in states.items()}
+    return extended(home, change.added_nodes, change.added, change.removed, ordered)
 
 
 def added_nodes(base: Home, home: Home) -> tuple[Node, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
+from hearth.schemas.change import Change
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
@@ -15,7 +16,6 @@ from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
 from hearth.simulation import fitting, overlay, rows
 from hearth.simulation import moved as kinds
 from hearth.simulation.agent import Agent
-from hearth.simulation.change import Change
 from hearth.simulation.derived import Loose, added_nodes, extended, without
 from hearth.simulation.home import Home
 from hearth.simulation.world import World

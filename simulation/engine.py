@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.actions.registry import ACTIONS
-from hearth.simulation.change import Change
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, overload
 
+from hearth.schemas.change import Change
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -14,7 +15,6 @@ from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.bits import indices
-from hearth.simulation.change import Change
 from hearth.simulation.edit import edit, free_id
 from hearth.simulation.home import Home
 from hearth.simulation.legal import Legal, legal

@@ -6,12 +6,12 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from hearth.schemas.change import Change
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
-from hearth.simulation.change import Change
 from hearth.simulation.holds import Candidates, candidates
 from hearth.simulation.home import Home
 from hearth.simulation.world import World

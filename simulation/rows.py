@@ -6,50 +6,48 @@ All take and give indices and bit sets. Edges between a character and anything s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from hearth.schemas.graph import Edge
 from hearth.simulation.agent import Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
 from hearth.simulation.states import CLOSED
-
-if TYPE_CHECKING:
-    from hearth.simulation.world import World
+from hearth.simulation.world_state import WorldState
 
 Numbered = tuple[int, str, int]
 
 
-def on(world: World, i: int) -> int:
+def on(world: WorldState, i: int) -> int:
     """The things that i is ON."""
     return _row(world.home.on[i], world.moved.on, world.moved.extra, i, ON)
 
 
-def bears(world: World, i: int) -> int:
+def bears(world: WorldState, i: int) -> int:
     """The things ON i."""
     return _row(world.home.bears[i], world.moved.on, world.moved.extra, i, BEARS)
 
 
-def inside(world: World, i: int) -> int:
+def inside(world: WorldState, i: int) -> int:
     """The things and rooms that i is INSIDE."""
     return _row(world.home.inside[i], world.moved.inside, world.moved.extra, i, INSIDE)
 
 
-def contents(world: World, i: int) -> int:
+def contents(world: WorldState, i: int) -> int:
     """The things INSIDE i."""
     return _row(world.home.contents[i], world.moved.inside, world.moved.extra, i, CONTENTS)
 
 
-def close(world: World, i: int) -> int:
+def close(world: WorldState, i: int) -> int:
     """The things that i is CLOSE to."""
     return _row(world.home.close[i], world.moved.close, world.moved.extra, i, CLOSE)
 
 
-def facing(world: World, i: int) -> int:
+def facing(world: WorldState, i: int) -> int:
     """The things that i is FACING."""
     return _row(world.home.facing[i], world.moved.facing, world.moved.extra, i, FACING)
 
 
-def faced(world: World, i: int) -> int:
+def faced(world: WorldState, i: int) -> int:
     """The things that are FACING i."""
     return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
 
@@ -60,7 +58,7 @@ def _row(row: int, gone: int, extra: dict[int, int], i: int, kind: int) -> int:
     return row | extra.get(8 * i + kind, 0)
 
 
-def is_close(world: World, agent: Agent, i: int) -> bool:
+def is_close(world: WorldState, agent: Agent, i: int) -> bool:
     """Whether a character is close to i: by its own CLOSE edge, or by one hop from what it is CLOSE to (to something
     CLOSE to it, or to something that i is ON).
     """
@@ -83,7 +81,7 @@ def is_close(world: World, agent: Agent, i: int) -> bool:
     return any(mine & other.bit and (other.close | other.worn) >> i & 1 for other in world.agents)
 
 
-def is_facing(world: World, agent: Agent, i: int) -> bool:
+def is_facing(world: WorldState, agent: Agent, i: int) -> bool:
     """Whether a character faces i, by its own FACING edge or by one hop."""
     mine = agent.facing
     if mine >> i & 1 or mine & faced(world, i):
@@ -96,7 +94,7 @@ def is_facing(world: World, agent: Agent, i: int) -> bool:
     return any(mine & other.bit and other.facing >> i & 1 for other in world.agents)
 
 
-def room_of(world: World, i: int) -> int:
+def room_of(world: WorldState, i: int) -> int:
     """Index of the room that i is, or is INSIDE directly or through its containers; -1 when there is none.
 
     Of several rooms the first by id; a cycle of INSIDE is left once it closes.
@@ -111,7 +109,7 @@ def room_of(world: World, i: int) -> int:
     return _search_room(world, containers(world, i), 1 << i)
 
 
-def agent_room(world: World, agent: Agent) -> int:
+def agent_room(world: WorldState, agent: Agent) -> int:
     """Index of the room a character is in, or -1."""
     rooms = agent.inside & world.home.rooms
     if rooms:
@@ -119,7 +117,7 @@ def agent_room(world: World, agent: Agent) -> int:
     return _search_room(world, agent.inside, agent.bit)
 
 
-def _search_room(world: World, frontier: int, seen: int) -> int:
+def _search_room(world: WorldState, frontier: int, seen: int) -> int:
     rooms = world.home.rooms
     while frontier:
         found = frontier & rooms
@@ -133,13 +131,13 @@ def _search_room(world: World, frontier: int, seen: int) -> int:
     return -1
 
 
-def closed_container(world: World, i: int) -> int:
+def closed_container(world: WorldState, i: int) -> int:
     """Index of a closed thing that hides i, or -1."""
     hiding = containers(world, i) & ~world.home.rooms & world.states[CLOSED]
     return (hiding & -hiding).bit_length() - 1
 
 
-def character(world: World, i: int) -> Agent:
+def character(world: WorldState, i: int) -> Agent:
     """The character whose node has that index."""
     for agent in world.agents:
         if agent.index == i:
@@ -147,7 +145,7 @@ def character(world: World, i: int) -> Agent:
     raise LookupError(i)
 
 
-def containers(world: World, i: int) -> int:
+def containers(world: WorldState, i: int) -> int:
     """What i is INSIDE, characters included, and whether or not it is a character itself."""
     if world.home.characters >> i & 1:
         return character(world, i).inside
@@ -158,7 +156,7 @@ def containers(world: World, i: int) -> int:
     return found
 
 
-def bearing(world: World, i: int) -> int:
+def bearing(world: WorldState, i: int) -> int:
     """Everything ON i, characters included, and whether or not it is a character itself."""
     found = character(world, i).worn if world.home.characters >> i & 1 else bears(world, i)
     for agent in world.agents:
@@ -173,7 +171,7 @@ def held_indices(agent: Agent) -> Iterator[int]:
     yield from indices(agent.left & ~agent.right)
 
 
-def thing_edges(world: World, among: int = -1) -> Iterator[Numbered]:
+def thing_edges(world: WorldState, among: int = -1) -> Iterator[Numbered]:
     """Every edge between things (of these), as (index, relation, index)."""
     home = world.home
     for i in indices(among & home.everything):
@@ -201,7 +199,21 @@ def agent_edges(agent: Agent) -> Iterator[Numbered]:
             yield j, relation, me
 
 
-def difference(world: World) -> frozenset[tuple[int, int, int]]:
+def edges(world: WorldState, among: int = -1) -> set[Edge]:
+    """Every edge (among these nodes), by ids."""
+    home = world.home
+    ids, index = home.ids, home.index
+    found = {Edge(ids[i], relation, ids[j]) for i, relation, j in thing_edges(world, among)}
+    for agent in world.agents:
+        pairs = ((i, r, j) for i, r, j in agent_edges(agent) if among >> i & 1 and among >> j & 1)
+        found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in pairs)
+    for source, relation, target in home.others:
+        if among >> index[source] & 1 and among >> index[target] & 1:
+            found.add(Edge(source, relation, target))
+    return found
+
+
+def difference(world: WorldState) -> frozenset[tuple[int, int, int]]:
     """Rows of things that differ from the home's, as (index, kind, row): equal for equal graphs."""
     moved = world.moved
     if moved is NOTHING:

@@ -4,37 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from hearth.schemas.change import Change
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent, replaced
 from hearth.simulation.bits import indices
-from hearth.simulation.change import Change, between
+from hearth.simulation.change import encode
 from hearth.simulation.home import Home
-from hearth.simulation.moved import NOTHING, Moved
+from hearth.simulation.moved import NOTHING
 from hearth.simulation.nodes import with_states
+from hearth.simulation.world_state import WorldState
 
 
-class World:
+class World(WorldState):
     """The state of everything at one moment.
 
     Two worlds are equal when they show the same graph with the same memories, however they came about.
-
-    Attributes:
-        home: what never changes.
-        states: one set of nodes for each of `vocabulary.STATES`.
-        agents: the characters, in id order.
-        moved: what differs from the home's edges between things.
     """
 
-    __slots__ = ("_key", "agents", "home", "moved", "states")
+    __slots__ = ("_key",)
     _key: tuple[object, ...]
-
-    def __init__(self, home: Home, states: tuple[int, ...], agents: tuple[Agent, ...], moved: Moved) -> None:
-        self.home = home
-        self.states = states
-        self.agents = agents
-        self.moved = moved
 
     @classmethod
     def start(cls, home: Home) -> World:
@@ -59,20 +49,11 @@ class World:
 
     def edges(self, among: int = -1) -> list[Edge]:
         """Every edge (among these nodes), each once, in no particular order."""
-        home = self.home
-        ids, index = home.ids, home.index
-        found = {Edge(ids[i], relation, ids[j]) for i, relation, j in rows.thing_edges(self, among)}
-        for agent in self.agents:
-            pairs = ((i, r, j) for i, r, j in rows.agent_edges(agent) if among >> i & 1 and among >> j & 1)
-            found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in pairs)
-        for source, relation, target in home.others:
-            if among >> index[source] & 1 and among >> index[target] & 1:
-                found.add(Edge(source, relation, target))
-        return list(found)
+        return list(rows.edges(self, among))
 
     def changes(self, since: World) -> Change:
         """What is different from an earlier world of the same home; cost follows what differs."""
-        return between(since, self)
+        return encode(since, self)
 
     def key(self) -> tuple[object, ...]:
         """What makes it equal to another: its difference from its home, and what the agents remember."""

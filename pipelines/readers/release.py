@@ -15,8 +15,11 @@ from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
 from hearth.pipelines.readers.packed import archive, leaves, members, refusal_of
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.rows import change_row
+from hearth.schemas.change import Parts, difference
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph import Edge
 from hearth.schemas.text import decode
 from hearth.schemas.vocabulary import STATE_ID
 
@@ -37,7 +40,6 @@ _HOME = re.compile(r"(.*?)(_graph)?")
 _EDGE = itemgetter("from_id", "relation_type", "to_id")
 
 Row = dict[str, Any]
-Edge = tuple[int, str, int]
 
 
 def names_it(path: str) -> bool:
@@ -231,6 +233,7 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
 
 
 def _edges(graph: dict[str, Any]) -> set[Edge]:
+    """Plain tuples, which equal edges and are made faster."""
     return set(map(_EDGE, graph["edges"]))
 
 
@@ -263,15 +266,8 @@ def _node(data: dict[str, Any]) -> Row:
 def _changed(edges: set[Edge], start: dict[str, Any], final: dict[str, Any]) -> Row:
     """What a final graph changes, as `tables.CHANGE`: edges, and states that are simulated."""
     new = _edges(final)
-    added = sorted(new - edges)
-    _columns(added)
-    past, now = _states(start), _states(final)
-    return {
-        "added": added,
-        "removed": sorted(edges - new),
-        "set_states": sorted(now - past),
-        "cleared_states": sorted(past - now),
-    }
+    _columns(sorted(new - edges))
+    return change_row(difference(Parts(edges, _states(start)), Parts(new, _states(final))))
 
 
 def _states(graph: dict[str, Any]) -> set[tuple[int, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from small_worlds import graphs, homes_and_steps
 
+from hearth.schemas.change import encode
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
@@ -93,7 +94,7 @@ def test_replaying_the_changes_rebuilds_every_state(case):
     graph, steps = case
     start = World.start(Home.from_graph(graph))
     execution = run(start, Program(steps=tuple(steps)))
-    edges, now = set(start.edges()), states(start)
+    edges, now, before = set(start.edges()), states(start), start
     for world, change in zip(execution.worlds[1:], execution.changes(), strict=True):
         assert edges >= set(change.removed)
         assert not edges & set(change.added)
@@ -103,6 +104,8 @@ def test_replaying_the_changes_rebuilds_every_state(case):
         now = now - set(change.cleared_states) | set(change.set_states)
         assert edges == set(world.edges())
         assert now == states(world)
+        assert change == encode(before.graph(), world.graph())
+        before = world
         assert (change.added, change.removed) == (tuple(sorted(change.added)), tuple(sorted(change.removed)))
 
 

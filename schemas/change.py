@@ -1,0 +1,222 @@
+"""What one graph has that another has not: the form in which ticks, environments and final graphs are published.
+
+`encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
+moved (`simulation.change`), with the same result; rows of tables are read and written by `pipelines.rows`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Set
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Self
+
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.vocabulary import STATE_ID
+
+State = tuple[int, str]
+"""A node's id and a state it is in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What came and went; all sorted.
+
+    A removed node takes its edges and states with it, and an added one brings its states; one that is both gives way to
+    another of its id. What is removed and cleared is so before anything is added and set.
+
+    Attributes:
+        added, removed: edges.
+        set_states, cleared_states: states of nodes that are there before and after.
+        added_nodes: in the order of their ids.
+        removed_nodes: ids.
+    """
+
+    added: tuple[Edge, ...] = ()
+    removed: tuple[Edge, ...] = ()
+    set_states: tuple[State, ...] = ()
+    cleared_states: tuple[State, ...] = ()
+    added_nodes: tuple[Node, ...] = ()
+    removed_nodes: tuple[int, ...] = ()
+
+    def __bool__(self) -> bool:
+        edges, states = self.added or self.removed, self.set_states or self.cleared_states
+        return bool(edges or states or self.added_nodes or self.removed_nodes)
+
+    def where(
+        self, edge: Callable[[Edge], bool] = lambda edge: True, node: Callable[[int], bool] = lambda node_id: True
+    ) -> Change:
+        """The part of it that is about some edges and the states of some nodes; removed nodes, whose edges are not
+        listed, stay in it.
+        """
+        return Change(
+            tuple(filter(edge, self.added)),
+            tuple(filter(edge, self.removed)),
+            tuple(state for state in self.set_states if node(state[0])),
+            tuple(state for state in self.cleared_states if node(state[0])),
+            tuple(new for new in self.added_nodes if node(new.id)),
+            self.removed_nodes,
+        )
+
+
+_NO_NODES: Mapping[int, Node] = {}
+
+
+class Parts(NamedTuple):
+    """A graph as what is compared.
+
+    Attributes:
+        edges: its edges.
+        states: the simulated states that its nodes are in.
+        nodes: by id; none where it is known that both graphs have the same.
+    """
+
+    edges: Set[Edge]
+    states: Set[State]
+    nodes: Mapping[int, Node] = _NO_NODES
+
+
+def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
+    """What must be done to `before` to get `after`; order, and what is said twice, are no difference."""
+    return difference(_parts(before), _parts(after))
+
+
+def difference(before: Parts, after: Parts) -> Change:
+    """What must be done to `before` to get `after`."""
+    gone = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
+    new = sorted(i for i in after.nodes if i in gone or i not in before.nodes)
+    edges, past, now = before.edges, before.states, after.states
+    if gone:
+        edges = {edge for edge in edges if edge.source not in gone and edge.target not in gone}
+        past = {state for state in past if state[0] not in gone}
+    if new:
+        fresh = set(new)
+        now = {state for state in now if state[0] not in fresh}
+    return Change(
+        tuple(sorted(after.edges - edges)),
+        tuple(sorted(edges - after.edges)),
+        tuple(sorted(now - past)),
+        tuple(sorted(past - now)),
+        tuple(after.nodes[i] for i in new),
+        tuple(sorted(gone)),
+    )
+
+
+def states_of(nodes: Iterable[Node]) -> set[State]:
+    """The simulated states that nodes are in."""
+    return {(node.id, state) for node in nodes for state in node.states if state in STATE_ID}
+
+
+def _parts(graph: EnvironmentGraph) -> Parts:
+    return Parts(set(graph.edges), states_of(graph.nodes), {node.id: node for node in graph.nodes})
+
+
+def _same(one: Node, other: Node | None) -> bool:
+    """Whether two nodes are equal, simulated states aside."""
+    return other is not None and (one == other or _still(one) == _still(other))
+
+
+def _still(node: Node) -> Node:
+    return replace(node, states=tuple(sorted({name for name in node.states if name not in STATE_ID})))
+
+
+def apply(graph: EnvironmentGraph, *changes: Change) -> EnvironmentGraph:
+    """The graph after changes, one after the other: nodes by id, edges sorted, and sorted the states that changed.
+
+    Raises:
+        KeyError: a change is about the state of a node that there is not.
+    """
+    return WorkingGraph(graph.nodes, graph.edges).apply(*changes).graph()
+
+
+class WorkingGraph:
+    """A graph to which changes are made in place, at a cost that follows what they change.
+
+    Attributes:
+        nodes: by id, with the states they are in.
+        edges: as a set.
+    """
+
+    __slots__ = ("edges", "nodes")
+
+    def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
+        self.nodes = {node.id: node for node in nodes}
+        self.edges = set(edges)
+
+    def copy(self) -> WorkingGraph:
+        """Another one of the same content."""
+        new = WorkingGraph()
+        new.nodes, new.edges = self.nodes.copy(), self.edges.copy()
+        return new
+
+    def apply(self, *changes: Change) -> Self:
+        """Make changes, one after the other.
+
+        Raises:
+            KeyError: a change is about the state of a node that there is not.
+        """
+        for change in changes:
+            self._apply(change)
+        return self
+
+    def _apply(self, change: Change) -> None:
+        nodes = self.nodes
+        if change.removed_nodes:
+            gone = set(change.removed_nodes)
+            self.edges = {edge for edge in self.edges if edge.source not in gone and edge.target not in gone}
+            for node_id in gone:
+                nodes.pop(node_id, None)
+        nodes.update((node.id, node) for node in change.added_nodes)
+        self.edges.difference_update(change.removed)
+        self.edges.update(change.added)
+        for node_id, names in restated(change, lambda node_id: nodes[node_id].states).items():
+            nodes[node_id] = in_states(nodes[node_id], names)
+
+    def graph(self) -> EnvironmentGraph:
+        """The graph as it is now: nodes by id, edges sorted."""
+        nodes = tuple(node for _, node in sorted(self.nodes.items()))
+        return EnvironmentGraph(nodes, tuple(sorted(self.edges)))
+
+
+def restated(change: Change, before: Callable[[int], Iterable[str]]) -> dict[int, set[str]]:
+    """Every state of the nodes whose states change, afterwards.
+
+    Args:
+        change: of which only states are looked at.
+        before: node id -> the states it was in.
+    """
+    found: dict[int, set[str]] = {}
+    for node_id, name in change.cleared_states:
+        (found.get(node_id) or found.setdefault(node_id, set(before(node_id)))).discard(name)
+    for node_id, name in change.set_states:
+        (found.get(node_id) or found.setdefault(node_id, set(before(node_id)))).add(name)
+    return found
+
+
+def in_states(node: Node, names: Iterable[str]) -> Node:
+    """The node in these states, which are sorted, each once."""
+    states = tuple(sorted(set(names)))
+    return node if states == node.states else replace(node, states=states)
+
+
+def compose(changes: Iterable[Change]) -> Change:
+    """What changes that follow one another come to; what came and went again is none of it.
+
+    They add and remove no nodes: ticks.
+    """
+    edges: dict[Edge, tuple[bool, bool]] = {}
+    states: dict[State, tuple[bool, bool]] = {}
+    for change in changes:
+        for came, moved, entered in (
+            (False, change.removed, change.cleared_states),
+            (True, change.added, change.set_states),
+        ):
+            for edge in moved:
+                edges[edge] = (edges.get(edge, (came, came))[0], came)
+            for state in entered:
+                states[state] = (states.get(state, (came, came))[0], came)
+    return Change(
+        tuple(sorted(edge for edge, turns in edges.items() if turns == (True, True))),
+        tuple(sorted(edge for edge, turns in edges.items() if turns == (False, False))),
+        tuple(sorted(state for state, turns in states.items() if turns == (True, True))),
+        tuple(sorted(state for state, turns in states.items() if turns == (False, False))),
+    )
