@@ -77,7 +77,7 @@ def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
         HearthError: BAD_GRAPH, naming the first node or edge that lacks a required field.
     """
     try:
-        nodes = tuple(map(_node, data["nodes"]))
+        nodes = tuple(map(read_node, data["nodes"]))
         edges = tuple(Edge(e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise HearthError.of(
@@ -104,18 +104,28 @@ def edge_set(edges: Iterable[Edge]) -> frozenset[tuple[int, str, int]]:
     return frozenset((e.source, e.relation, e.target) for e in edges)
 
 
-def _node(data: Mapping[str, Any]) -> Node:
+def read_node(data: Mapping[str, Any]) -> Node:
+    """A node as the release writes it.
+
+    Raises:
+        KeyError, TypeError, ValueError, AttributeError: a field that it needs is missing, or one is of a wrong kind.
+    """
     box = data.get("bounding_box")
     return Node(
-        id=int(data["id"]),
-        class_name=str(data["class_name"]),
-        category=str(data.get("category") or ""),
-        properties=tuple(data.get("properties") or ()),
-        states=tuple(data.get("states") or ()),
-        prefab=data.get("prefab_name"),
-        box=Box(tuple(box["center"]), tuple(box["size"])) if box else None,
-        yaw=data.get("yaw"),
+        int(data["id"]),
+        str(data["class_name"]),
+        str(data.get("category") or ""),
+        tuple(map(str, data.get("properties") or ())),
+        tuple(map(str, data.get("states") or ())),
+        data.get("prefab_name"),
+        Box(_point(box["center"]), _point(box["size"])) if box else None,
+        data.get("yaw"),
     )
+
+
+def _point(values: Iterable[float]) -> tuple[float, float, float]:
+    x, y, z = map(float, values)
+    return x, y, z
 
 
 def _node_json(node: Node) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading import default
-from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node, read_node
 from hearth.simulation import building
 from hearth.simulation.affordance import allowed
 from hearth.simulation.bits import indices, mask_of
@@ -106,7 +106,7 @@ class Home:
     def node(self, index: int) -> Node:
         """The node as it was given, in the states of the start."""
         given = self.nodes[index]
-        node = given if isinstance(given, Node) else _node(given)
+        node = given if isinstance(given, Node) else read_node(given)
         return with_states(node, index, self.states) if self.restated >> index & 1 else node
 
     def copy(self) -> Home:
@@ -235,17 +235,3 @@ class Home:
             return o
         rooms = self.inside[o] & self.rooms
         return (rooms & -rooms).bit_length() - 1
-
-
-def _node(data: Mapping[str, Any]) -> Node:
-    box = data.get("bounding_box")
-    return Node(
-        data["id"],
-        data["class_name"],
-        data.get("category") or "",
-        tuple(data.get("properties") or ()),
-        tuple(data.get("states") or ()),
-        data.get("prefab_name"),
-        Box(tuple(box["center"]), tuple(box["size"])) if box else None,
-        data.get("yaw"),
-    )

@@ -15,11 +15,11 @@ from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
 from hearth.pipelines.readers.packed import archive, leaves, members, refusal_of
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import change_row
+from hearth.pipelines.rows import change_row, node_row
 from hearth.schemas.change import Parts, difference
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Edge
+from hearth.schemas.graph import Edge, read_node
 from hearth.schemas.text import decode
 from hearth.schemas.vocabulary import STATE_ID
 
@@ -223,7 +223,7 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
         edges = _edges(start)
         ordered = sorted(edges)
         sources, relations, targets = _columns(ordered)
-        nodes = [_node(node) for node in start["nodes"]]
+        nodes = [node_row(read_node(node)) for node in start["nodes"]]
         row = {"nodes": nodes, "sources": sources, "relations": relations, "targets": targets}
         return row, final and _changed(edges, start, final)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -247,20 +247,6 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
     if not {*map(type, sources), *map(type, targets)} <= {int} or not {*map(type, relations)} <= {str}:
         raise TypeError("an edge needs numbers for ids and a word for its relation")
     return sources, relations, targets
-
-
-def _node(data: dict[str, Any]) -> Row:
-    box = data.get("bounding_box")
-    return {
-        "id": int(data["id"]),
-        "class_name": str(data["class_name"]),
-        "category": str(data.get("category") or ""),
-        "properties": list(map(str, data.get("properties") or ())),
-        "states": list(map(str, data.get("states") or ())),
-        "prefab": data.get("prefab_name"),
-        "box": box and {side: dict(zip("xyz", map(float, box[side]), strict=True)) for side in ("center", "size")},
-        "yaw": data.get("yaw"),
-    }
 
 
 def _changed(edges: set[Edge], start: dict[str, Any], final: dict[str, Any]) -> Row:

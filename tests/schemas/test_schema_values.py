@@ -7,13 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hearth.pipelines.rows import node_of, node_row
 from hearth.schemas import vocabulary
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge, edge_set, from_release, to_release
+from hearth.schemas.graph import Edge, edge_set, from_release, read_node, to_release
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import derive, rng
 from hearth.schemas.syntax import parse_program
+from hearth.simulation.home import Home
 
 GRAPH = {
     "trimmed_nodes": [7],
@@ -40,6 +42,17 @@ def test_a_graph_is_written_as_it_was_read():
         graph.node(3)
 
 
+def test_a_node_is_read_the_same_wherever_a_graph_is_read():
+    said = {"id": 3, "class_name": "cup", "states": ["CLEAN"], "bounding_box": {"center": [0, 1, 2], "size": [1, 1, 1]}}
+    bare = {"id": 1, "class_name": "kitchen", "category": "Rooms", "properties": None}
+    data = {"nodes": [bare, said], "edges": []}
+    nodes = from_release(data).nodes
+    home = Home.from_release(data)
+    assert nodes == (home.node(0), home.node(1)) == tuple(map(read_node, data["nodes"]))
+    assert [type(value) for value in nodes[1].box.center] == [float, float, float]
+    assert [node_of(node_row(node)) for node in nodes] == [*nodes]
+
+
 NO_GRAPHS = [
     {},
     {"nodes": []},
@@ -48,6 +61,9 @@ NO_GRAPHS = [
     {"nodes": 3, "edges": []},
     {"nodes": [{"id": "x", "class_name": "bed"}], "edges": []},
     {"nodes": [], "edges": [{"from_id": 1}]},
+    {"nodes": [{"id": 1, "class_name": "bed", "bounding_box": {"center": [0, 0], "size": [1, 1, 1]}}], "edges": []},
+    {"nodes": [{"id": 1, "class_name": "bed", "bounding_box": {"center": [0, "a", 0]}}], "edges": []},
+    {"nodes": [{"id": 1, "class_name": "bed", "states": 3}], "edges": []},
 ]
 
 
