@@ -40,7 +40,7 @@ MUTATIONS = (
              'trouble.does("SwitchOn", trouble.object())', "tests/augment"),
     Mutation("pipelines/handlers/appliances.py", 'return gone_to(trouble, "inside_closed", container, opened)',
              'return gone_to(trouble, "inside_closed", container)', "tests/augment"),
-    Mutation("pipelines/canonical.py", 'return _last_walk(steps, number) == step.objects and',
+    Mutation("pipelines/canonical.py", 'return _last_walk(steps, number, walks) == step.objects and',
              "return False and", "tests/augment"),
     Mutation("scoring/lcs.py", "longest = max(len(a), len(b))", "longest = min(len(a), len(b))", "tests/scoring"),
     Mutation("scoring/graph_f1.py", "return cls(states.prf(), relations.prf(), (states + relations).prf()",

@@ -132,7 +132,7 @@ def check_text(
 def _warnings(program: Program, knowledge: Knowledge, file: str, source: list[str]) -> list[Diagnostic]:
     from hearth.pipelines import lint
 
-    found = [*lint.contradictions(program), *lint.findings(program, knowledge)]
+    found = [*lint.contradictions(program, knowledge), *lint.findings(program, knowledge)]
     return [lint.diagnostic(each, program, file, source) for each in found]
 
 

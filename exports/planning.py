@@ -1,7 +1,7 @@
 """Do a planner and the engine agree? Problems solved by Fast Downward, and the plans run here.
 
 Three things make the search short, besides the pruning of `exports.pddl`: actions that cannot help are left out, those
-that change nothing and those that do what others do (`DISPENSABLE`); so are actions for which the problem has no
+that change nothing and those that do what others do (`dispensable`); so are actions for which the problem has no
 objects; and things must be CLOSE themselves, where the engine also takes what is near something that is.
 """
 
@@ -18,23 +18,13 @@ from typing import Any
 from hearth.exports.pddl import Task, object_names, problem, tasks
 from hearth.exports.planning_domain import OMITTED, TO_DOOR, planning_domain
 from hearth.exports.reading import Wanted
+from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.spread import Seen, spread, unseen
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import run
-
-DISPENSABLE = {
-    "Release": ("Drop",),
-    "Rinse": ("Wash",),
-    "Run": ("Walk",),
-    "Scrub": ("Wash",),
-    "TurnTo": (),
-    "Wipe": ("Wash",),
-}
-"""Actions a plan never needs, and those that do what they do wherever it can be done. Facing something is only needed
-for what changes nothing."""
 
 LIMIT = 60
 """Seconds of search a problem."""
@@ -118,16 +108,28 @@ def _firsts(dataset: Dataset, names: list[str]) -> Iterator[Task]:
     yield from (found[name] for name in names if name in found)
 
 
+def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
+    """Actions a plan never needs, and those that do what they do wherever it can be done.
+
+    Facing something is only needed for what changes nothing.
+    """
+    variants = [knowledge.actions[name] for name in sorted(knowledge.group("variant"))]
+    plain = [action for action in knowledge.actions.values() if action.name not in knowledge.group("variant")]
+    same = {v.name: tuple(a.name for a in plain if a.effects == v.effects) for v in variants}
+    return {**same, "TurnTo": ()}
+
+
 def helpful(task: Task) -> tuple[str, ...]:
     """The actions a plan may need: those that change something, and for which the problem has objects."""
     home = task.world.home
     there = sum(1 << home.index[node] for node in task.objects)
+    spare = dispensable(home.knowledge)
     return tuple(
         name
         for name, action in sorted(home.knowledge.actions.items())
         if action.executed
         and action.effects
-        and name not in DISPENSABLE
+        and name not in spare
         and name not in OMITTED
         and all(home.able(name, position) & there for position in range(action.arity))
     )

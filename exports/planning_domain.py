@@ -29,8 +29,6 @@ PutIn do the same."""
 TO_DOOR = "WalkToDoor"
 """A Walk in our words."""
 
-WALKS = ("Walk", "Run")
-
 
 def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bool = True) -> str:
     """The domain as text.
@@ -92,7 +90,8 @@ class _Writer(Writer):
     def action(self, action: Action, name: str = "", more: Iterable[str] = ()) -> Iterator[str]:
         """The lines of one action; closed doors stop a walk."""
         self._numbers = count(1)
-        return super().action(action, name, more or ([f"(not {_STOPPED})"] if action.name in WALKS else []))
+        stopped = [f"(not {_STOPPED})"] if action.name in self.knowledge.group("walks") else []
+        return super().action(action, name, more or stopped)
 
     def to_door(self, walk: Action) -> list[str]:
         """A walk to a closed door with its room behind it, no other in between: it ends in the room on this side."""

@@ -45,6 +45,10 @@ class Moment:
         """Its index in the home."""
         return self.world.home.index[self.failure.objects[position]]
 
+    def group(self, name: str) -> frozenset[str]:
+        """The actions of a group (see `kb.groups`)."""
+        return self.knowledge.group(name)
+
     def needs(self, name: str, *objects: Key) -> Condition:
         """The condition, needed by this step."""
         return Condition(Literal(name, objects), self.step)
@@ -87,7 +91,7 @@ def _at_reach(moment: Moment) -> Iterator[Condition]:
     for anchor in anchors(moment):
         if anchor != key:
             yield moment.needs("atreach", key, anchor)
-    if not any(step.action in ("Walk", "Run", "Find") for step in moment.program.steps[: moment.step]):
+    if not any(step.action in moment.group("goes") for step in moment.program.steps[: moment.step]):
         yield moment.needs("nearby", key, CHARACTER)
 
 
@@ -165,7 +169,7 @@ def _facing(moment: Moment) -> Iterator[Condition]:
             node = moment.world.home.index.get(ref.node) if ref.node is not None else None
             if node is None or ref.key == key:
                 continue
-            seat = agent.on >> node & 1 and step.action in ("Sit", "Lie")
+            seat = agent.on >> node & 1 and step.action in moment.group("rests")
             if seat or agent.facing >> node & 1:
                 yield moment.needs("facing", ref.key, key)
 
@@ -193,10 +197,9 @@ def _resting(moment: Moment) -> Iterator[Condition]:
 def _holding(moment: Moment) -> Iterator[Condition]:
     """In the hand from the start, unless the program let go of it."""
     key = moment.key()
+    handles = moment.group("takes") | moment.group("frees_hand")
     if key is not None and not any(
-        step.action in ("Grab", "PutBack", "PutIn", "Drop", "Release", "PutObjBack", "PutOn")
-        and step.objects[0].key == key
-        for step in moment.program.steps[: moment.step]
+        step.action in handles and step.objects[0].key == key for step in moment.program.steps[: moment.step]
     ):
         yield moment.needs("holds", key, CHARACTER)
 

@@ -13,10 +13,6 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 
-_GOING = frozenset({"Walk", "Run"})
-_NOTICING = frozenset({"Walk", "Run", "Find", "LookAt"})
-_LEAVING = frozenset({"PutBack", "PutIn", "PutObjBack", "Drop", "Release", "PutOn"})
-
 
 def habits(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """The soft conditions of a program, in step order."""
@@ -34,7 +30,7 @@ def _locations(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     for number, step in enumerate(program.steps):
         for ref in step.objects:
             if knowledge.is_room(ref.name):
-                room = ref.key if step.action in _GOING or step.action == "Find" else room
+                room = ref.key if step.action in knowledge.group("goes") else room
             elif ref.key not in seen:
                 seen.add(ref.key)
                 if room is not None and not has(knowledge, ref.name, "BODY_PART"):
@@ -55,7 +51,7 @@ def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             container = next((key for key in reversed(opened) if _fits(keys[0], key, knowledge)), None)
             if container is not None:
                 yield Condition(Literal("inside", (keys[0], container)), number, hard=False)
-        if step.action in _LEAVING or step.action == "Grab":
+        if step.action in knowledge.group("frees_hand") or step.action == "Grab":
             handled.add(keys[0])
 
 
@@ -79,7 +75,7 @@ def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
                 yield Condition(Literal("in", (ref.key, last)), number, hard=False)
             elif loose and last is not None and last[0] == "chair":
                 yield Condition(Literal("atreach", (ref.key, last)), number, hard=False)
-        if step.action in _NOTICING and step.objects:
+        if step.objects and (step.action in knowledge.group("goes") or step.action == "LookAt"):
             last = None if knowledge.is_room(step.objects[0].name) else step.objects[0].key
 
 
@@ -93,7 +89,7 @@ def _stands(thing: Key, support: Key, knowledge: Knowledge) -> bool:
 def _free_seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """Rule 11: seats and beds that are used are free."""
     for number, step in enumerate(program.steps):
-        if step.action in ("Sit", "Lie") and step.objects:
+        if step.action in knowledge.group("rests") and step.objects:
             yield Condition(Literal("free", (step.objects[0].key,)), number)
 
 
@@ -104,9 +100,9 @@ def _plugs(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         if not step.objects:
             continue
         key = step.objects[0].key
-        if step.action in ("PlugIn", "PlugOut"):
+        if step.action in knowledge.achieving("PLUGGED_IN", "PLUGGED_OUT"):
             plugged.add(key)
-        elif step.action in ("SwitchOn", "SwitchOff") and key not in plugged:
+        elif step.action in knowledge.achieving("ON", "OFF") and key not in plugged:
             plugged.add(key)
             if has(knowledge, key[0], "HAS_PLUG"):
                 yield Condition(Literal("plugged", (key,)), number)

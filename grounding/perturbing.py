@@ -249,7 +249,8 @@ def _door(case: Case) -> Iterator[Perturbation]:
     """The doors of the room in which the program begins are closed; the character is in another."""
     resting = any(c.name in ("sitting", "lying", "nearby", "holds") for c in case.conditions)
     number, first = next(((n, s) for n, s in enumerate(case.program.steps) if s.objects), (0, None))
-    if first is not None and not resting and first.action in ("Walk", "Run") and _has_door(case, first.objects[0].name):
+    walks = case.knowledge.group("walks")
+    if first is not None and not resting and first.action in walks and _has_door(case, first.objects[0].name):
         yield Perturbation("door", (), (Condition(Literal("shut_in", (first.objects[0].key,)), number),))
 
 
@@ -273,8 +274,9 @@ def _pet(case: Case) -> Iterator[Perturbation]:
 def _dirty(case: Case) -> Iterator[Perturbation]:
     """What the program cleans is dirty."""
     seen: set[Key] = set()
+    cleaning = case.knowledge.achieving("CLEAN")
     for number, step in enumerate(case.program.steps):
-        if step.action in ("Wash", "Rinse", "Scrub", "Wipe") and step.objects[0].key not in seen:
+        if step.action in cleaning and step.objects[0].key not in seen:
             seen.add(step.objects[0].key)
             known = tuple(c for c in case.conditions.about(step.objects[0].key) if c.name in ("clean", "dirty"))
             if not any(c.name == "dirty" for c in known):

@@ -16,10 +16,6 @@ from hearth.simulation.engine import Execution
 from hearth.simulation.holds import RELATED, holds
 from hearth.simulation.world import World
 
-GOING = frozenset({"Walk", "Run", "Find"})
-"""Actions that take the character somewhere."""
-
-
 Postconditions = tuple[Literal[Key], ...]
 """States, ON, INSIDE and HOLDS, of a program's objects, sorted, each once; what is worn is ON the character."""
 
@@ -41,7 +37,8 @@ def achieved(execution: Execution) -> Postconditions:
     held = {fact.target for fact in now if fact.name == HOLDS}
     poured = _residues(program, now, held, rooms)
     placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
-    walked = [step.objects[0].key for step in program.steps if step.action in GOING and step.objects]
+    going = home.knowledge.group("goes")
+    walked = [step.objects[0].key for step in program.steps if step.action in going and step.objects]
 
     def is_meant(fact: Literal[Key]) -> bool:
         if fact in poured:

@@ -35,7 +35,7 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
     `actual` which step made that impossible.
     """
     conditions, execution, step = _inferred(program, knowledge, rules)
-    return conditions if execution.failure is None else _contradiction(program, conditions, execution, step)
+    return conditions if execution.failure is None else _contradiction(program, conditions, execution, step, knowledge)
 
 
 def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
@@ -43,7 +43,7 @@ def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> t
     conditions, execution, step = _inferred(program, knowledge, rules)
     if execution.failure is None:
         return ()
-    culprit = None if execution.failure.code in CAUSED_BY_START else _culprit(program, conditions, step)
+    culprit = None if execution.failure.code in CAUSED_BY_START else _culprit(program, conditions, step, knowledge)
     return (step,) if culprit is None else (culprit, step)
 
 
@@ -130,12 +130,14 @@ def _step_of(program: Program, tick: int) -> int:
     return len(program.steps) - 1
 
 
-def _contradiction(program: Program, conditions: Preconditions, execution: Execution, step: int) -> Failure:
+def _contradiction(
+    program: Program, conditions: Preconditions, execution: Execution, step: int, knowledge: Knowledge
+) -> Failure:
     failure = execution.failure
     assert failure is not None
     if failure.code in CAUSED_BY_START:
         return failure
-    culprit = _culprit(program, conditions, step)
+    culprit = _culprit(program, conditions, step, knowledge)
     spoilt = (
         f"made impossible by step {culprit + 1}, [{program.steps[culprit].action}]"
         if culprit is not None
@@ -153,20 +155,17 @@ def _contradiction(program: Program, conditions: Preconditions, execution: Execu
     )
 
 
-def _culprit(program: Program, conditions: Preconditions, step: int) -> int | None:
+def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:
     """The step that needed or did the opposite: the one a condition on the same object stems from, else the last
     earlier step about that object, else the last that moved the character.
     """
     keys = {ref.key for ref in program.steps[step].objects}
+    changing = knowledge.group("operates") | knowledge.group("takes") | knowledge.group("dresses")
     for number in range(step - 1, -1, -1):
-        if keys & {ref.key for ref in program.steps[number].objects} and _CHANGING & {program.steps[number].action}:
+        if keys & {ref.key for ref in program.steps[number].objects} and program.steps[number].action in changing:
             return number
     needed = [c.step for c in conditions if c.name in _OPPOSITES and c.objects[0] in keys and c.step < step]
     if needed:
         return needed[-1]
-    moving = ("Walk", "Run", "Find", "Sit", "Lie", "StandUp")
+    moving = knowledge.group("goes") | knowledge.group("rests") | knowledge.group("rises")
     return next((n for n in range(step - 1, -1, -1) if program.steps[n].action in moving), None)
-
-
-_CHANGING = frozenset({"Open", "Close", "SwitchOn", "SwitchOff", "PlugIn", "PlugOut", "Grab", "PutOn", "PutOff"})
-"""Actions that change what they are done to."""

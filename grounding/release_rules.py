@@ -12,17 +12,14 @@ from hearth.grounding.conditions import Condition, Preconditions
 from hearth.grounding.sketch_home import sketch
 from hearth.grounding.things import has
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.literals import CHARACTER, Key, Literal
+from hearth.schemas.literals import CHARACTER, NAME_OF, Key, Literal
 from hearth.schemas.program import Program, Step
+from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import World
 
 SEATS = frozenset({"couch", "bed", "chair", "loveseat", "sofa", "toilet", "pianobench", "bench"})
-_GOING = frozenset({"Walk", "Run"})
-_FIRST = {
-    "PlugIn": "unplugged", "SwitchOn": "is_off", "SwitchOff": "is_on", "Open": "closed", "Close": "open",
-}  # fmt: skip
 
 
 class Compared(NamedTuple):
@@ -69,9 +66,9 @@ def _tried(condition: Condition, program: Program, ours: Preconditions, knowledg
 
 def _by_rules(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     yield from _states(program, knowledge)
-    yield from _rest(program)
+    yield from _rest(program, knowledge)
     yield from _places(program, knowledge)
-    yield from _seats(program)
+    yield from _seats(program, knowledge)
     yield from _rooms(program, knowledge)
     yield from _opened(program)
     yield from _tables(program, knowledge)
@@ -82,23 +79,25 @@ def _soft(name: str, step: int, *objects: Key) -> Condition:
 
 
 def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rule 1: what is first switched, plugged, opened or closed was the other way before."""
+    """Rule 1: what is first switched, plugged in, opened or closed was the other way before."""
     seen: set[tuple[str, Key]] = set()
+    operated = knowledge.group("operates") - knowledge.achieving("PLUGGED_OUT")
     for number, step in enumerate(program.steps):
-        kind = {"SwitchOn": "switch", "SwitchOff": "switch", "Open": "open", "Close": "open", "PlugIn": "plug"}.get(
-            step.action, ""
-        )
-        if not kind or not step.objects or (kind, step.objects[0].key) in seen:
+        if step.action not in operated or not step.objects:
             continue
-        key = step.objects[0].key
+        before = OPPOSITE[knowledge.state_of(step.action)]
+        kind, key = knowledge.group_of(before), step.objects[0].key
+        if (kind, key) in seen:
+            continue
         seen.add((kind, key))
         if key[0] != "eyes":
-            yield _soft(_FIRST[step.action], number, key)
-        if kind == "switch" and has(knowledge, key[0], "HAS_PLUG") and ("plug", key) not in seen:
+            yield _soft(NAME_OF[before], number, key)
+        switched = before in ("ON", "OFF")
+        if switched and has(knowledge, key[0], "HAS_PLUG") and (knowledge.group_of("PLUGGED_IN"), key) not in seen:
             yield _soft("plugged", number, key)
 
 
-def _rest(program: Program) -> Iterator[Condition]:
+def _rest(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """Rules 3 and 6: who first gets up was sitting; what is taken off, and was not put on, is worn."""
     seated = False
     worn: set[Key] = set()
@@ -109,7 +108,7 @@ def _rest(program: Program) -> Iterator[Condition]:
             yield _soft("in", number, step.objects[0].key, CHARACTER)
         elif step.action == "PutOn":
             worn.add(step.objects[0].key)
-        seated = seated or step.action in ("Sit", "Lie")
+        seated = seated or step.action in knowledge.group("rests")
 
 
 def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
@@ -118,32 +117,33 @@ def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     held: set[Key] = set()
     at: Key | None = None
     seat: Key | None = None
+    goes, walks = knowledge.group("goes"), knowledge.group("walks")
     for number, step in enumerate(program.steps):
         keys = [ref.key for ref in step.objects]
         for key in keys:
-            used = step.action not in (*_GOING, "Find", "PutOff") and key not in held
+            used = step.action not in goes and step.action != "PutOff" and key not in held
             if not used or knowledge.is_room(key[0]) or has(knowledge, key[0], "BODY_PART"):
                 continue
             if seat is not None and key != seat:
                 yield _soft("atreach", number, seat, key)
             elif key not in sought and (at is None or (not knowledge.is_room(at[0]) and key != at)):
                 yield _soft("nearby", number, key, CHARACTER) if at is None else _soft("atreach", number, key, at)
-        if step.action in (*_GOING, "Find") and keys:
+        if step.action in goes and keys:
             sought.add(keys[0])
-            at = keys[0] if step.action in _GOING else at
+            at = keys[0] if step.action in walks else at
         elif step.action == "Grab":
             held.add(keys[0])
-        seat = _seat(seat, step)
+        seat = _seat(seat, step, knowledge)
 
 
-def _seat(seat: Key | None, step: Step) -> Key | None:
+def _seat(seat: Key | None, step: Step, knowledge: Knowledge) -> Key | None:
     """What the character sits or lies on after a step."""
-    if step.action in ("Sit", "Lie"):
+    if step.action in knowledge.group("rests"):
         return step.objects[0].key
     return None if step.action in ("StandUp", "WakeUp") else seat
 
 
-def _seats(program: Program) -> Iterator[Condition]:
+def _seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """Rules 10 and 11: what is watched from a seat is faced by it; every seat that is named is free."""
     seat: Key | None = None
     for number, step in enumerate(program.steps):
@@ -152,7 +152,7 @@ def _seats(program: Program) -> Iterator[Condition]:
                 yield _soft("free", number, ref.key)
         if step.action == "Watch" and seat is not None:
             yield _soft("facing", number, seat, step.objects[0].key)
-        seat = _seat(seat, step)
+        seat = _seat(seat, step, knowledge)
 
 
 def _rooms(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
@@ -189,7 +189,7 @@ def _tables(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
                 yield _soft("atreach", number, ref.key, last)
             else:
                 yield _soft("in", number, ref.key, last)
-        if step.action in (*_GOING, "Find", "LookAt") and step.objects:
+        if step.objects and (step.action in knowledge.group("goes") or step.action == "LookAt"):
             key = step.objects[0].key
             last = key if key[0] in knowledge.table_like or key[0] == "chair" else None
         else:

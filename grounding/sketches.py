@@ -19,25 +19,18 @@ from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution
 from hearth.simulation.world import World
 
-ENVIRONMENT = frozenset({"Walk", "Run", "Find", "TurnTo", "StandUp", "WakeUp", "Open", "Close", "PlugIn", "PlugOut"})
-"""Going somewhere, turning, getting up, opening, plugging: what they are for is another step, in any activity."""
-
-REPLACEABLE = ENVIRONMENT | frozenset(
-    {"Grab", "Release", "Drop", "Sit", "Lie", "SwitchOn", "SwitchOff", "PutBack", "PutIn", "PutObjBack", "PutOn",
-     "PutOff", "LookAt"}
-)  # fmt: skip
-"""Actions that repairs insert by themselves, or that leave the world as it was; every other action is the activity."""
-
-_UNDOES = {"SwitchOff": "SwitchOn", "PutObjBack": "Grab", "Drop": "Grab", "Release": "Grab"}
-"""Tidying up: the action, and the one it takes back."""
-
 _WITH_TOOLS = {"Wipe": (), "Cut": ("knife",)}
 """Actions that need something in hand that they do not name; part of its name where only some things will do."""
 
-_PREPARING = ENVIRONMENT | {"Grab", "Release", "Drop"}
-
 _ANYTHING = frozenset({"thing", "artefact", "being"})
 """Kinds whose words ask for nothing in particular."""
+
+_INSERTED = ("preparation", "unsaid", "takes", "frees_hand", "rests", "operates", "dresses")
+
+
+def replaceable(knowledge: Knowledge) -> frozenset[str]:
+    """Actions that repairs insert by themselves, or that leave the world as it was; every other is the activity."""
+    return frozenset().union(*map(knowledge.group, _INSERTED))
 
 
 def meant(goal: Postconditions, program: Program, conditions: Preconditions, knowledge: Knowledge) -> Postconditions:
@@ -48,6 +41,7 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
     what is in what it was poured into, since pouring is a step that is kept anyway.
     """
     reached_into = {c.objects[1]: c.objects[0] for c in conditions if c.name in ("in", "inside")}
+    preparation = knowledge.group("preparation")
     poured = {tuple(ref.key for ref in step.objects) for step in program.steps if step.action == "Pour"}
 
     def is_meant(fact: Literal[Key]) -> bool:
@@ -57,9 +51,9 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
                 not knowledge.is_room(target[0]) and subject[0] != CHARACTER_CLASS and (subject, target) not in poured
             )
         if name == "OPEN":
-            return subject not in reached_into and not _used_after(program, "Open", subject)
+            return subject not in reached_into and not _used_after(program, "Open", subject, preparation)
         if name == HOLDS and target is not None:
-            return not _used_after(program, "Grab", target) and not _is_tool(program, target)
+            return not _used_after(program, "Grab", target, preparation) and not _is_tool(program, target)
         return True
 
     return tuple(fact for fact in goal if is_meant(fact))
@@ -73,6 +67,8 @@ def milestones(execution: Execution) -> Postconditions:
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
     steps = [tick[0] for tick in program.ticks()]
+    knowledge = worlds[0].home.knowledge
+    preparing = knowledge.group("preparation") | knowledge.group("takes") | knowledge.group("lets_go")
     first, last = frozenset(_worked_with(worlds[0], nodes)), frozenset(_worked_with(worlds[-1], nodes))
     found: list[Literal[Key]] = []
     since: dict[Literal[Key], int] = {}
@@ -80,7 +76,7 @@ def milestones(execution: Execution) -> Postconditions:
         now = frozenset(_worked_with(world, nodes))
         for fact in sorted(since.keys() - now, key=str):
             began = since.pop(fact)
-            if fact not in first | last and any(s.action not in _PREPARING for s in steps[began : tick - 1]):
+            if fact not in first | last and any(s.action not in preparing for s in steps[began : tick - 1]):
                 found.append(fact)
         for fact in now:
             since.setdefault(fact, tick)
@@ -93,11 +89,11 @@ def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
 
 
-def _used_after(program: Program, action: str, key: Key) -> bool:
-    """Whether a thing is of use in a step after the last such action on it."""
+def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:
+    """Whether a thing is of use in a step after the last such action on it, preparations aside."""
     last = max((n for n, s in enumerate(program.steps) if s.action == action and _first(s) == key), default=-1)
     later = program.steps[last + 1 :]
-    return any(step.action not in ENVIRONMENT and key in (ref.key for ref in step.objects) for step in later)
+    return any(step.action not in preparation and key in (ref.key for ref in step.objects) for step in later)
 
 
 def _is_tool(program: Program, key: Key) -> bool:
@@ -123,8 +119,8 @@ def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
     """
     sentences = [_words(text) for text in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", _told(program))]
     return tuple(
-        step.action not in ENVIRONMENT
-        and not _takes_back(program, number)
+        step.action not in knowledge.group("preparation")
+        and not _takes_back(program, number, knowledge)
         and any(_says(step, sentence, knowledge) for sentence in sentences)
         for number, step in enumerate(program.steps)
     )
@@ -134,12 +130,14 @@ def _told(program: Program) -> str:
     return f"{program.title}. {program.description}".lower()
 
 
-def _takes_back(program: Program, number: int) -> bool:
+def _takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
+    """Whether a step tidies up: puts away what was taken, or switches off what was switched on."""
     step = program.steps[number]
-    done = _UNDOES.get(step.action)
-    return done is not None and any(
-        earlier.action == done and earlier.objects == step.objects for earlier in program.steps[:number]
-    )
+    if step.action in knowledge.group("forgets"):
+        done = knowledge.group("takes")
+    else:
+        done = knowledge.achieving("ON") if knowledge.state_of(step.action) == "OFF" else frozenset()
+    return any(earlier.action in done and earlier.objects == step.objects for earlier in program.steps[:number])
 
 
 def _says(step: Step, sentence: frozenset[str], knowledge: Knowledge) -> bool:

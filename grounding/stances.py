@@ -15,12 +15,6 @@ from hearth.simulation.world import World
 
 RIGHT, LEFT = "right", "left"
 
-TOUCHING = frozenset({
-    "Close", "Cut", "Move", "Open", "PlugIn", "PlugOut", "PointAt", "Pull", "Push", "PutOff", "PutOn", "Rinse", "Scrub",
-    "Squeeze", "SwitchOff", "SwitchOn", "Touch", "Type", "Wash", "Wipe",
-})  # fmt: skip
-"""What is done with a hand that is free, else with the right one."""
-
 
 @dataclass(frozen=True, slots=True)
 class Stance:
@@ -89,6 +83,6 @@ def hand_of(step: Step, before: World, after: World) -> str | None:
     for side, hand in ((RIGHT, old.right), (LEFT, old.left)):
         if any(bit & hand for bit in held):
             return side
-    if step.action not in TOUCHING:
+    if step.action not in before.home.knowledge.group("hand"):
         return None
     return LEFT if old.right and not old.left else RIGHT

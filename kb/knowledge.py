@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from hearth.kb.formula import Effect, Formula, Term
+from hearth.kb.groups import groups, state_of
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
+from hearth.schemas.vocabulary import STATES
 
 _DROPPED = {ord(letter): None for letter in " _-"}
 
@@ -86,6 +88,43 @@ class Knowledge:
                     name = terms[1].name if name == "state" else name
                     found.setdefault(name, []).append((action, effect))
         return {name: tuple(pairs) for name, pairs in found.items()}
+
+    def achieving(self, *states: str) -> frozenset[str]:
+        """The names of the actions that bring their object, or the character, into one of these states."""
+        return frozenset().union(*(self._achieving.get(state, ()) for state in states))
+
+    def achiever(self, state: str) -> str:
+        """The plainest action that brings something into a state, by name; '' when none does."""
+        names = self._achieving.get(state, ())
+        return min(names, key=lambda name: name in self.group("variant"), default="")
+
+    @cached_property
+    def _achieving(self) -> Mapping[str, tuple[str, ...]]:
+        found = {state: self.achievers(state) for state in STATES}
+        return {
+            state: tuple(action.name for action, effect in pairs if effect.literal.name == "state")
+            for state, pairs in found.items()
+        }
+
+    def group(self, name: str) -> frozenset[str]:
+        """The names of the actions of a group (see `kb.groups`).
+
+        Raises:
+            KeyError: there is no such group.
+        """
+        return self._groups[name]
+
+    @cached_property
+    def _groups(self) -> Mapping[str, frozenset[str]]:
+        return groups(self.actions.values())
+
+    def state_of(self, action: str) -> str:
+        """The state that the object of an action enters, or ''."""
+        return self._states_made.get(action, "")
+
+    @cached_property
+    def _states_made(self) -> Mapping[str, str]:
+        return {name: state_of(action) for name, action in self.actions.items() if state_of(action)}
 
     def repairs_for(self, code: Code, action: str) -> tuple[Repair, ...]:
         """What may be done when the action fails with that code, the first choice first."""

@@ -21,12 +21,19 @@ Rows = Mapping[tuple[str, ...], Entry]
 T = TypeVar("T")
 
 
-def yaml_entries(layers: Layers, name: str, faults: Faults) -> dict[str, Entry]:
-    """The top-level entries of a YAML file, over all layers."""
+def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: str = "") -> dict[str, Entry]:
+    """The top-level entries of a YAML file, over all layers.
+
+    An entry replaces the one below it, but for the part `inherited`, which it takes over where it does not name it.
+    """
     result: dict[str, Entry] = {}
     for layer in layers:
         if (layer / name).exists():
-            result.update(read_yaml(layer / name, faults))
+            for key, entry in read_yaml(layer / name, faults).items():
+                below = result.get(key)
+                parts = below.value if below is not None and isinstance(below.value, dict) else {}
+                kept = inherited in parts and isinstance(entry.value, dict)
+                result[key] = entry._replace(value={inherited: parts[inherited], **entry.value}) if kept else entry
     return result
 
 

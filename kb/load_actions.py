@@ -19,6 +19,7 @@ from hearth.kb.formula import (
     parse_formula,
     predicates,
 )
+from hearth.kb.groups import DECLARED
 from hearth.kb.layers import Layers, check_ids, check_properties, parsed, yaml_entries
 from hearth.kb.reading import Entry, Faults, strings
 from hearth.kb.records import Action, Condition, Repair, RepairStep, Requirement
@@ -27,14 +28,14 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
-_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "source"})
+_ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source"})
 _REPAIR_KEYS = frozenset({"on", "actions", "when", "do", "say", "source"})
 
 
 def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict[str, Action]:
     """Every action by name, in the order of the ids."""
-    executed = yaml_entries(layers, "actions.yaml", faults)
-    written = yaml_entries(layers, "actions_written.yaml", faults)
+    executed = yaml_entries(layers, "actions.yaml", faults, inherited="groups")
+    written = yaml_entries(layers, "actions_written.yaml", faults, inherited="groups")
     grammar = yaml_entries(layers, "affordances.yaml", faults)
     for name in sorted(executed.keys() & written.keys()):
         faults.at(written[name], f"`{name}` stands in actions.yaml too", "an action is executed or only written")
@@ -78,8 +79,16 @@ def _action(name: str, entry: Entry, grammar: Entry | None, entries: Mapping[str
         template=str(fields.get("say") or name),
         words=strings(fields.get("words")),
         aliases=strings(fields.get("aliases")),
+        groups=_groups(fields.get("groups"), entry, faults),
         source=str(fields.get("source") or "release"),
     )
+
+
+def _groups(value: Any, at: Entry, faults: Faults) -> frozenset[str]:
+    names = frozenset(strings(value))
+    for unknown in sorted(names - DECLARED.keys()):
+        faults.at(at, f"`{unknown}` is not a group of actions", f"groups are {', '.join(DECLARED)}")
+    return names
 
 
 def _requirement(value: Any, at: Entry, faults: Faults) -> Requirement:

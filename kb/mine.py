@@ -16,16 +16,6 @@ from hearth.kb.knowledge import Knowledge
 Steps = Sequence[tuple[str, Sequence[str]]]
 """A program: actions with the names of their objects."""
 
-MOVES = frozenset({"Walk", "Run", "Find", "Crawl", "Walktowards", "Enter"})
-"""Actions after which the character is at their object."""
-
-
-HANDLING = MOVES | frozenset(
-    {"Close", "Drop", "Grab", "LookAt", "Move", "Open", "PlugIn", "PlugOut", "PointAt", "Pull", "Push", "PutBack"}
-    | {"PutIn", "PutObjBack", "Release", "Sit", "SwitchOff", "SwitchOn", "Touch", "TurnTo"}
-)
-"""Actions that are done on the way to a purpose; no object is said to serve them."""
-
 
 class Proposal(NamedTuple):
     """A fact that programs suggest.
@@ -107,31 +97,43 @@ def _known_steps(program: Steps, knowledge: Knowledge) -> Iterator[tuple[str, tu
             yield action.name, tuple(thing.same_as or thing.name for thing in things if thing)
 
 
+def _moves(knowledge: Knowledge) -> frozenset[str]:
+    """Actions after which the character is at, or in, their object."""
+    return knowledge.group("goes") | {"Enter"}
+
+
+def _handling(knowledge: Knowledge) -> frozenset[str]:
+    """Actions that are done on the way to a purpose; no object is said to serve them."""
+    means = frozenset().union(*map(knowledge.group, ("handling", "operates", "takes", "frees_hand")))
+    return _moves(knowledge) | means - knowledge.group("dresses")
+
+
 def _count(counts: _Counts, steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> None:
     def a_thing(name: str) -> bool:
         return not knowledge.is_room(name) and knowledge.objects[name].hypernym != "body_part"
 
     counts.programs += 1
+    handling = _handling(knowledge)
     things = sorted({name for _, names in steps for name in names if a_thing(name)})
-    actions = sorted({action for action, names in steps if names and action not in HANDLING})
+    actions = sorted({action for action, names in steps if names and action not in handling})
     counts.names.update([*things, *actions])
     counts.together.update(combinations(things, 2))
     counts.together.update((thing, action) for thing in things for action in actions)
     counts.placed.update(set(_placings(steps, knowledge)))
     counts.rooms.update(set(_findings(steps, knowledge)))
     counts.near.update({pair for pair in _neighbours(steps, knowledge) if all(map(a_thing, pair))})
-    counts.order.update(set(_orders(steps)))
+    counts.order.update(set(_orders(steps, knowledge)))
 
 
 def _placings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str, str]]:
     """What is put on or in what, and what is taken from something just opened."""
     opened = ""
     for action, names in steps:
-        if action in ("PutBack", "PutIn") and names[0] != names[1]:
+        if action in knowledge.group("puts") and names[0] != names[1]:
             yield names[0], "ON" if action == "PutBack" else "IN", names[1]
         elif action == "Open":
             opened = names[0] if "CONTAINERS" in knowledge.objects[names[0]].properties else ""
-        elif action in ("Close", "Walk", "Run"):
+        elif action == "Close" or action in knowledge.group("walks"):
             opened = ""
         elif action == "Grab" and opened and names[0] != opened:
             yield names[0], "IN", opened
@@ -140,8 +142,9 @@ def _placings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) ->
 def _findings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     """Which things are first used in which room."""
     room, carried = "", set[str]()
+    moves = _moves(knowledge)
     for action, names in steps:
-        if action in MOVES and names and knowledge.is_room(names[0]):
+        if action in moves and names and knowledge.is_room(names[0]):
             room = names[0]
             continue
         for name in names:
@@ -153,24 +156,27 @@ def _findings(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) ->
 def _neighbours(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     """What stands within reach of a seat or bed: used while on it, not carried there, not carried at all."""
     seat, held = "", set[str]()
+    leaving = _moves(knowledge) | knowledge.group("rises")
+    idle = knowledge.group("looks") | {"Greet"}
     for action, names in steps:
-        if action in ("Sit", "Lie"):
+        if action in knowledge.group("rests"):
             seat = names[0]
-        elif action in (*MOVES, "StandUp"):
+        elif action in leaving:
             seat = seat if action == "Find" else ""
         elif action == "Grab":
             held.update(names)
         elif seat and names and names[0] not in held and names[0] != seat:
             fixed = "GRABBABLE" not in knowledge.objects[names[0]].properties
-            if fixed and action not in ("Watch", "LookAt", "PointAt", "TurnTo", "Greet"):
+            if fixed and action not in idle:
                 yield names[0], seat
 
 
-def _orders(steps: list[tuple[str, tuple[str, ...]]]) -> Iterator[tuple[str, str]]:
+def _orders(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     """Successive actions on one object, looks and moves aside."""
     on: dict[str, list[str]] = {}
+    aside = _moves(knowledge) | {"LookAt", "TurnTo"}
     for action, names in steps:
-        if names and action not in MOVES and action not in ("LookAt", "TurnTo"):
+        if names and action not in aside:
             on.setdefault(names[0], []).append(action)
     for actions in on.values():
         yield from ((first, then) for first, then in pairwise(actions) if first != then)

@@ -83,6 +83,7 @@ class Action:
         template: the step in words, `Put {0} on {1}`.
         words: other ways to begin the step.
         aliases: other spellings of the name.
+        groups: those of `groups.DECLARED` that it belongs to; others follow from its literals.
         source: release, thesis or ours.
     """
 
@@ -97,6 +98,7 @@ class Action:
     template: str = ""
     words: tuple[str, ...] = ()
     aliases: tuple[str, ...] = ()
+    groups: frozenset[str] = frozenset()
     source: str = ""
 
     @property

@@ -9,14 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from hearth.grounding.postconditions import Postconditions, nodes_of, reached
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.program import Program, Step
+from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import World
-
-_UNDOING = {"Open": "Close", "SwitchOn": "SwitchOff", "PlugIn": "PlugOut", "Grab": "Release"}
-_IN_HAND = ("Grab", "Release")
-_UNDONE = {**_UNDOING, **{undo: do for do, undo in _UNDOING.items()}}
 
 
 def resume(execution: Execution, program: Program, first: int, rules: Rules) -> Execution:
@@ -78,7 +76,7 @@ def _smaller(
     rules: Rules,
 ) -> Iterator[tuple[Execution, tuple[int, ...]]]:
     """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
-    for start, end in _candidates(original, execution.program.steps, sources):
+    for start, end in _candidates(original, execution.program.steps, sources, execution.final.home.knowledge):
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])
         shorter = resume(execution, program, start, rules)
@@ -86,47 +84,55 @@ def _smaller(
             yield shorter, sources[:start] + sources[end:]
 
 
-def _candidates(original: Program, steps: tuple[Step, ...], sources: tuple[int, ...]) -> Iterator[tuple[int, int]]:
+def _candidates(
+    original: Program, steps: tuple[Step, ...], sources: tuple[int, ...], knowledge: Knowledge
+) -> Iterator[tuple[int, int]]:
     together = {n for n, step in enumerate(steps) if step.joins} | {n - 1 for n, s in enumerate(steps) if s.joins}
+    walks = knowledge.group("walks")
     neighbours = set(zip(original.steps, original.steps[1:], strict=False))
     for number in range(len(steps) - 1, -1, -1):
         if number in together:
             continue
-        if sources[number] < 0 or _walks_where_it_is(original, steps, number):
+        if sources[number] < 0 or _walks_where_it_is(original, steps, number, walks):
             yield number, number + 1
         pair = steps[number : number + 2]
-        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new=max(sources[number : number + 2]) < 0):
+        both_new = max(sources[number : number + 2]) < 0
+        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new, knowledge):
             yield number, number + 2
 
 
-def _undo(one: Step, other: Step, both_new: bool) -> bool:
+def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
     """Whether a step undoes the one before it; sitting down and taking something are only undone where both are new."""
     if one.agent != other.agent:
         return False
-    if both_new and other.action == "StandUp":
-        return one.action in ("Sit", "Lie")
-    undoing = _UNDONE.get(one.action) == other.action and one.objects == other.objects
-    return undoing and (both_new or one.action not in _IN_HAND)
+    if both_new and other.action in knowledge.group("rises"):
+        return one.action in knowledge.group("rests")
+    if one.objects != other.objects:
+        return False
+    made = knowledge.state_of(one.action)
+    if made:
+        return knowledge.state_of(other.action) == OPPOSITE[made]
+    return both_new and {one.action, other.action} == {"Grab", "Release"}
 
 
-def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int) -> bool:
+def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> bool:
     """Whether a walk follows one to the same place, and did not in the original."""
     step = steps[number]
-    return _last_walk(steps, number) == step.objects and step not in _repeated_walks(original)
+    return _last_walk(steps, number, walks) == step.objects and step not in _repeated_walks(original, walks)
 
 
-def _last_walk(steps: tuple[Step, ...], number: int) -> object:
+def _last_walk(steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> object:
     """Where the walk before this walk went; None if this is no walk or the first."""
-    if steps[number].action not in ("Walk", "Run"):
+    if steps[number].action not in walks:
         return None
-    earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in ("Walk", "Run"))
+    earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in walks)
     last = next(earlier, None)
     return last.objects if last is not None else None
 
 
-def _repeated_walks(original: Program) -> set[Step]:
+def _repeated_walks(original: Program, walks: frozenset[str]) -> set[Step]:
     """Walks that the original itself makes to where its last walk went."""
-    return {s for n, s in enumerate(original.steps) if _last_walk(original.steps, n) == s.objects}
+    return {s for n, s in enumerate(original.steps) if _last_walk(original.steps, n, walks) == s.objects}
 
 
 def _hands(world: World) -> tuple[int, ...]:

@@ -66,7 +66,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
                 yield fault.line - 1, 1, [line]
         if found or faults:
             continue
-        for finding in (*lint.contradictions(canonical), *lint.from_afar(canonical, known)):
+        for finding in (*lint.contradictions(canonical, known), *lint.from_afar(canonical, known)):
             at = canonical.line(finding.step) - 1
             if at < 0 or "|" in lines[at]:
                 continue

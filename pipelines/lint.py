@@ -14,75 +14,55 @@ from hearth.pipelines import topics
 from hearth.pipelines.findings import Finding
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import NAME_OF
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import print_object, print_step
 
-_SETS: dict[str, tuple[str, str]] = {
-    "SwitchOn": ("power", "on"),
-    "SwitchOff": ("power", "off"),
-    "Open": ("door", "open"),
-    "Close": ("door", "closed"),
-    "PlugIn": ("plug", "in"),
-    "PlugOut": ("plug", "out"),
-}
-"""What an action makes of which of a thing's aspects."""
-
-_SAID = {"SwitchOn": "switched on", "SwitchOff": "switched off", "Open": "opened", "Close": "closed"}
-_GOES = frozenset({"Walk", "Run", "Find", "Walktowards", "Crawl"})
-_PASSING = _GOES | {"TurnTo", "LookAt", "PointAt", "StandUp", "Turnleft", "Turnright", "Walkforward", "Wait"}
-_TOUCHING = frozenset({"Sit", "Lie", "Grab", "Open", "Close", "SwitchOn", "SwitchOff", "PlugIn", "PlugOut"})
-_PUTS = frozenset({"PutBack", "PutIn"})
+_MADE = {"ON": "switched on", "OFF": "switched off", "OPEN": "opened", "CLOSED": "closed"}
 
 
-def contradictions(program: Program) -> Iterator[Finding]:
+def contradictions(program: Program, known: Knowledge) -> Iterator[Finding]:
     """Steps that make a thing what the program has just made it: switched on twice, opened while open."""
     made: dict[tuple[tuple[str, int], str], str] = {}
     for number, step in enumerate(program.steps):
-        if step.action in _SETS and step.objects:
-            aspect, value = _SETS[step.action]
-            key = (step.objects[0].key, aspect)
+        if step.action in known.group("operates") and step.objects:
+            value = known.state_of(step.action)
+            key = (step.objects[0].key, known.group_of(value))
             if made.get(key) == value:
-                said = _SAID.get(step.action, f"{step.action} done")
+                said = _MADE.get(value, f"{step.action} done")
                 message = f"{print_object(step.objects[0])} is {said} twice with nothing between"
                 remedy = "leave the second one out"
                 yield Finding(Code.CONTRADICTION, number, message, remedy, (), True, step.action)
             made[key] = value
 
 
-_GOALS = {
-    "SwitchOn": ("ON", "is_on"),
-    "SwitchOff": ("OFF", "is_off"),
-    "Open": ("OPEN", "open"),
-    "Close": ("CLOSED", "closed"),
-    "PlugIn": ("PLUGGED_IN", "plugged"),
-    "PlugOut": ("PLUGGED_OUT", "unplugged"),
-}
-"""The state that an action is for, in graphs and as a condition that comes with a program."""
-
 Row = Mapping[str, Any]
 
 
-def already(program: Program, groundings: Iterable[Row], conditions: Iterable[Row]) -> Iterator[Finding]:
+def already(
+    program: Program, groundings: Iterable[Row], conditions: Iterable[Row], known: Knowledge
+) -> Iterator[Finding]:
     """Goals that are true at the start, where a program came with its start: in a home's graph, or as conditions.
 
     Args:
         program: in canonical names.
         groundings: with `home`, `bindings` and the `start` graph, which may be None.
         conditions: with `name` and `objects`.
+        known: what actions change.
     """
     told = [(ref["name"], ref["instance"], one["name"]) for one in conditions for ref in one["objects"][:1]]
     starts = [("by its own conditions", frozenset(told))]
     starts += [(f"in {one['home']}", _held(one)) for one in groundings if one["start"]]
     seen: set[tuple[tuple[str, int], str]] = set()
     for number, step in enumerate(program.steps):
-        if step.action not in _GOALS or not step.objects:
+        if step.action not in known.group("operates") or not step.objects:
             continue
-        ref, aspect = step.objects[0], _SETS[step.action][0]
+        ref, state = step.objects[0], known.state_of(step.action)
+        aspect = known.group_of(state)
         if (ref.key, aspect) in seen:
             continue
         seen.add((ref.key, aspect))
-        state, condition = _GOALS[step.action]
-        where = [name for name, held in starts if {(*ref.key, state), (*ref.key, condition)} & held]
+        where = [name for name, held in starts if {(*ref.key, state), (*ref.key, NAME_OF[state])} & held]
         if where:
             message = f"{print_object(ref)} is {state} at the start already, {', '.join(where[:3])}"
             yield Finding(Code.NO_EFFECT, number, message, "leave the step out", (), True, step.action)
@@ -103,7 +83,7 @@ def from_afar(program: Program, known: Knowledge) -> Iterator[Finding]:
     reached: set[str] = set()
     touched: set[tuple[str, int]] = set()
     for number, step in enumerate(program.steps):
-        for ref in _needed_close(step):
+        for ref in _needed_close(step, known):
             if ref.key not in touched and not _within_reach(ref, reached, known):
                 walk = Step("Walk", (ref,), step.agent)
                 message = f"{print_object(ref)} is used, but nobody went to it"
@@ -111,17 +91,17 @@ def from_afar(program: Program, known: Knowledge) -> Iterator[Finding]:
                 yield Finding(Code.NOT_CLOSE, number, message, remedy, (walk,), False, ref.name, ref)
                 reached.add(ref.name)
             touched.add(ref.key)
-        if step.action in _GOES and step.objects:
+        if step.action in known.group("goes") and step.objects:
             touched.add(step.objects[0].key)
             reached.add(step.objects[0].name)
-        if step.action in _PUTS | {"Grab"}:
+        if step.action in known.group("puts") | known.group("takes"):
             touched.update(ref.key for ref in step.objects)
 
 
-def _needed_close(step: Step) -> tuple[ObjectRef, ...]:
-    if step.action in _TOUCHING:
+def _needed_close(step: Step, known: Knowledge) -> tuple[ObjectRef, ...]:
+    if any(step.action in known.group(name) for name in ("rests", "takes", "operates")):
         return step.objects[:1]
-    return step.objects[1:2] if step.action in _PUTS else ()
+    return step.objects[1:2] if step.action in known.group("puts") else ()
 
 
 def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
@@ -154,9 +134,10 @@ def _go(known: Knowledge, one: str, other: str) -> bool:
     )
 
 
-def without_effect(program: Program) -> Iterator[Finding]:
+def without_effect(program: Program, known: Knowledge) -> Iterator[Finding]:
     """A program that only walks about and looks, where that is not what its title is about."""
-    if not program.steps or any(step.action not in _PASSING for step in program.steps):
+    passing = known.group("goes") | known.group("idle")
+    if not program.steps or any(step.action not in passing for step in program.steps):
         return
     if {topics.stem(step.action.lower()) for step in program.steps}.isdisjoint(topics.stems(program.title)):
         yield Finding(Code.NO_EFFECT, -1, "this program does nothing but go and look", "write what is done there")
@@ -221,5 +202,5 @@ def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[
 def findings(program: Program, known: Knowledge) -> Iterable[Finding]:
     """What a program alone shows, contradictions aside."""
     yield from from_afar(program, known)
-    yield from without_effect(program)
+    yield from without_effect(program, known)
     yield from topics.off_topic(program, known)

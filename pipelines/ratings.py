@@ -41,9 +41,6 @@ SAID = {
 THESIS = {Completeness.COMPLETE: 0.64, Completeness.MINOR: 0.28, Completeness.CRUCIAL: 0.08}
 """Of 100 programs, by the median of five raters (thesis 3.4.1)."""
 
-MINOR_STEPS = frozenset({"Walk", "Run", "Find", "TurnTo", "StandUp", "Open", "Close", "LookAt"})
-"""What people leave out because it goes without saying: a robot has to be told, a person does not."""
-
 COLUMNS = ("program_id", "title", "description", "program", "rater", "rating")
 HELP = "1 complete: a robot could do it as written; 2 minor steps are missing (a walk); 3 something crucial is missing"
 
@@ -66,7 +63,7 @@ def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Compl
     came = [step.action for step, source in zip(repaired.program.steps, repaired.sources, strict=True) if source < 0]
     if not came:
         return Completeness.COMPLETE
-    return Completeness.MINOR if MINOR_STEPS.issuperset(came) else Completeness.CRUCIAL
+    return Completeness.MINOR if known.group("unsaid").issuperset(came) else Completeness.CRUCIAL
 
 
 def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:

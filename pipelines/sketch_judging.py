@@ -20,9 +20,6 @@ from hearth.simulation.home import Home
 THESIS_LENGTH = 2.4
 """Steps of a sketch on average (thesis 5.6.3)."""
 
-BY_THE_WAY = frozenset({"Walk", "Run", "Find", "TurnTo", "LookAt", "StandUp", "Grab", "Open", "Close", "PlugIn"})
-"""Actions that the plain baseline drops, always."""
-
 
 class Annotated(NamedTuple):
     """A program, and which of its steps a person kept."""
@@ -60,18 +57,21 @@ class Judgement:
     """What came of comparing.
 
     Attributes:
+        by_the_way: actions that the plain baseline drops, always.
         unmatched: annotations of programs that the sources lack.
         rows: for each program that was judged: its annotation, and the inferred sketch.
     """
 
+    by_the_way: frozenset[str]
     unmatched: int = 0
     rows: list[tuple[Annotated, Keep]] = field(default_factory=list)
 
     def summary(self) -> dict[str, Any]:
         """Scores of the inferred sketches and of both baselines, lengths, and disagreements by action."""
         usual = _usual(annotated for annotated, _ in self.rows)
+        dropped = self.by_the_way
         keepers: dict[str, Callable[[Program], Keep]] = {
-            "dropping_what_is_by_the_way": lambda program: tuple(s.action not in BY_THE_WAY for s in program.steps),
+            "dropping_what_is_by_the_way": lambda program: tuple(s.action not in dropped for s in program.steps),
             "keeping_what_people_usually_keep": lambda program: tuple(s.action in usual for s in program.steps),
         }
         return {
@@ -185,7 +185,8 @@ def _said(row: dict[str, Any], knowledge: Knowledge) -> list[tuple[str, ...]]:
 
 def judge(found: Iterable[Annotated | None], homes: Sequence[Home], knowledge: Knowledge, seed: int = 0) -> Judgement:
     """Infer the sketch of every annotated program, and compare."""
-    judgement = Judgement()
+    dropped = knowledge.group("unsaid") | knowledge.group("takes") | knowledge.achieving("PLUGGED_IN")
+    judgement = Judgement(dropped)
     for one in found:
         if one is None:
             judgement.unmatched += 1

@@ -9,7 +9,7 @@ from hearth.grounding.conditions import Preconditions
 from hearth.grounding.postconditions import Postconditions, achieved, nodes_of
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
-from hearth.grounding.sketches import REPLACEABLE, asked, meant, milestones
+from hearth.grounding.sketches import asked, meant, milestones, replaceable
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.handlers.common import Handler
 from hearth.pipelines.handlers.registry import HANDLERS
@@ -100,7 +100,7 @@ def _smallest(
     for tried in (places[:1], places):
         keep = [True] * len(program.steps)
         for number, step in enumerate(program.steps):
-            if step.action in REPLACEABLE:
+            if step.action in replaceable(knowledge):
                 keep[number] = False
                 keep[number] = not _suffices(keep, tried, goal, passed, knowledge)
         if _suffices(keep, places[len(tried) :], goal, passed, knowledge):

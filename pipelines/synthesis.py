@@ -19,18 +19,10 @@ from hearth.schemas.rng import rng
 DEFAULT_COUNT = 5_193
 """As many as the thesis's SyntheticPrograms has (table 4.1)."""
 
-ANIMATED = (
-    "Walk", "Run", "Sit", "StandUp", "Grab", "Open", "Close", "PutBack", "PutIn", "SwitchOn", "SwitchOff", "Drink",
-    "Touch", "LookAt",
-)  # fmt: skip
-"""The actions that the thesis animates and that occur in programs (table 2.2; 4.4, footnote 1)."""
-
 FILE = Path(__file__).parent / "synthetic.yaml"
 
 _TRIES = 60
 _HANDS = 2
-_FREE_HAND = frozenset({"Grab", "Open", "SwitchOn", "SwitchOff"})
-_MOVES = frozenset({"Walk", "Run", "Find"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +72,7 @@ class Grammar:
     tasks: Mapping[str, Task]
     join: float
     first: float
+    known: Knowledge
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +94,7 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     Args:
         path: a YAML file as `synthetic.yaml`.
         known: what actions take and what objects there are.
-        every_action: keep parts with actions beyond `ANIMATED`.
+        every_action: keep parts with actions beyond those that are animated (thesis 4.4).
 
     Raises:
         HearthError: every unknown action, object or slot, wrong number of objects and thing that does not afford it.
@@ -122,8 +115,10 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     faults = [fault for task in tasks.values() for fault in _faults(task, known, str(path))]
     if faults:
         raise HearthError(faults)
-    kept = {name: task if every_action else _animated(task) for name, task in tasks.items()}
-    return Grammar(plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first)
+    kept = {name: task if every_action else _animated(task, known) for name, task in tasks.items()}
+    return Grammar(
+        plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first, known
+    )
 
 
 def _task(name: str, entry: Mapping[str, Any], told: float) -> Task:
@@ -140,8 +135,9 @@ def _task(name: str, entry: Mapping[str, Any], told: float) -> Task:
     return Task(name, tuple(entry["titles"]), slots, parts)
 
 
-def _animated(task: Task) -> Task:
-    parts = tuple(part for part in task.parts if all(action in ANIMATED for action, _ in part.steps))
+def _animated(task: Task, known: Knowledge) -> Task:
+    animated = known.group("animated")
+    parts = tuple(part for part in task.parts if all(action in animated for action, _ in part.steps))
     return Task(task.name, task.titles, task.slots, parts)
 
 
@@ -211,14 +207,14 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
         chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
         said = {slot: _spoken(name) for slot, name in chosen.items()}
         told += [Told(part, chosen, said) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
-    steps = _steps(told)
+    steps = _steps(told, grammar.known)
     if not steps:
         return None
     ways = dict.fromkeys(_tell(told, grammar, chance) for _ in range(descriptions))
     return Synthetic(chance.choice(grammar.tasks[names[0]].titles), tuple(steps), tuple(ways))
 
 
-def _steps(told: Sequence[Told]) -> list[tuple[str, tuple[str, ...]]]:
+def _steps(told: Sequence[Told], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
     """The steps of the parts with their objects; none where they contradict each other or hands are full."""
     steps: list[tuple[str, tuple[str, ...]]] = []
     made: dict[tuple[str, str], str] = {}
@@ -227,10 +223,10 @@ def _steps(told: Sequence[Told]) -> list[tuple[str, tuple[str, ...]]]:
     for part, chosen, _ in told:
         for action, slots in part.steps:
             names = tuple(chosen.get(slot, slot) for slot in slots)
-            if seated and action in _MOVES:
+            if seated and action in known.group("goes"):
                 steps.append(("StandUp", ()))
                 seated = False
-            if not _possible(action, names, made, held) or (action == "StandUp" and not seated):
+            if not _possible(action, names, made, held, known) or (action == "StandUp" and not seated):
                 return []
             seated = action == "Sit" or (seated and action != "StandUp")
             if not steps or steps[-1] != (action, names):
@@ -238,18 +234,18 @@ def _steps(told: Sequence[Told]) -> list[tuple[str, tuple[str, ...]]]:
     return steps
 
 
-_MADE = {"SwitchOn": "power", "SwitchOff": "power", "Open": "door", "Close": "door"}
-
-
-def _possible(action: str, names: tuple[str, ...], made: dict[tuple[str, str], str], held: set[str]) -> bool:
+def _possible(
+    action: str, names: tuple[str, ...], made: dict[tuple[str, str], str], held: set[str], known: Knowledge
+) -> bool:
     """Whether a step can be done after the others; notes what it makes of things and hands."""
-    if action in _FREE_HAND and len(held) >= _HANDS:
+    state = known.state_of(action) if action in known.group("operates") & known.group("animated") else ""
+    if (action == "Grab" or state in ("OPEN", "ON", "OFF")) and len(held) >= _HANDS:
         return False
-    if action in _MADE:
-        key = (_MADE[action], names[0])
-        if made.get(key) == action or (action == "Open" and made.get(("power", names[0])) == "SwitchOn"):
+    if state:
+        key = (known.group_of(state), names[0])
+        if made.get(key) == state or (state == "OPEN" and made.get((known.group_of("ON"), names[0])) == "ON"):
             return False
-        made[key] = action
+        made[key] = state
     if action == "Sit":
         # Whoever stood up again still counts as being on that seat, which has no room for two.
         again = ("seat", names[0]) in made
@@ -257,10 +253,10 @@ def _possible(action: str, names: tuple[str, ...], made: dict[tuple[str, str], s
         return not again
     if action == "Grab":
         where = made.pop(("place", names[0]), None)
-        if names[0] in held or (where is not None and made.get(("door", where)) == "Close"):
+        if names[0] in held or (where is not None and made.get((known.group_of("CLOSED"), where)) == "CLOSED"):
             return False
         held.add(names[0])
-    elif action in ("PutBack", "PutIn"):
+    elif action in known.group("puts"):
         held.discard(names[0])
         made["place", names[0]] = names[1]
         return names[0] != names[1]

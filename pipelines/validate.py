@@ -39,7 +39,7 @@ def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject
     told = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    start = lint.already(program, groundings, record["conditions"] or ())
+    start = lint.already(program, groundings, record["conditions"] or (), known)
     found = [*lint.findings(told, known), *lint.undeclared(told, record, known), *start]
     warnings = (*warnings, *(lint.diagnostic(each, told, record["place"]) for each in found))
     row = {
@@ -72,7 +72,7 @@ def checked(
     if not faults:
         faults = grammar.affordances(program, known, place, source)
     if not faults:
-        faults = tuple(lint.diagnostic(each, program, place, source) for each in lint.contradictions(program))
+        faults = tuple(lint.diagnostic(each, program, place, source) for each in lint.contradictions(program, known))
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
     program = replace(program, lines=lines)
@@ -94,7 +94,7 @@ def checked_words(
     heard = parse_spoken(text, before, place, known)
     faults = heard.faults or grammar.affordances(heard.program, known, place)
     # Words lose instances: what is switched on twice may be two things, so that this is only a warning here.
-    twice = (lint.diagnostic(each, heard.program, place) for each in lint.contradictions(heard.program))
+    twice = (lint.diagnostic(each, heard.program, place) for each in lint.contradictions(heard.program, known))
     warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place), *twice)
     return heard.program, faults, () if faults else warnings
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
 from hearth.rendering.figure import BODIES, Body, Figure
-from hearth.rendering.gestures import ASLEEP_AFTER, GESTURES, Gesture
+from hearth.rendering.gestures import Gesture, gesture_of
 from hearth.rendering.ground import Ground, Spot
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.models import recipe_of
@@ -22,8 +22,6 @@ from hearth.simulation.homes.forms import form
 
 Point = tuple[float, float, float]
 
-WALKS = frozenset({"Walk", "Run"})
-PUTS = frozenset({"PutBack", "PutIn"})
 ARM = 0.85
 """Metres from which one steps nearer before using the hands."""
 
@@ -126,13 +124,13 @@ def moved(
     if actor.place:
         actor = _risen(actor, places, ground, others)
     actor = replace(actor, stance=Stance(), place=0)
-    goes = room != actor.room or (step is not None and step.action in WALKS)
+    goes = room != actor.room or gesture_of(step).stride > 0
     what = _goal(step)
     pose, front = reachable(what, places) if what and what != room else (None, None)
     if pose is None:
         spot = ground.spot_in(room, others) if goes else None
         return replace(actor, spot=spot or actor.spot, room=room)
-    acts = step is not None and (GESTURES.get(step.action, Gesture()).near or step.action == "Find")
+    acts = step is not None and (gesture_of(step).near or step.action == "Find")
     if goes or (acts and _gap(actor.spot, pose.box) > ARM):
         there = room_of(graph, what) or room
         now = actor.spot if there == actor.room else None
@@ -145,8 +143,7 @@ def _goal(step: Step | None) -> int:
     """The node that a step is about: what hands or eyes go to; 0 for none."""
     if step is None or not step.objects:
         return 0
-    second = GESTURES.get(step.action, Gesture()).hand == "second" and len(step.objects) > 1
-    return step.objects[1 if second or step.action in PUTS else 0].node or 0
+    return step.objects[min(gesture_of(step).about, len(step.objects) - 1)].node or 0
 
 
 def _risen(actor: Actor, places: Places, ground: Ground, others: list[Spot]) -> Actor:
@@ -163,7 +160,7 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
     low = actor.stance.seat + 0.3 if actor.stance.posture == "sitting" else 0.6 * height
     carry = {side: (sign * 0.16, low, 0.34) for side, sign in (("right", 1.0), ("left", -1.0)) if side in held}
     hands: dict[str, Point | None] = {"right": carry.get("right"), "left": carry.get("left")}
-    gesture = GESTURES.get(step.action, Gesture()) if step else Gesture(gaze="")
+    gesture = gesture_of(step)
     target = _target(step, gesture.hand, places, actor)
     acting = _acting_side(step, graph, actor.node.id, held)
     wanted = _hand_target(gesture, target, actor, acting)
@@ -176,8 +173,7 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
         hands = {"right": None, "left": None}
     look = _target(step, gesture.gaze, places, actor) if gesture.gaze else None
     gaze = actor.local(look) if look else None
-    asleep = step is not None and step.action in ASLEEP_AFTER
-    stance = replace(actor.stance, right=hands["right"], left=hands["left"], gaze=gaze, asleep=asleep)
+    stance = replace(actor.stance, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
     if stance.posture == "standing":
         stance = replace(stance, stride=gesture.stride)
     return replace(actor, stance=stance, body=_dressed(actor.body, graph, actor.node.id))
@@ -293,7 +289,7 @@ def _states(graph: EnvironmentGraph, node_id: int) -> frozenset[str]:
 def _seat(actor: Actor, graph: EnvironmentGraph, step: Step | None) -> int:
     """What the character sits or lies on; it stays ON what it has risen from, so the step and the past decide."""
     on = sorted(e.target for e in graph.edges if e.source == actor.node.id and e.relation == "ON")
-    named = _goal(step) if step and step.action in ("Sit", "Lie") else actor.place
+    named = _goal(step) if gesture_of(step).rests else actor.place
     return named if named in on else next(iter(on), 0)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hearth.schemas.program import Step
+
 
 @dataclass(frozen=True, slots=True)
 class Gesture:
@@ -15,6 +17,9 @@ class Gesture:
         gaze: `object`, `second`, or "" (ahead).
         stride: how far the legs are apart.
         near: whether one must be within arm's reach of the object.
+        about: which of the objects hands or eyes go to.
+        rests: whether the object is a seat or bed that is taken.
+        asleep: whether the eyes stay shut afterwards, until the next action.
     """
 
     hand: str = ""
@@ -22,13 +27,17 @@ class Gesture:
     gaze: str = "object"
     stride: float = 0.0
     near: bool = False
+    about: int = 0
+    rests: bool = False
+    asleep: bool = False
 
 
 REACH = Gesture("object", near=True)
-PUT = Gesture("object", near=True)
+PUT = Gesture("object", near=True, about=1)
 LOOK = Gesture()
 MOUTH = Gesture("mouth")
 STILL = Gesture(gaze="")
+REST = Gesture(gaze="", rests=True)
 
 GESTURES: dict[str, Gesture] = {
     "Walk": Gesture(stride=0.75),
@@ -41,7 +50,7 @@ GESTURES: dict[str, Gesture] = {
     "Grab": Gesture("carry", near=True),
     "PutBack": PUT,
     "PutIn": PUT,
-    "PutObjBack": PUT,
+    "PutObjBack": REACH,
     "Drop": LOOK,
     "Release": LOOK,
     "Open": REACH,
@@ -60,7 +69,7 @@ GESTURES: dict[str, Gesture] = {
     "Scrub": Gesture("object", both=True, near=True),
     "Squeeze": Gesture("object", near=True),
     "Cut": REACH,
-    "Pour": Gesture("second", gaze="second", near=True),
+    "Pour": Gesture("second", gaze="second", near=True, about=1),
     "Type": Gesture("object", both=True, near=True),
     "Read": Gesture("chest", both=True),
     "Drink": MOUTH,
@@ -68,13 +77,15 @@ GESTURES: dict[str, Gesture] = {
     "PutOn": Gesture("chest", both=True, gaze=""),
     "PutOff": Gesture("chest", both=True, gaze=""),
     "Greet": Gesture("wave"),
-    "Sit": STILL,
-    "Lie": STILL,
+    "Sit": REST,
+    "Lie": REST,
     "StandUp": STILL,
-    "Sleep": STILL,
+    "Sleep": Gesture(gaze="", asleep=True),
     "WakeUp": STILL,
 }
 """The gesture of each action; those without an entry only look."""
 
-ASLEEP_AFTER = frozenset({"Sleep"})
-"""Actions after which the eyes stay shut, until the next action."""
+
+def gesture_of(step: Step | None) -> Gesture:
+    """The gesture of a step; one looks ahead where there is none."""
+    return STILL if step is None else GESTURES.get(step.action, LOOK)

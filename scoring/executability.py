@@ -54,20 +54,20 @@ STATIC: dict[Code, ErrorClass] = {
 }
 """The class of a failure that does not depend on what was done before; UNBOUND names what the environment lacks."""
 
-ALREADY_SO: dict[Code, frozenset[str]] = {
-    Code.IS_OPEN: frozenset({"Open"}),
-    Code.IS_CLOSED: frozenset({"Close"}),
-    Code.IS_ON: frozenset({"SwitchOn"}),
-    Code.IS_OFF: frozenset({"SwitchOff"}),
-    Code.IS_PLUGGED: frozenset({"PlugIn"}),
-    Code.IS_UNPLUGGED: frozenset({"PlugOut"}),
-    Code.SITTING: frozenset({"Sit"}),
-    Code.LYING: frozenset({"Lie"}),
-    Code.NOT_SITTING_OR_LYING: frozenset({"StandUp"}),
-    Code.NOT_WORN: frozenset({"PutOff"}),
-    Code.NOT_HOLDING: frozenset({"Drop", "Release"}),
+ALREADY_IN: dict[Code, str] = {
+    Code.IS_OPEN: "OPEN",
+    Code.IS_CLOSED: "CLOSED",
+    Code.IS_ON: "ON",
+    Code.IS_OFF: "OFF",
+    Code.IS_PLUGGED: "PLUGGED_IN",
+    Code.IS_UNPLUGGED: "PLUGGED_OUT",
+    Code.SITTING: "SITTING",
+    Code.LYING: "LYING",
 }
-"""The failures, and the actions of which they say that what these would bring about holds already."""
+"""The failures that say of an action that its state holds already."""
+
+ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code.NOT_HOLDING: "lets_go"}
+"""The failures that say of a group of actions that what it would bring about holds already."""
 
 
 PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
@@ -181,13 +181,20 @@ def _classify(
 ) -> ErrorClass:
     if failure.code in STATIC:
         return STATIC[failure.code]
-    already = steps[failed].action in ALREADY_SO.get(failure.code, ())
+    already = _is_so(steps[failed].action, failure.code, worlds[0].home.knowledge)
     if already or (failure.code is Code.NOT_HOLDING and _is_put(steps[failed], worlds[-1])):
         return ErrorClass.ADDITIONAL_STEP
     alone = len(worlds) == failed + 1  # with several agents a tick, worlds and steps do not go together
     if alone and _mended_by_order(steps, failed, worlds, rules):
         return ErrorClass.WRONG_ORDER
     return ErrorClass.MISSING_STEP
+
+
+def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
+    """Whether a failure says that what the action would bring about holds already."""
+    if code in ALREADY_IN:
+        return action in knowledge.achieving(ALREADY_IN[code])
+    return code in ALREADY_SO and action in knowledge.group(ALREADY_SO[code])
 
 
 def _is_put(step: Step, world: World) -> bool:

@@ -204,17 +204,18 @@ def _room_at(world: World, point: Point) -> int:
 def _follow(here: Located, world: World, step: Step, ways: Ways) -> tuple[Pose, ...]:
     """Where the characters stand after an action of the engine."""
     number = step.agent
+    knowledge = world.home.knowledge
     pose = here.poses[number]
     target = world.home.index.get(step.objects[0].node or -1, -1) if step.objects else -1
     box = spot(here, target) if target >= 0 else None
     resting = (world.states[SITTING] | world.states[LYING]) & world.agents[number].bit
-    if box is None or (resting and step.action in ("Walk", "Run", "Find")):
+    if box is None or (resting and step.action in knowledge.group("goes")):
         return here.poses
-    if step.action in ("TurnTo", "LookAt", "PointAt", "Watch"):
+    if step.action in knowledge.group("looks"):
         moved: Pose | None = pose.towards((box.center[0], box.center[2]))
-    elif world.agents[number].inside != here.world.agents[number].inside or step.action in ("Walk", "Run", "Find"):
+    elif world.agents[number].inside != here.world.agents[number].inside or step.action in knowledge.group("goes"):
         moved = ways.stand(box, world.home.node(target).yaw, here.others(number), pose.point)
-    elif step.action in ("Sit", "Lie"):
+    elif step.action in knowledge.group("rests"):
         moved = Pose(box.center[0], box.center[2], world.home.node(target).yaw or pose.yaw)
     else:
         moved = None

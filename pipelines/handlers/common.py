@@ -14,13 +14,8 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation import rows
 from hearth.simulation.agent import Agent
 from hearth.simulation.rules import Rules
+from hearth.simulation.states import LYING, SITTING
 from hearth.simulation.world import World
-
-SITTING, LYING = 8, 9
-"""Where the character's own states stand in `World.states`."""
-
-HAND_FREEING = frozenset({"PutBack", "PutIn", "PutObjBack", "Drop", "Release", "PutOn"})
-"""Actions after which a hand holds one thing less."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +91,10 @@ class Trouble:
         """One node as an object of the program."""
         return self.refs((index,))[0]
 
+    def group(self, name: str) -> frozenset[str]:
+        """The actions of a group (see `kb.groups`)."""
+        return self.knowledge.group(name)
+
     def is_close(self, index: int) -> bool:
         """Whether the character is close to a node."""
         return rows.is_close(self.world, self.agent, index)
@@ -108,9 +107,9 @@ class Trouble:
         """Where, how and on what the program itself has made the character rest: (number of the step, "Sit", couch)."""
         for number in range(self.at - 1, -1, -1):
             step = self.program.steps[number]
-            if step.agent == self.failure.agent and step.action in ("Sit", "Lie"):
+            if step.agent == self.failure.agent and step.action in self.group("rests"):
                 return number, step.action, step.objects[0]
-            if step.agent == self.failure.agent and step.action == "StandUp":
+            if step.agent == self.failure.agent and step.action in self.group("rises"):
                 return None
         return None
 

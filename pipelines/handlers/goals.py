@@ -7,17 +7,6 @@ from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 
-STATE_ACTIONS: dict[str, str] = {
-    "OPEN": "Open",
-    "CLOSED": "Close",
-    "ON": "SwitchOn",
-    "OFF": "SwitchOff",
-    "PLUGGED_IN": "PlugIn",
-    "PLUGGED_OUT": "PlugOut",
-    "CLEAN": "Wash",
-}
-"""The action that brings an object into a state."""
-
 
 def goal_lost(trouble: Trouble) -> Edit | None:
     """Bring about the first thing that is missing, things before where the character ends up."""
@@ -43,7 +32,7 @@ def _steps(trouble: Trouble, fact: Literal[Key]) -> tuple[Step, ...]:
     i = index[nodes[fact.subject]]
     thing = trouble.ref(i)
     if fact.target is None:
-        action = STATE_ACTIONS.get(fact.name)
+        action = trouble.knowledge.achiever(fact.name)
         return (Step("Walk", (thing,)), Step(action, (thing,))) if action else ()
     held = trouble.world.agents[0].held >> i & 1
     fetched = () if held else (Step("Walk", (thing,)), Step("Grab", (thing,)))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from hearth.pipelines.handlers.common import HAND_FREEING, Edit, Trouble, around, before, removed, replaced
+from hearth.pipelines.handlers.common import Edit, Trouble, around, before, removed, replaced
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.program import ObjectRef
 from hearth.simulation import rows
 from hearth.simulation.bits import indices
+from hearth.simulation.states import OPEN
 
 _CLOTHS = ("rag", "towel", "sponge", "paper_towel", "cloth_napkin", "napkin", "dish_towel", "toilet_paper")
 """What one wipes with, best first."""
@@ -83,12 +84,13 @@ def _hand_is_free(trouble: Trouble, thing: ObjectRef) -> int | None:
     useful = needed <= len(steps) or _is_wanted(trouble, thing)
     last = len(steps) - 1
     filled, resting = 0, trouble.resting
+    takes, frees = trouble.group("takes"), trouble.group("frees_hand")
     for number in range(trouble.at, len(steps)):
         step = steps[number]
         if step.agent != trouble.failure.agent:
             continue
-        filled += (step.action == "Grab") - (step.action in HAND_FREEING)
-        resting = step.action in ("Sit", "Lie") or (resting and step.action != "StandUp")
+        filled += (step.action in takes) - (step.action in frees)
+        resting = step.action in trouble.group("rests") or (resting and step.action != "StandUp")
         if filled <= 0 and useful:
             return number if number < needed else None
     return last if filled <= 0 and not resting else None
@@ -134,7 +136,7 @@ def _where_it_belongs(trouble: Trouble) -> tuple[str, int] | None:
         if placement.edge not in ("ON", "INSIDE"):
             continue
         for i in indices(home.by_class.get(placement.destination, 0)):
-            if placement.edge == "ON" or not home.properties["CAN_OPEN"] >> i & 1 or world.states[1] >> i & 1:
+            if placement.edge == "ON" or not home.properties["CAN_OPEN"] >> i & 1 or world.states[OPEN] >> i & 1:
                 rank = (not trouble.is_close(i), rows.room_of(world, i) != room, -placement.weight, i)
                 found.append((rank, placement.edge, i))
     return min(found)[1:] if found else None

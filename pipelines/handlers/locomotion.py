@@ -7,8 +7,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation import rows
 
-_POSTURE = frozenset({"Sit", "Lie", "StandUp", "Walk", "Run"})
-
 
 def not_close(trouble: Trouble) -> Edit | None:
     """Walk to what is not close."""
@@ -42,7 +40,7 @@ def gone_to(trouble: Trouble, name: str, target: ObjectRef, *there: Step) -> Edi
     going = (trouble.does("StandUp"), walk, *there)
     seat = trouble.seat_taken()
     last = _end_of_errand(trouble, target)
-    if seat is None or trouble.step.action in _POSTURE or _leaves_anyway(trouble, last):
+    if seat is None or trouble.step.action in _posture(trouble) or _leaves_anyway(trouble, last):
         return before(trouble, name, *going)
     number, action, place = seat
     back = trouble.does("Walk", place)
@@ -60,10 +58,15 @@ def _end_of_errand(trouble: Trouble, target: ObjectRef) -> int:
         step = trouble.program.steps[number]
         if step.agent != trouble.failure.agent:
             continue
-        if step.action in _POSTURE or target not in step.objects or not _needs_to_be_close(trouble, step):
+        if step.action in _posture(trouble) or target not in step.objects or not _needs_to_be_close(trouble, step):
             break
         last = number
     return last
+
+
+def _posture(trouble: Trouble) -> frozenset[str]:
+    """Actions that leave a seat or a place, or take a seat."""
+    return trouble.group("rests") | trouble.group("rises") | trouble.group("walks")
 
 
 def _needs_to_be_close(trouble: Trouble, step: Step) -> bool:
@@ -75,4 +78,4 @@ def _leaves_anyway(trouble: Trouble, last: int) -> bool:
     """Whether the character's next step gets up or walks away."""
     later = (s for s in trouble.program.steps[last + 1 :] if s.agent == trouble.failure.agent)
     following = next(later, None)
-    return following is not None and following.action in _POSTURE
+    return following is not None and following.action in _posture(trouble)

@@ -44,8 +44,9 @@ def occupied(trouble: Trouble) -> Edit | None:
         return Edit("occupied_by_itself", (Splice(taken[0], 1),)) if mine and taken is not None else None
     named = {ref.node for ref in trouble.program.objects()}
     loose.sort(key=lambda i: (home.ids[i] in named, home.classes[i] not in PETS, i))
-    things = trouble.refs(loose[:too_many])
-    steps = [trouble.does(action, thing) for thing in things for action in ("Find", "Grab", "Release")]
+    steps = []
+    for thing in trouble.refs(loose[:too_many]):
+        steps += [trouble.does("Find", thing), trouble.does("Grab", thing), trouble.does("Release", thing)]
     return before(trouble, "occupied", *steps)
 
 

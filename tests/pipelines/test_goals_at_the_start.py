@@ -2,6 +2,7 @@
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.pipelines.lint import already
 from hearth.schemas.syntax import parse_program
 
@@ -17,7 +18,8 @@ def told(steps, groundings=(), conditions=()):
     program, faults = parse_program(steps)
     assert not faults
     return [
-        (one.code, one.step, one.message.partition("already, ")[2]) for one in already(program, groundings, conditions)
+        (one.code, one.step, one.message.partition("already, ")[2])
+        for one in already(program, groundings, conditions, default())
     ]
 
 

@@ -3,6 +3,7 @@
 import pytest
 
 from hearth.kb import grammar
+from hearth.kb.loading import default
 from hearth.pipelines import lint, topics
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program, print_step
@@ -16,7 +17,7 @@ def program(text, title="", description=""):
 
 def test_switched_on_twice():
     steps = "[SwitchOn] <tv> (1)\n[SwitchOn] <tv> (2)\n[SwitchOn] <tv> (1)\n[SwitchOff] <tv> (1)\n[SwitchOn] <tv> (1)\n"
-    (found,) = lint.contradictions(program(steps))
+    (found,) = lint.contradictions(program(steps), default())
     assert (found.code, found.step, found.remove) == ("CONTRADICTION", 2, True)
 
 
@@ -36,8 +37,9 @@ def test_used_from_afar(knowledge, steps, missing):
 
 
 def test_a_program_that_does_nothing():
-    assert [one.code for one in lint.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"))] == ["NO_EFFECT"]
-    assert not list(lint.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n")))
+    found = lint.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"), default())
+    assert [one.code for one in found] == ["NO_EFFECT"]
+    assert not list(lint.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n"), default()))
 
 
 @pytest.mark.parametrize(
@@ -80,7 +82,7 @@ def test_texts_that_are_no_activity(text, kind):
 
 
 def test_going_is_an_effect_where_the_title_says_so():
-    assert not list(lint.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles")))
+    assert not list(lint.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
 
 
 def test_lamps_and_what_hardly_goes_without_are_within_reach(knowledge):
