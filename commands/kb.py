@@ -13,7 +13,7 @@ from hearth.commands import output
 if TYPE_CHECKING:
     from hearth.kb.compare import Comparison
     from hearth.kb.knowledge import Knowledge
-    from hearth.kb.mine import Steps
+    from hearth.kb.mine import ProgramSteps
 
 app = typer.Typer(
     name="kb",
@@ -256,7 +256,7 @@ def export(
         print(text, end="")
 
 
-def _programs(dataset: Path) -> Iterator[Steps]:
+def _programs(dataset: Path) -> Iterator[ProgramSteps]:
     from hearth.kb.published import programs
 
     return programs(dataset)

@@ -96,7 +96,7 @@ class Chances:
     most: int = MOST
 
 
-Kind = Callable[[Case], Iterator[Perturbation]]
+Perturber = Callable[[Case], Iterator[Perturbation]]
 
 
 def candidates(case: Case) -> tuple[Perturbation, ...]:
@@ -154,7 +154,7 @@ def applied(conditions: Preconditions, perturbations: Sequence[Perturbation]) ->
     return moving.plus(*left, *(c for c in added if c not in moving.conditions))
 
 
-def _swap(kind: str, pairs: Mapping[str, str]) -> Kind:
+def _swap(kind: str, pairs: Mapping[str, str]) -> Perturber:
     """Every condition of these names becomes its opposite."""
 
     def swap(case: Case) -> Iterator[Perturbation]:
@@ -176,7 +176,7 @@ def _plugged(case: Case) -> Iterator[Perturbation]:
             yield one
 
 
-def _drop(kind: str, *names: str) -> Kind:
+def _drop(kind: str, *names: str) -> Perturber:
     """Every condition of these names is dropped."""
 
     def drop(case: Case) -> Iterator[Perturbation]:
@@ -289,7 +289,7 @@ def _seated(case: Case) -> Iterator[Perturbation]:
         yield Perturbation("seated", (), (Condition(Literal("sitting", (CHARACTER,))),))
 
 
-PERTURBATIONS: dict[str, Kind] = {
+PERTURBATIONS: dict[str, Perturber] = {
     "sitting": _drop("sitting", "sitting"),
     "lying": _drop("lying", "lying"),
     "at_reach": _at_reach,

@@ -12,7 +12,7 @@ from hearth.schemas.literals import HANDS, Key
 from hearth.simulation.bits import indices
 from hearth.simulation.holds import PETS
 
-Spot = tuple[int, str]
+Target = tuple[int, str]
 """Index of a place, and ON or INSIDE it."""
 
 
@@ -24,7 +24,7 @@ def apart(draft: Draft, condition: Condition) -> None:
         return
     room = draft.room_of(draft.binding[key])
 
-    def fits(spot: Spot) -> bool:
+    def fits(spot: Target) -> bool:
         return not _bearing(draft, spot[0]) & around
 
     if not _moved(draft, key, lambda s: fits(s) and _room_of(draft, s) == room) and not _moved(draft, key, fits):
@@ -48,14 +48,14 @@ def stowed(draft: Draft, condition: Condition) -> None:
     key, now = condition.objects
     ids, here = draft.base.home.ids, draft.binding.get(now, -1)
 
-    def fits(spot: Spot) -> bool:
+    def fits(spot: Target) -> bool:
         return closes(draft.base, spot) and ids[spot[0]] != here
 
     if _moved(draft, key, fits) or _moved(draft, key, fits, named=True):
         draft.set_state(draft.where[draft.binding[key]][1], "CLOSED")
 
 
-def closes(base: Base, spot: Spot) -> bool:
+def closes(base: Base, spot: Target) -> bool:
     """Whether that is inside something that can be opened and is closed in the home's default state."""
     home = base.home
     return spot[1] == "INSIDE" and bool((home.able("Open") & home.states[0]) >> spot[0] & 1)
@@ -132,16 +132,16 @@ def _bearing(draft: Draft, place: int) -> set[int]:
     return found
 
 
-def _room_of(draft: Draft, spot: Spot) -> int:
+def _room_of(draft: Draft, spot: Target) -> int:
     room = draft.base.room[spot[0]]
     return draft.base.home.ids[room] if room >= 0 else -1
 
 
-def _is_open(draft: Draft, spot: Spot) -> bool:
+def _is_open(draft: Draft, spot: Target) -> bool:
     return spot[1] == "ON" or not draft.base.home.states[0] >> spot[0] & 1
 
 
-def _moved(draft: Draft, key: Key, fits: Callable[[Spot], bool], named: bool = False) -> bool:
+def _moved(draft: Draft, key: Key, fits: Callable[[Target], bool], named: bool = False) -> bool:
     """Put an object where one of its class belongs and which fits; whether there is such a place.
 
     Args:

@@ -15,7 +15,7 @@ from hearth.schemas.vocabulary import PROPERTIES
 Layers = Iterable[Path]
 """Directories, ours first."""
 
-Rows = Mapping[tuple[str, ...], Entry]
+Keyed = Mapping[tuple[str, ...], Entry]
 """Identifying cells -> a row of a table, its value the cells."""
 
 T = TypeVar("T")
@@ -39,7 +39,7 @@ def yaml_entries(layers: Layers, name: str, faults: Faults, inherited: str = "")
 
 def csv_rows(
     layers: Layers, names: Iterable[str], columns: tuple[str, ...], key: tuple[int, ...], faults: Faults
-) -> Rows:
+) -> Keyed:
     """The rows of some CSV files by the cells that identify them, over all layers; two of one layer are a fault."""
     result: dict[tuple[str, ...], Entry] = {}
     for layer in layers:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 
-Steps = Sequence[tuple[str, Sequence[str]]]
+ProgramSteps = Sequence[tuple[str, Sequence[str]]]
 """A program: actions with the names of their objects."""
 
 
@@ -56,7 +56,7 @@ class _Counts:
 
 
 def mine(
-    programs: Iterable[Steps], knowledge: Knowledge, least: int = 3, confidence: float = 0.3
+    programs: Iterable[ProgramSteps], knowledge: Knowledge, least: int = 3, confidence: float = 0.3
 ) -> tuple[Proposal, ...]:
     """What the programs suggest at least `least` times with at least that confidence, most confident first.
 
@@ -88,7 +88,7 @@ def as_lines(proposals: Iterable[Proposal]) -> dict[str, list[str]]:
     return {file: sorted(rows) for file, rows in sorted(lines.items())}
 
 
-def _known_steps(program: Steps, knowledge: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _known_steps(program: ProgramSteps, knowledge: Knowledge) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The steps in our words, second names resolved to first ones."""
     for action_name, object_names in program:
         action = knowledge.action(action_name)

@@ -21,7 +21,7 @@ from hearth.scoring.lcs import matrix
 Steps = tuple[Step, ...]
 
 
-Fact = str
+Difference = str
 """What differs from a home at the start, told of classes: `ON cup table`, `OPEN fridge`."""
 
 
@@ -32,7 +32,7 @@ class Example(NamedTuple):
     text: str
     steps: Steps
     sketch: Steps = ()
-    start: frozenset[Fact] = frozenset()
+    start: frozenset[Difference] = frozenset()
 
 
 class Result(NamedTuple):
@@ -129,7 +129,7 @@ def _examples(dataset: Dataset, split: str, part: str, originals: bool) -> list[
     return [_example(row, starts.get(row["environment_id"], frozenset())) for row in rows]
 
 
-def _example(row: dict[str, Any], start: frozenset[Fact]) -> Example:
+def _example(row: dict[str, Any], start: frozenset[Difference]) -> Example:
     told = row["program"]
     steps = program_of(told).steps
     kept = tuple(step for step, keep in zip(steps, row["keep"] or (), strict=False) if keep)
@@ -200,7 +200,7 @@ def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int,
     return answers
 
 
-def _shared(one: frozenset[Fact], other: frozenset[Fact]) -> float:
+def _shared(one: frozenset[Difference], other: frozenset[Difference]) -> float:
     return len(one & other) / len(one | other) if one or other else 1.0
 
 

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any
 
 from hearth.pipelines.parts import Counts
-from hearth.pipelines.stage import Done, Job, Partition, Seen
+from hearth.pipelines.stage import Done, Job, Partition, RecordsSeen
 from hearth.pipelines.workers import AHEAD, run_here
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -76,7 +76,7 @@ class DaskEngine:
         )
         return Client(self._cluster)
 
-    def run(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+    def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         """Run partitions and yield each with its counts, in the order of completion.
 
         Raises:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Protocol, Self
 
-from hearth.pipelines.stage import Done, Job, Partition, Seen
+from hearth.pipelines.stage import Done, Job, Partition, RecordsSeen
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
@@ -28,7 +28,7 @@ class Engine(Protocol):
     ) -> None:
         """Stop what runs."""
 
-    def run(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+    def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         """Run partitions, asking for few more than run at once, and yield each with its counts when it is done.
 
         Raises:

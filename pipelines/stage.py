@@ -154,14 +154,14 @@ class Job:
         return value_digest([self.key, partition.number, partition.digest])
 
 
-Seen = Callable[[int, int], None]
+RecordsSeen = Callable[[int, int], None]
 """Called with the numbers of records and of rejects that were added."""
 
 Done = tuple[Partition, Counts]
 """A partition that is written, and what became of its records."""
 
 
-def run_partition(job: Job, partition: Partition, seen: Seen) -> Counts:
+def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     """Process one partition and write it."""
     stage = job.stage
     writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))

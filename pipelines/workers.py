@@ -14,7 +14,7 @@ from typing import Any
 from hearth.pipelines.manifest import read_manifest
 from hearth.pipelines.parts import Counts, part_path, rejects_path
 from hearth.pipelines.spread import begin, context
-from hearth.pipelines.stage import Done, Job, Partition, Seen, run_partition
+from hearth.pipelines.stage import Done, Job, Partition, RecordsSeen, run_partition
 from hearth.pipelines.stores import store
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -49,7 +49,7 @@ class Workers:
         gc.set_threshold(*self._thresholds)
         gc.unfreeze()
 
-    def run(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+    def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         """Run partitions and yield each with its counts, in the order of completion.
 
         Raises:
@@ -62,7 +62,7 @@ class Workers:
         else:
             yield from self._pooled(job, rest, seen)
 
-    def _pooled(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+    def _pooled(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         try:
             yield from self._drive(job, partitions, seen)
         except BrokenProcessPool as error:
@@ -74,7 +74,7 @@ class Workers:
                 suggestion="run the same command again: complete parts are kept; fewer --workers need less memory",
             ) from error
 
-    def _drive(self, job: Job, partitions: Iterator[Partition], seen: Seen) -> Iterator[Done]:
+    def _drive(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         pool = self._start()
         before = self._told()
         running: dict[Future[Counts], Partition] = {}
@@ -134,7 +134,7 @@ def run_here(job: Job, partition: Partition) -> Counts:
     return _run(_job, partition, _count)
 
 
-def _run(job: Job, partition: Partition, seen: Seen) -> Counts:
+def _run(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     """Run a partition; its input comes from a store and its parts go there, where the build is in one."""
     if not job.settings.store:
         return run_partition(job, partition, seen)

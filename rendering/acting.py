@@ -8,19 +8,17 @@ from math import atan2, cos, degrees, radians, sin
 
 from hearth.rendering.figure import BODIES, Body, Figure
 from hearth.rendering.gestures import Gesture, gesture_of
-from hearth.rendering.ground import Ground, Spot
+from hearth.rendering.ground import Ground
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.models import recipe_of
 from hearth.rendering.places import HANDS, Places, Pose
 from hearth.rendering.skeleton import Stance
 from hearth.rendering.staging import local_size
-from hearth.schemas.graph import Box, EnvironmentGraph, Node
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.homes.forms import form
-
-Point = tuple[float, float, float]
 
 ARM = 0.85
 """Metres from which one steps nearer before using the hands."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.kernels import (
     FLAT,
     HALF,
@@ -16,8 +17,6 @@ from hearth.rendering.kernels import (
     TINY,
     TWO,
     ZERO,
-    Floats,
-    Ints,
     dot3,
     kernel,
     root,

@@ -15,8 +15,7 @@ from hearth.rendering.maps import extents
 from hearth.rendering.models import draw
 from hearth.rendering.shot import Shot
 from hearth.rendering.things import Thing
-
-Point = tuple[float, float, float]
+from hearth.schemas.graph import Point
 
 
 class Seen(NamedTuple):

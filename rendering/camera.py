@@ -14,10 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.schemas.graph import Box
-
-Point = tuple[float, float, float]
-Floats = NDArray[np.floating[Any]]
+from hearth.rendering.arrays import Floats
+from hearth.schemas.graph import Box, Point
 
 
 @dataclass(frozen=True)

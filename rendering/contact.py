@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hearth.rendering.arrays import Image
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import print_step
 
@@ -16,8 +15,6 @@ GAP = 6
 TITLE = 30
 INK = (35, 38, 44)
 PAPER = 250
-
-Image = NDArray[Any]
 
 
 def contact_sheet(frames: Sequence[tuple[Image, str]], title: str = "", columns: int = 4) -> Image:

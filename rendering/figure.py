@@ -11,8 +11,7 @@ from hearth.rendering.meshes.mesh import Mesh, join, transform
 from hearth.rendering.meshes.paint import Paint
 from hearth.rendering.meshes.shapes import ball, cushion, rod, upright_to
 from hearth.rendering.skeleton import Joints, Stance, Vector, joints
-
-Point = tuple[float, float, float]
+from hearth.schemas.graph import Point
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hearth.rendering import maps, shading
+from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.rays import Hits
 from hearth.rendering.shading import Setting
 from hearth.rendering.shot import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.threads import each
-
-Floats = NDArray[np.floating[Any]]
-Ints = NDArray[np.int32]
-Bytes = NDArray[np.uint8]
 
 SUBPIXELS = ((0.625, 0.125), (0.125, 0.375), (0.875, 0.625), (0.375, 0.875))
 """Where the four rays of a pixel at an edge go: a rotated grid."""

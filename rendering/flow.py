@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.arrays import Floats
 from hearth.rendering.camera import Camera
 from hearth.rendering.maps import HORIZON, motion
 from hearth.rendering.meshes.mesh import rotation
@@ -15,8 +14,6 @@ from hearth.rendering.shading import chunks
 from hearth.rendering.shot import Shot, everywhere, shoot_after
 from hearth.rendering.things import Thing, placed
 from hearth.rendering.threads import each
-
-Floats = NDArray[np.floating[Any]]
 
 
 def flow(shot: Shot, after: Shot) -> Floats:

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.arrays import Floats
 from hearth.rendering.kernels import COLUMNS, nearer, triangle_rows
-from hearth.rendering.meshes.mesh import Floats, Mesh, join
+from hearth.rendering.meshes.mesh import Mesh, join
 from hearth.rendering.rays import Caster, Hits
 from hearth.rendering.things import Thing, placed
 

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import cos, radians, sin
 from random import Random
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.schemas.graph import Box, Node
+from hearth.rendering.arrays import Floats
+from hearth.schemas.graph import Box, Node, Spot
 
 CELL = 0.1
 BODY = 2
@@ -27,11 +27,8 @@ NEAR, FAR = 0.32, 1.1
 SIDE = 0.26
 """Metres from a person's middle within which a door touches it."""
 
-Spot = tuple[float, float]
-Points = NDArray[np.floating[Any]]
 
-
-def nothing(node: int) -> Points:
+def nothing(node: int) -> Floats:
     """What passes over the floor while a thing without doors opens."""
     return np.zeros((0, 2))
 
@@ -52,10 +49,10 @@ class Ground:
     centers: NDArray[np.float64]
     rooms: NDArray[np.int64]
     level: float
-    sweeps: Callable[[int], Points] = nothing
+    sweeps: Callable[[int], Floats] = nothing
 
     @classmethod
-    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Points] = nothing) -> Ground:
+    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Floats] = nothing) -> Ground:
         """The free floor of rooms with boxes, between things with boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
         if not known:

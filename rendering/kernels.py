@@ -13,10 +13,8 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Floats = NDArray[np.floating[Any]]
-Ints = NDArray[np.int32]
+from hearth.rendering.arrays import Floats, Ints
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.aiming import D_AMBIENT, D_HORIZON, D_PLAIN, D_SKY, D_ZENITH, FAINT
+from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.kernels import (
     COLOR,
     DENSITY,
@@ -23,8 +24,6 @@ from hearth.rendering.kernels import (
     UV_U,
     UV_V,
     ZERO,
-    Floats,
-    Ints,
     dot3,
     kernel,
     root,

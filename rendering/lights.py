@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import cos, pi, sin
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from hearth.schemas.graph import Point
 
-Point = tuple[float, float, float]
-Color = tuple[float, float, float]
-Floats = NDArray[np.floating[Any]]
+LinearColor = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +23,7 @@ class Light:
     """
 
     position: Point
-    color: Color
+    color: LinearColor
     span: Point = (0.05, 0.05, 0.05)
     facing: Point | None = None
     room: tuple[float, float, float, float] | None = None
@@ -46,9 +42,9 @@ class Daylight:
     """
 
     sun: Point | None
-    sunlight: Color
-    zenith: Color
-    horizon: Color
+    sunlight: LinearColor
+    zenith: LinearColor
+    horizon: LinearColor
     ambient: float
     sky: float
 
@@ -85,7 +81,7 @@ def from_above(day: Daylight) -> Daylight:
     return replace(day, sun=(0.26, 0.93, -0.26), sunlight=(red, green, blue), ambient=day.ambient * 1.25)
 
 
-LAMP_COLOR: Color = (1.0, 0.86, 0.64)
+LAMP_COLOR: LinearColor = (1.0, 0.86, 0.64)
 
 
 SPILL = 2.0

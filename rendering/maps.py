@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hearth.rendering.kernels import HALF, ONE, ZERO, Floats, Ints, dot3, kernel, root
+from hearth.rendering.arrays import Floats, Ints
+from hearth.rendering.kernels import HALF, ONE, ZERO, dot3, kernel, root
 
 
 @kernel

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from hearth.rendering import maps, shading
 from hearth.rendering.annotations import boxes, camera_of, poses
+from hearth.rendering.arrays import Image
 from hearth.rendering.camera import Camera
 from hearth.rendering.fine import fine
 from hearth.rendering.flow import flow_of
 from hearth.rendering.scene import Scene
-from hearth.rendering.shot import Image, Shot, draft, everywhere, shoot
+from hearth.rendering.shot import Shot, draft, everywhere, shoot
 from hearth.rendering.threads import each
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code

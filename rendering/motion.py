@@ -15,12 +15,9 @@ from hearth.rendering.scene import Scene
 from hearth.rendering.skeleton import HIP, PELVIS_ON_SEAT, Stance
 from hearth.rendering.snapshots import Moment, Play
 from hearth.rendering.things import Thing
-from hearth.schemas.graph import Node
+from hearth.schemas.graph import Node, Point, Spot
 from hearth.schemas.program import Step
 from hearth.simulation.navigation import Ways
-
-Point = tuple[float, float, float]
-Spot = tuple[float, float]
 
 WALKING, RUNNING = 1.15, 2.6
 """Metres a second."""

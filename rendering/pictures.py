@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.arrays import Bytes, Floats
 from hearth.rendering.weave import SIDE, blend, noise
 
-Image = NDArray[np.floating[Any]]
-Bytes = NDArray[np.uint8]
 Color = tuple[int, int, int]
 
 INK: Color = (45, 48, 55)
@@ -22,7 +20,7 @@ def _canvas(color: Color) -> Bytes:
     return np.full((SIDE, SIDE, 3), color, np.uint8)
 
 
-def _linear(image: Bytes) -> Image:
+def _linear(image: Bytes) -> Floats:
     return ((image / 255.0) ** 2.2).astype(np.float32)
 
 
@@ -52,13 +50,13 @@ def _lines(image: Bytes, x0: float, x1: float, y0: float, y1: float, count: int,
             x, k = x + words[k % 400] + 0.02, k + 1
 
 
-def _page() -> Image:
+def _page() -> Floats:
     image = _canvas(PAGE)
     _lines(image, 0.1, 0.9, 0.08, 0.95, 18)
     return _linear(image)
 
 
-def _book_open() -> Image:
+def _book_open() -> Floats:
     image = _canvas(PAGE)
     _lines(image, 0.05, 0.45, 0.08, 0.95, 16)
     _lines(image, 0.55, 0.95, 0.08, 0.95, 16)
@@ -66,7 +64,7 @@ def _book_open() -> Image:
     return _linear(image)
 
 
-def _newspaper() -> Image:
+def _newspaper() -> Floats:
     image = _canvas((226, 223, 212))
     _fill(image, 0.08, 0.05, 0.92, 0.14, (30, 30, 34))
     _fill(image, 0.08, 0.2, 0.5, 0.48, (120, 125, 132))
@@ -77,7 +75,7 @@ def _newspaper() -> Image:
     return _linear(image)
 
 
-def _keyboard() -> Image:
+def _keyboard() -> Floats:
     image = _canvas((44, 46, 52))
     for row in range(5):
         for column in range(14):
@@ -88,7 +86,7 @@ def _keyboard() -> Image:
     return _linear(image)
 
 
-def _piano_keys() -> Image:
+def _piano_keys() -> Floats:
     image = _canvas((245, 243, 236))
     for key in range(28):
         _fill(image, key / 28, 0, key / 28 + 0.005, 1, (90, 90, 90))
@@ -97,7 +95,7 @@ def _piano_keys() -> Image:
     return _linear(image)
 
 
-def _clock() -> Image:
+def _clock() -> Floats:
     image = _canvas((248, 246, 240))
     for hour in range(12):
         angle = hour * np.pi / 6
@@ -120,7 +118,7 @@ _STROKES: dict[str, tuple[float, float, float, float]] = {
 }
 
 
-def _digits() -> Image:
+def _digits() -> Floats:
     image = _canvas((14, 18, 20))
     for x, strokes in ((0.12, "cf"), (0.3, "abged"), (0.56, "abgcd"), (0.76, "abcdef")):
         for stroke in strokes:
@@ -131,7 +129,7 @@ def _digits() -> Image:
     return _linear(image)
 
 
-def _desktop() -> Image:
+def _desktop() -> Floats:
     image = _canvas((52, 104, 160))
     _below(image, (0.75, 0.55, 0.7, 0.5, 0.68), (38, 82, 132))
     _fill(image, 0.2, 0.14, 0.88, 0.8, (244, 245, 248))
@@ -144,7 +142,7 @@ def _desktop() -> Image:
     return _linear(image)
 
 
-def _show_news() -> Image:
+def _show_news() -> Floats:
     image = _canvas((36, 62, 120))
     _fill(image, 0.52, 0.12, 0.94, 0.5, (110, 170, 220))
     _below(image, (0.98, 0.7, 0.64, 0.66, 0.98, 1.2, 1.2, 1.2), (58, 60, 70))
@@ -156,7 +154,7 @@ def _show_news() -> Image:
     return _linear(image)
 
 
-def _show_cartoon() -> Image:
+def _show_cartoon() -> Floats:
     image = _canvas((130, 206, 240))
     _below(image, (0.72, 0.6, 0.7, 0.8, 0.7), (110, 190, 90))
     _disc(image, 0.82, 0.2, 0.1, (255, 224, 90))
@@ -168,7 +166,7 @@ def _show_cartoon() -> Image:
     return _linear(image)
 
 
-def _show_match() -> Image:
+def _show_match() -> Floats:
     image = _canvas((70, 150, 70))
     for stripe in range(0, 8, 2):
         _fill(image, stripe / 8, 0.25, (stripe + 1) / 8, 1, (82, 166, 80))
@@ -181,7 +179,7 @@ def _show_match() -> Image:
     return _linear(image)
 
 
-def _mountains() -> Image:
+def _mountains() -> Floats:
     image = _canvas((168, 206, 232))
     _disc(image, 0.75, 0.22, 0.08, (252, 232, 160))
     _below(image, (0.62, 0.35, 0.5, 0.28, 0.55, 0.45, 0.6), (110, 128, 150))
@@ -190,7 +188,7 @@ def _mountains() -> Image:
     return _linear(image)
 
 
-def _sea() -> Image:
+def _sea() -> Floats:
     image = _canvas((246, 196, 150))
     _disc(image, 0.4, 0.46, 0.13, (250, 120, 80))
     _below(image, (0.52, 0.52), (44, 96, 140))
@@ -199,7 +197,7 @@ def _sea() -> Image:
     return _linear(image)
 
 
-def _flowers() -> Image:
+def _flowers() -> Floats:
     image = _canvas((238, 230, 214))
     _below(image, (1.2, 1.2, 0.72, 0.7, 0.72, 1.2, 1.2), (70, 110, 160))
     petals = (
@@ -217,7 +215,7 @@ def _flowers() -> Image:
     return _linear(image)
 
 
-def _abstract() -> Image:
+def _abstract() -> Floats:
     image = _canvas((240, 236, 224))
     _fill(image, 0.08, 0.1, 0.5, 0.6, (214, 86, 60))
     _fill(image, 0.4, 0.4, 0.9, 0.92, (40, 84, 130))
@@ -226,7 +224,7 @@ def _abstract() -> Image:
     return _linear(image)
 
 
-def _portrait() -> Image:
+def _portrait() -> Floats:
     image = _canvas((120, 140, 124))
     _below(image, (1.1, 0.86, 0.74, 0.7, 0.74, 0.86, 1.1), (126, 54, 60))
     _disc(image, 0.5, 0.38, 0.21, (84, 54, 38))
@@ -237,7 +235,7 @@ def _portrait() -> Image:
     return _linear(image)
 
 
-def _spines() -> Image:
+def _spines() -> Floats:
     image = _canvas((60, 50, 44))
     random = np.random.default_rng(31)
     x = 0.0
@@ -259,7 +257,7 @@ def _spines() -> Image:
     return _linear(image)
 
 
-def _cover() -> Image:
+def _cover() -> Floats:
     image = _canvas((255, 255, 255))
     _fill(image, 0.12, 0.12, 0.88, 0.34, (120, 120, 120))
     _fill(image, 0.2, 0.18, 0.8, 0.22, (250, 250, 250))
@@ -269,7 +267,7 @@ def _cover() -> Image:
     return _linear(image)
 
 
-def _label() -> Image:
+def _label() -> Floats:
     image = _canvas((255, 255, 255))
     for x in (0.0, 0.5):
         _fill(image, x + 0.08, 0.2, x + 0.42, 0.34, (90, 90, 96))
@@ -278,13 +276,13 @@ def _label() -> Image:
     return _linear(image)
 
 
-def _chess() -> Image:
+def _chess() -> Floats:
     step = np.arange(SIDE) * 8 // SIDE
     dark = (step[:, None] + step[None, :]) % 2 == 1
     return _linear(np.where(dark[..., None], np.array((98, 62, 40)), np.array((232, 208, 168))).astype(np.uint8))
 
 
-def _board() -> Image:
+def _board() -> Floats:
     image = _canvas((214, 232, 206))
     for k in range(9):
         color = ((214, 60, 60), (60, 110, 190), (240, 190, 60), (70, 150, 90))[k % 4]
@@ -294,7 +292,7 @@ def _board() -> Image:
     return _linear(image)
 
 
-def _cards() -> Image:
+def _cards() -> Floats:
     image = _canvas((250, 250, 248))
     _fill(image, 0.02, 0.02, 0.98, 0.04, (170, 170, 170))
     for x, y in ((0.28, 0.25), (0.72, 0.25), (0.5, 0.5), (0.28, 0.75), (0.72, 0.75)):
@@ -304,7 +302,7 @@ def _cards() -> Image:
     return _linear(image)
 
 
-def _rug() -> Image:
+def _rug() -> Floats:
     image = _canvas((150, 52, 48))
     _fill(image, 0.06, 0.06, 0.94, 0.94, (226, 204, 160))
     _fill(image, 0.1, 0.1, 0.9, 0.9, (52, 66, 96))
@@ -323,7 +321,7 @@ def _rug() -> Image:
     return blend(_linear(image), (0.1, 0.08, 0.07), np.clip(noise(40, (60, 60)) * 0.1, 0, 0.3))
 
 
-def _banknote() -> Image:
+def _banknote() -> Floats:
     image = _canvas((176, 204, 170))
     _fill(image, 0.04, 0.08, 0.96, 0.92, (206, 224, 198))
     _disc(image, 0.5, 0.5, 0.26, (110, 150, 112))
@@ -332,7 +330,7 @@ def _banknote() -> Image:
     return _linear(image)
 
 
-def _envelope() -> Image:
+def _envelope() -> Floats:
     image = _canvas((240, 234, 218))
     t = np.arange(SIDE) / SIDE
     flap = np.abs(t[:, None] - (0.55 - np.abs(t[None, :] - 0.5))) < 0.012
@@ -342,7 +340,7 @@ def _envelope() -> Image:
     return _linear(image)
 
 
-def _child_drawing() -> Image:
+def _child_drawing() -> Floats:
     image = _canvas((250, 248, 242))
     _disc(image, 0.3, 0.3, 0.14, (240, 190, 60))
     _below(image, (0.9, 0.8, 0.9, 0.82), (110, 170, 90))
@@ -354,7 +352,7 @@ def _child_drawing() -> Image:
     return _linear(image)
 
 
-PICTURES: dict[str, Callable[[], Image]] = {
+PICTURES: dict[str, Callable[[], Floats]] = {
     "page": _page,
     "book_open": _book_open,
     "newspaper": _newspaper,

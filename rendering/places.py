@@ -12,12 +12,10 @@ from hearth.kb.knowledge import Knowledge
 from hearth.rendering.meshes.look import Look, Region
 from hearth.rendering.models import recipe_of
 from hearth.rendering.staging import LIQUIDS, liquid, local_size
-from hearth.schemas.graph import Box, EnvironmentGraph, Node
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.homes.forms import form
-
-Point = tuple[float, float, float]
 
 HANDS = {"HOLDS_RH": "right", "HOLDS_LH": "left"}
 BUILDING = frozenset({"floor", "wall", "ceiling", "doorjamb", "window"})

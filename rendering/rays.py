@@ -11,11 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hearth.rendering.arrays import Floats
 from hearth.rendering.memory import keep
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-
-Floats = NDArray[np.floating[Any]]
 
 SYSTEM_LIBRARIES = "libusb-1.0-0 libgl1 libegl1 libx11-6 libgomp1"
 """Debian packages that open3d is linked against."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering import shading
+from hearth.rendering.arrays import Bytes
 from hearth.rendering.camera import Camera
 from hearth.rendering.geometry import Geometry
 from hearth.rendering.modalities import pictures_of as others
@@ -23,9 +24,6 @@ from hearth.rendering.scene import Scene
 from hearth.rendering.shading import Plate, Setting
 from hearth.rendering.shot import Shot, camera_rays, cast_at, everywhere, overlay, prepare, setting_of
 from hearth.rendering.threads import each
-
-Ints = NDArray[np.int32]
-Bytes = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hearth.rendering.ground import CELL, IGNORED, cells_of, eroded, is_in_the_way
-from hearth.schemas.graph import Box, Node
+from hearth.schemas.graph import Box, Node, Spot
 from hearth.simulation.homes.floor import Floor
 from hearth.simulation.navigation import Ways
-
-Spot = tuple[float, float]
 
 DOORS = frozenset({"door", "maindoor", "balcony_door"})
 """Classes that one opens to walk through."""

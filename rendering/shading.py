@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from hearth.rendering import aiming
 from hearth.rendering import lamplight as loops
 from hearth.rendering.aiming import OPEN
+from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.geometry import Geometry, Part
 from hearth.rendering.kernels import COLUMNS, gather_rows
 from hearth.rendering.lights import Daylight, Light
@@ -24,10 +24,6 @@ from hearth.rendering.memory import scratch
 from hearth.rendering.rays import Hits
 from hearth.rendering.textures import decode, texels
 from hearth.rendering.threads import each
-
-Floats = NDArray[np.floating[Any]]
-Ints = NDArray[np.int32]
-Bytes = NDArray[np.uint8]
 
 CHUNK = 65536
 """Pixels that are worked on together."""

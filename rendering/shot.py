@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering import shading
+from hearth.rendering.arrays import Floats, Image
 from hearth.rendering.camera import Camera
 from hearth.rendering.geometry import Geometry
 from hearth.rendering.kernels import taken
@@ -19,9 +20,6 @@ from hearth.rendering.rays import Hits
 from hearth.rendering.scene import Scene
 from hearth.rendering.shading import Setting
 from hearth.rendering.threads import each
-
-Image = NDArray[Any]
-Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)

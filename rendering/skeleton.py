@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Point = tuple[float, float, float]
+from hearth.schemas.graph import Point
+
 Vector = NDArray[np.floating[Any]]
 Joints = dict[str, Vector]
 

@@ -17,12 +17,10 @@ from hearth.rendering.models import Model, choice_of, model_of
 from hearth.rendering.scene import Scene
 from hearth.rendering.shell import OPENINGS, around_openings, walls_of
 from hearth.rendering.things import Thing
-from hearth.schemas.graph import Box, EnvironmentGraph, Node
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.homes.forms import form
-
-Point = tuple[float, float, float]
 
 UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
 """Categories that are not objects to be drawn; characters are drawn as figures."""
@@ -285,9 +283,6 @@ def liquid(node: Node, vessel: Box) -> Node:
     (x, y, z), (w, h, d) = vessel.center, vessel.size
     side = min(w, d) * 0.72
     return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
-
-
-Spot = tuple[float, float]
 
 
 def _hinge(shut: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:

@@ -7,7 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from hearth.rendering.ground import Ground, Points, nothing
+from hearth.rendering.arrays import Floats
+from hearth.rendering.ground import Ground, nothing
 from hearth.rendering.staging import Stage
 from hearth.rendering.things import placed
 from hearth.schemas.graph import Node
@@ -27,14 +28,14 @@ def ground_of(prepared: Stage) -> Ground:
     nodes = {node.id: node for node in prepared.graph.nodes if node.box and "CAN_OPEN" in node.properties}
 
     @cache
-    def sweeps(number: int) -> Points:
+    def sweeps(number: int) -> Floats:
         return swept(prepared, nodes[number], ground.level) if number in nodes else nothing(number)
 
     ground = Ground.of(prepared.rooms.values(), prepared.graph.nodes, sweeps)
     return ground
 
 
-def swept(prepared: Stage, node: Node, floor: float) -> Points:
+def swept(prepared: Stage, node: Node, floor: float) -> Floats:
     """(n, 2) x and z of what leaves a thing's box while it opens; in steps of `GRID` metres."""
     assert node.box is not None
     opened = replace(node, states=("OPEN",))
@@ -48,7 +49,7 @@ def swept(prepared: Stage, node: Node, floor: float) -> Points:
     return np.unique(np.round(np.concatenate(parts) / GRID), axis=0) * GRID
 
 
-def _edges(corners: Points) -> Points:
+def _edges(corners: Floats) -> Floats:
     """(T * 3 * steps, 3) points on the sides of (T, 3, 3) triangles."""
     ways = np.roll(corners, -1, axis=1) - corners
     return (corners[:, :, None] + ways[:, :, None] * ALONG[:, None]).reshape(-1, 3)

@@ -4,36 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering import pictures
+from hearth.rendering.arrays import Floats
 from hearth.rendering.weave import SIDE, blend, grid_lines, noise, squares
 
-Image = NDArray[np.floating[Any]]
 
-
-def _grey(values: Image) -> Image:
+def _grey(values: Floats) -> Floats:
     return np.repeat(values[..., None], 3, axis=-1).astype(np.float32)
 
 
-def _plain() -> Image:
+def _plain() -> Floats:
     return np.ones((SIDE, SIDE, 3), np.float32)
 
 
-def _wood() -> Image:
+def _wood() -> Floats:
     grain = noise(1, (1.5, 40.0)) * 0.16 + noise(2, (0.8, 9.0)) * 0.14
     wave = np.sin((np.arange(SIDE)[:, None] / SIDE * 6 + noise(3, (1.0, 2.0)) * 0.35) * 2 * np.pi) * 0.07
     return _grey(1 + grain + wave)
 
 
-def _wood_fine() -> Image:
+def _wood_fine() -> Floats:
     return _grey(1 + noise(4, (1.5, 50.0)) * 0.05)
 
 
-def _planks() -> Image:
+def _planks() -> Floats:
     rows = np.arange(SIDE) * 8 // SIDE
     shade = np.array([0.95, 1.04, 0.9, 1.1, 0.98, 0.87, 1.05, 0.93])[rows][:, None]
     shift = np.array([0, 130, 60, 200, 90, 170, 30, 150])[rows][:, None]
@@ -44,29 +42,29 @@ def _planks() -> Image:
     return _grey(shade * board * grain * np.clip(seam, 0.55, 1))
 
 
-def _tiles() -> Image:
+def _tiles() -> Floats:
     return _grey((1 + noise(6, (3.0, 3.0)) * 0.03 + squares(7, 2) * 0.03) * (1 - 0.28 * grid_lines(2, 3)))
 
 
-def _tiles_small() -> Image:
+def _tiles_small() -> Floats:
     return _grey((1 + squares(8, 8) * 0.07) * (1 - 0.25 * grid_lines(8, 2)))
 
 
-def _carpet() -> Image:
+def _carpet() -> Floats:
     return _grey(1 + noise(9, (60.0, 60.0)) * 0.16 + noise(10, (4.0, 4.0)) * 0.04)
 
 
-def _fabric() -> Image:
+def _fabric() -> Floats:
     t = np.arange(SIDE) / SIDE * 2 * np.pi * 32
     weave = np.sin(t)[:, None] * np.sin(t)[None, :]
     return _grey(1 + weave * 0.07 + noise(11, (30.0, 30.0)) * 0.06)
 
 
-def _leather() -> Image:
+def _leather() -> Floats:
     return _grey(1 - np.abs(noise(12, (14.0, 14.0))) * 0.14)
 
 
-def _wicker() -> Image:
+def _wicker() -> Floats:
     t = np.arange(SIDE) / SIDE * 2 * np.pi * 8
     strand = np.where(
         np.sin(t)[:, None] * np.sin(t)[None, :] > 0, np.abs(np.sin(t))[None, :], np.abs(np.sin(t))[:, None]
@@ -74,65 +72,65 @@ def _wicker() -> Image:
     return _grey(0.6 + 0.55 * strand)
 
 
-def _brushed() -> Image:
+def _brushed() -> Floats:
     return _grey(1 + noise(13, (1.0, 90.0)) * 0.05)
 
 
-def _marble() -> Image:
+def _marble() -> Floats:
     vein = np.abs(noise(14, (3.0, 3.0)) + 0.5 * noise(15, (8.0, 8.0)))
     return _grey(1 - 0.22 * np.exp(-vein * 9) + noise(16, (5.0, 5.0)) * 0.03)
 
 
-def _granite() -> Image:
+def _granite() -> Floats:
     return _grey(1 + np.clip(noise(17, (50.0, 50.0)), -1, 2) * 0.35)
 
 
-def _plaster() -> Image:
+def _plaster() -> Floats:
     return _grey(1 + noise(18, (8.0, 8.0)) * 0.012)
 
 
-def _grass() -> Image:
+def _grass() -> Floats:
     return blend(_grey(1 + noise(19, (50.0, 50.0)) * 0.2 + noise(20, (5.0, 5.0)) * 0.12), (1.05, 1.0, 0.9), 0.3)
 
 
-def _leaf() -> Image:
+def _leaf() -> Floats:
     t = np.arange(SIDE) / SIDE
     rib = np.exp(-((t - 0.5) ** 2) / 0.0008)[None, :]
     return _grey(0.9 + 0.35 * rib + noise(21, (12.0, 12.0)) * 0.1)
 
 
-def _brick() -> Image:
+def _brick() -> Floats:
     rows = np.arange(SIDE) * 8 // SIDE
     column = (np.arange(SIDE)[None, :] + (rows % 2 * SIDE // 8)[:, None]) % (SIDE // 4)
     mortar = (column < 4) | ((np.arange(SIDE) % (SIDE // 8)) < 4)[:, None]
     return _grey(np.where(mortar, 1.25, 0.95 + noise(22, (20.0, 20.0)) * 0.12))
 
 
-def _stripes() -> Image:
+def _stripes() -> Floats:
     band = (np.arange(SIDE) * 8 // SIDE % 2 == 0)[None, :].repeat(SIDE, 0)
     return _grey(np.where(band, 1.1, 0.62))
 
 
-def _checks() -> Image:
+def _checks() -> Floats:
     band = (np.arange(SIDE) * 4 // SIDE % 2).astype(np.float32)
     return _grey(1.12 - 0.28 * band[:, None] - 0.28 * band[None, :])
 
 
-def _dots() -> Image:
+def _dots() -> Floats:
     t = (np.arange(SIDE) * 4 / SIDE) % 1 - 0.5
     return _grey(np.where(t[:, None] ** 2 + t[None, :] ** 2 < 0.06, 1.45, 0.9))
 
 
-def _grime() -> Image:
+def _grime() -> Floats:
     patch = np.clip(noise(23, (4.0, 4.0)) * 1.6 + noise(24, (16.0, 16.0)) * 0.6, 0, 1)
     return blend(_plain(), (0.33, 0.24, 0.13), patch)
 
 
-def _water() -> Image:
+def _water() -> Floats:
     return _grey(1 + noise(25, (6.0, 6.0)) * 0.12)
 
 
-TILES: dict[str, Callable[[], Image]] = {
+TILES: dict[str, Callable[[], Floats]] = {
     "plain": _plain,
     "wood": _wood,
     "wood_fine": _wood_fine,
@@ -172,7 +170,7 @@ RANGE = 2.0
 
 
 @cache
-def decode() -> Image:
+def decode() -> Floats:
     """(256,) linear value of each byte of the atlas (stored as a square root, finer in the dark)."""
     return (RANGE * (np.arange(256) / 255) ** 2).astype(np.float32)
 

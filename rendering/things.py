@@ -7,11 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from hearth.rendering.arrays import Floats
 from hearth.rendering.figure import Figure, figure_mesh
-from hearth.rendering.meshes.mesh import Floats, Mesh, rotation, transform
+from hearth.rendering.meshes.mesh import Mesh, rotation, transform
 from hearth.rendering.models import Model, draw
-
-Point = tuple[float, float, float]
+from hearth.schemas.graph import Point
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hearth.rendering.acting import Actor
+from hearth.rendering.arrays import Image
 from hearth.rendering.camera import Camera, follow, look_at, top_view
 from hearth.rendering.motion import Frame, Span, frames, spans
 from hearth.rendering.quiet import quiet
@@ -24,8 +24,6 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
-
-Image = NDArray[Any]
 
 FIRST, THIRD = "first", "third"
 VIEWS = (AUTO, TOP, FIRST, THIRD)

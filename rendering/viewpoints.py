@@ -17,8 +17,6 @@ from hearth.rendering.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
-Point = tuple[float, float, float]
-
 GLANCE = (64, 48)
 """Size of the pictures by which cameras are compared."""
 

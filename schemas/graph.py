@@ -9,12 +9,18 @@ from typing import Any, NamedTuple
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 
+Point = tuple[float, float, float]
+"""(x, y, z) in metres, y upwards."""
+
+Spot = tuple[float, float]
+"""(x, z) in metres: a place on the floor."""
+
 
 class Box(NamedTuple):
-    """An axis-aligned box in metres: centre and full size as (x, y, z), y upwards."""
+    """An axis-aligned box: centre and full size."""
 
-    center: tuple[float, float, float]
-    size: tuple[float, float, float]
+    center: Point
+    size: Point
 
 
 class Edge(NamedTuple):
@@ -123,7 +129,7 @@ def read_node(data: Mapping[str, Any]) -> Node:
     )
 
 
-def _point(values: Iterable[float]) -> tuple[float, float, float]:
+def _point(values: Iterable[float]) -> Point:
     x, y, z = map(float, values)
     return x, y, z
 

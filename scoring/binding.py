@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Set
 
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.scoring.views import Nodes
-
-Key = tuple[str, int]
 
 
 def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Program | None = None) -> Program:

@@ -28,7 +28,7 @@ Label = int | str | tuple[str, int]
 Direction = tuple[str, bool]
 """A relation, and whether its edges go out from the node that is asked about."""
 
-Rows = Mapping[Direction, int]
+EdgeRows = Mapping[Direction, int]
 """The nodes that a node has edges with, by number; an edge of two asked nodes stands in the rows of both."""
 
 
@@ -95,17 +95,17 @@ class View:
         ids: list[int],
         index: Mapping[int, int],
         states: Callable[[int], frozenset[str]],
-        edges: Callable[[int], Rows],
+        edges: Callable[[int], EdgeRows],
     ) -> None:
         self.nodes, self.ids, self.index = nodes, ids, index
         self._states, self._edges = states, edges
-        self._read: dict[int, Rows] = {}
+        self._read: dict[int, EdgeRows] = {}
 
     def states(self, node: int) -> frozenset[str]:
         """The states of a node."""
         return self._states(self.index[node])
 
-    def rows(self, i: int) -> Rows:
+    def rows(self, i: int) -> EdgeRows:
         """The edges of the node of a number, in both directions."""
         found = self._read.get(i)
         if found is None:
@@ -166,7 +166,7 @@ _READ: tuple[tuple[Direction, Callable[[World, int], int], str, str], ...] = (
 """How edges are read: those between things, a character's own, and those of characters with the node."""
 
 
-def _world_rows(world: World, i: int) -> Rows:
+def _world_rows(world: World, i: int) -> EdgeRows:
     home = world.home
     found: dict[Direction, int] = {}
     for direction, read, own, other in _READ:

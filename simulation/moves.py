@@ -10,14 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Box
+from hearth.schemas.graph import Box, Spot
 from hearth.schemas.program import Step
 from hearth.simulation import rows
 from hearth.simulation.actions.common import refuse
 from hearth.simulation.bits import indices, lowest
 from hearth.simulation.engine import act
 from hearth.simulation.moved import carry
-from hearth.simulation.navigation import Point, Pose, Ways, along, distance_to
+from hearth.simulation.navigation import Pose, Ways, along, distance_to
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.states import LYING, SITTING
 from hearth.simulation.world import World
@@ -36,7 +36,7 @@ class Located:
     world: World
     poses: tuple[Pose, ...]
 
-    def others(self, number: int) -> tuple[Point, ...]:
+    def others(self, number: int) -> tuple[Spot, ...]:
         """Where the other characters stand."""
         return tuple(pose.point for i, pose in enumerate(self.poses) if i != number)
 
@@ -178,7 +178,7 @@ def _near(world: World, target: int) -> float:
     return 0.0 if world.home.rooms >> target & 1 else math.inf
 
 
-def _departed(world: World, number: int, point: Point) -> World:
+def _departed(world: World, number: int, point: Spot) -> World:
     """The world once a character is under way: CLOSE to nothing but what it holds, in the room that the point is in."""
     agent = world.agents[number]
     room = _room_at(world, point)
@@ -193,7 +193,7 @@ def _departed(world: World, number: int, point: Point) -> World:
     return World(world.home, world.states, after.agents, moved)
 
 
-def _room_at(world: World, point: Point) -> int:
+def _room_at(world: World, point: Spot) -> int:
     for i in indices(world.home.rooms):
         box = world.home.node(i).box
         if box is not None and distance_to(box, point) == 0.0:

@@ -8,15 +8,13 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from hearth.schemas.graph import Box
+from hearth.schemas.graph import Box, Spot
 from hearth.simulation.homes.floor import Floor
 
 if TYPE_CHECKING:
     import numpy as np
     from scipy.sparse import csr_matrix
 
-Point = tuple[float, float]
-"""(x, z) in metres."""
 
 BODY_RADIUS = 0.25
 """Metres around a character that others keep out of."""
@@ -33,11 +31,11 @@ class Pose(NamedTuple):
     yaw: float = 0.0
 
     @property
-    def point(self) -> Point:
+    def point(self) -> Spot:
         """Where, whatever the look."""
         return (self.x, self.z)
 
-    def towards(self, point: Point) -> Pose:
+    def towards(self, point: Spot) -> Pose:
         """The same place, looking at a point."""
         if math.dist(self.point, point) < 1e-9:
             return self
@@ -78,7 +76,7 @@ class Ways:
         data = (np.concatenate(lengths), (np.concatenate(sources), np.concatenate(targets)))
         return csr_matrix(data, shape=(size, size))
 
-    def nearest(self, point: Point, blocked: np.ndarray | None = None) -> int:
+    def nearest(self, point: Spot, blocked: np.ndarray | None = None) -> int:
         """Number of the walkable cell nearest to a point, or -1 when there is none."""
         import numpy as np
 
@@ -88,7 +86,7 @@ class Ways:
         best = int(distance.argmin()) if len(distance) else -1
         return best if best >= 0 and np.isfinite(distance[best]) else -1
 
-    def blocked(self, others: Sequence[Point]) -> np.ndarray:
+    def blocked(self, others: Sequence[Spot]) -> np.ndarray:
         """Bool by cell: where other characters stand in the way."""
         import numpy as np
 
@@ -97,7 +95,7 @@ class Ways:
             taken |= np.hypot(*(self.points - other).T) < 2 * BODY_RADIUS
         return taken
 
-    def path(self, start: Point, goal: Point, others: Sequence[Point] = ()) -> tuple[Point, ...] | None:
+    def path(self, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...] | None:
         """The shortest free path, as points a cell apart, from the cell of `start` to the one nearest to `goal`.
 
         Args:
@@ -132,9 +130,7 @@ class Ways:
         kept.eliminate_zeros()
         return kept
 
-    def stand(
-        self, box: Box, yaw: float | None, others: Sequence[Point] = (), seed: Point | None = None
-    ) -> Pose | None:
+    def stand(self, box: Box, yaw: float | None, others: Sequence[Spot] = (), seed: Spot | None = None) -> Pose | None:
         """Where to stand for a thing, looking at it: the free cell nearest to its front, or, where it has no front, to
         who comes.
 
@@ -156,19 +152,19 @@ class Ways:
         return pose if distance_to(box, pose.point) <= REACH else None
 
 
-def heading(start: Point, end: Point) -> float:
+def heading(start: Spot, end: Spot) -> float:
     """Degrees about y, from +z towards +x, of the look from one point to another, in [0, 360)."""
     return math.degrees(math.atan2(end[0] - start[0], end[1] - start[1])) % 360
 
 
-def distance_to(box: Box, point: Point) -> float:
+def distance_to(box: Box, point: Spot) -> float:
     """Metres over the floor from a point to a box's edge; 0 within it."""
     dx = max(abs(point[0] - box.center[0]) - box.size[0] / 2, 0.0)
     dz = max(abs(point[1] - box.center[2]) - box.size[2] / 2, 0.0)
     return math.hypot(dx, dz)
 
 
-def along(path: Sequence[Point], stride: float) -> Point:
+def along(path: Sequence[Spot], stride: float) -> Spot:
     """The point `stride` metres along a path, or its end."""
     left = stride
     for here, there in pairwise(path):
@@ -180,18 +176,18 @@ def along(path: Sequence[Point], stride: float) -> Point:
     return path[-1]
 
 
-def length(path: Sequence[Point]) -> float:
+def length(path: Sequence[Spot]) -> float:
     """Metres of a path."""
     return sum(math.dist(here, there) for here, there in pairwise(path))
 
 
-def _front(box: Box, yaw: float) -> Point:
+def _front(box: Box, yaw: float) -> Spot:
     angle = math.radians(yaw)
     out = max(box.size[0] * abs(math.sin(angle)), box.size[2] * abs(math.cos(angle))) / 2 + BODY_RADIUS
     return (box.center[0] + math.sin(angle) * out, box.center[2] + math.cos(angle) * out)
 
 
-def _edge_towards(box: Box, point: Point) -> Point:
+def _edge_towards(box: Box, point: Spot) -> Spot:
     """The point of a box's outline nearest to another point."""
     x = min(max(point[0], box.center[0] - box.size[0] / 2), box.center[0] + box.size[0] / 2)
     z = min(max(point[1], box.center[2] - box.size[2] / 2), box.center[2] + box.size[2] / 2)

@@ -10,9 +10,8 @@ from hearth.simulation import rows
 from hearth.simulation.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.bits import indices
 from hearth.simulation.moved import Moved, link, unlink
+from hearth.simulation.rows import Numbered
 from hearth.simulation.world import World
-
-Numbered = tuple[int, str, int]
 
 _KINDS = {"ON": kinds.ON, "INSIDE": kinds.INSIDE, "CLOSE": kinds.CLOSE, "FACING": kinds.FACING}
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from hearth.rendering.meshes.expressions import Expression, Names, Node, Scope
+from hearth.rendering.meshes.expressions import Expression, Node, Scope, Values
 from hearth.rendering.meshes.interpreter import Draw, Interpreter
 from hearth.rendering.meshes.look import Look, Recipe, Region, Regions, nowhere, top
 from hearth.rendering.meshes.primitives import FUNCTIONS, KNOWN, names_of
@@ -70,9 +70,9 @@ def _scope(family: str, name: str, known: frozenset[str]) -> Scope:
 
 
 @cache
-def _shared(family: str) -> Names:
+def _shared(family: str) -> Values:
     """What all entries of a family can name, from its entry `shared`; mappings are tables."""
-    names, found = dict(FUNCTIONS), Names()
+    names, found = dict(FUNCTIONS), Values()
     for name, node in _entries(family).get("shared", {}).items():
         scope = _scope(family, "shared", frozenset(names)).at(name)
         table = {key: scope.expression(value)(names) for key, value in node.items()} if isinstance(node, dict) else None

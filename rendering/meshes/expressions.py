@@ -14,7 +14,7 @@ from hearth.schemas.failures import Code
 
 Node: TypeAlias = "str | list[Node] | dict[str, Node]"
 """What YAML holds when every scalar is left as text."""
-Names = dict[str, object]
+Values = dict[str, object]
 """Values by name, as an expression sees them."""
 
 ALLOWED = (
@@ -126,7 +126,7 @@ class Expression:
     text: str
     fault: Callable[[str], HearthError]
 
-    def __call__(self, names: Names) -> Any:
+    def __call__(self, names: Values) -> Any:
         """Its value.
 
         Raises:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias, cast
 
-from hearth.rendering.meshes.expressions import Names, Node, Scope
+from hearth.rendering.meshes.expressions import Node, Scope, Values
 from hearth.rendering.meshes.mesh import Mesh, empty, join, shift, stretch, turn
 from hearth.rendering.meshes.primitives import LINES, SHAPES
 
-Build: TypeAlias = Callable[[Names], Mesh]
-Draw: TypeAlias = Callable[[Names, Sequence[object], Names], Mesh]
+Build: TypeAlias = Callable[[Values], Mesh]
+Draw: TypeAlias = Callable[[Values, Sequence[object], Values], Mesh]
 """(names of the look, values of the parameters in order, options by name) -> mesh."""
 Find: TypeAlias = Callable[[str], "Draw | None"]
 
@@ -32,12 +32,12 @@ class Interpreter:
         """`find` knows the shapes that model files define."""
         self.find = find
 
-    def definition(self, entry: dict[str, Node], parameters: str, shared: Names, scope: Scope) -> Draw:
+    def definition(self, entry: dict[str, Node], parameters: str, shared: Values, scope: Scope) -> Draw:
         """An entry as a shape that others can use; `parameters` as in `w, d, paint, inset=0`."""
         takes = scope.parameters(parameters)
         build = self.part(entry, scope.knowing(takes))
 
-        def draw(look: Names, values: Sequence[object], options: Names) -> Mesh:
+        def draw(look: Values, values: Sequence[object], options: Values) -> Mesh:
             given = dict(zip(takes, values, strict=False)) | options
             defaults = {name: default(look) for name, default in takes.items() if default and name not in given}
             if len(values) > len(takes) or given.keys() | defaults.keys() != takes.keys():
@@ -83,7 +83,7 @@ class Interpreter:
         found, inside = self.named(node, scope)
         inner = self.part(rest, inside)
 
-        def bound(names: Names) -> Mesh:
+        def bound(names: Values) -> Mesh:
             names = dict(names)
             for name, value in found:
                 names[name] = value(names)
@@ -107,7 +107,7 @@ class Interpreter:
         values = scope.expression([*ordered, *options.values()])
         count, words = len(ordered), tuple(options)
 
-        def build(names: Names) -> Mesh:
+        def build(names: Values) -> Mesh:
             found = values(names)
             try:
                 return draw(names, found[:count], dict(zip(words, found[count:], strict=True)))
@@ -123,7 +123,7 @@ class Interpreter:
         defined = self.find(key)
         if not defined:
             raise scope.fault("is not a shape")
-        return lambda names, values, options: defined(cast(Names, names[LOOK]), values, options)
+        return lambda names, values, options: defined(cast(Values, names[LOOK]), values, options)
 
     def _parts(self, nodes: list[Node], scope: Scope) -> Build:
         builds = [self.part(node, scope) for node in nodes]
@@ -135,7 +135,7 @@ class Interpreter:
             rest: dict[str, Node] = dict(node) if isinstance(node, dict) else {"use": node}
             choices.append((scope.expression(rest.pop("when", "True")), self.part(rest, scope)))
 
-        def build(names: Names) -> Mesh:
+        def build(names: Values) -> Mesh:
             return next((inner(names) for holds, inner in choices if holds(names)), empty())
 
         return build

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.floating[Any]]
-Ints = NDArray[np.int16]
+from hearth.rendering.arrays import Floats
+
+Shorts = NDArray[np.int16]
 
 ATTRIBUTES = 5
 """Columns of `Mesh.surface`: linear red, green, blue, glow, shine."""
@@ -34,7 +34,7 @@ class Mesh:
     normals: Floats
     uvs: Floats
     surface: Floats
-    textures: Ints
+    textures: Shorts
 
     def __len__(self) -> int:
         return len(self.corners)

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from hearth.rendering.meshes.mesh import Floats
+from hearth.rendering.arrays import Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from hearth.rendering.meshes import paint as paints
 from hearth.rendering.meshes import shapes
-from hearth.rendering.meshes.expressions import Names
+from hearth.rendering.meshes.expressions import Values
 from hearth.rendering.meshes.leaf import leaf
 from hearth.rendering.meshes.look import Look, Region, nowhere, over, shelves, top
 from hearth.rendering.meshes.mesh import Mesh
@@ -41,7 +41,7 @@ def _lookup(table: Mapping[str, Value], key: str, default: Value) -> Value:
     return table.get(key, default)
 
 
-FUNCTIONS: Names = {
+FUNCTIONS: Values = {
     "__builtins__": {},
     **{f.__name__: f for f in (abs, enumerate, int, len, max, min, range, reversed, round, sorted, tuple, zip)},
     **{f.__name__: f for f in (math.cos, math.exp, math.sin)},
@@ -61,7 +61,7 @@ FUNCTIONS: Names = {
 """What every expression knows."""
 
 
-def names_of(look: Look) -> Names:
+def names_of(look: Look) -> Values:
     """What an expression of a model knows about the object: its size w, h, d and all that decides how it looks."""
     w, h, d = look.size
     return {

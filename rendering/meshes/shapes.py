@@ -8,11 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from hearth.rendering.meshes.mesh import ATTRIBUTES, Floats, Mesh, empty, join, shift, transform
+from hearth.rendering.arrays import Floats
+from hearth.rendering.meshes.mesh import ATTRIBUTES, Mesh, empty, join, shift, transform
 from hearth.rendering.meshes.paint import Paint, linear
 from hearth.rendering.textures import SLOTS
-
-Point = tuple[float, float, float]
+from hearth.schemas.graph import Point
 
 CUBE_FACES = ((0, 1), (0, -1), (1, 1), (1, -1), (2, 1), (2, -1))
 CREASE = 40.0

@@ -15,7 +15,7 @@ from hearth.simulation.homes import located
 from hearth.simulation.homes.geometry import DIRECTIONS, Rect
 from hearth.simulation.homes.plan import OUTSIDE, Doorway, Faults, Piece, Plan, Room, Window
 
-Reader = Callable[[Any], Any]
+ReadValue = Callable[[Any], Any]
 CORNERS = ("northwest", "northeast", "southwest", "southeast")
 MOST = 60
 """Things one entry may count; more is taken for a slip of the pen."""
@@ -62,7 +62,7 @@ def word(value: Any) -> str:
     raise WrongValueError("a name")
 
 
-def one_of(*words: str) -> Reader:
+def one_of(*words: str) -> ReadValue:
     """A reader of one of some words."""
 
     def read(value: Any) -> str:
@@ -100,7 +100,7 @@ def spot(value: Any) -> tuple[float, float] | None:
 
 direction = one_of(*DIRECTIONS)
 
-PLACE_KEYS: dict[str, Reader] = {
+PLACE_KEYS: dict[str, ReadValue] = {
     "wall": direction, "at": along, "from_end": number, "corner": one_of(*CORNERS), "beside": word, "side": direction,
     "before": word, "opposite": word, "around": word, "above": word, "spot": spot, "facing": direction,
     "gap": number, "up": number,
@@ -113,18 +113,18 @@ ANCHORS = ("wall", "corner", "beside", "before", "opposite", "around", "above", 
 ON_TOP = ("spot", "before", "beside")
 """Those that also place what stands on something: `spot` is then [along its back, out from its back]."""
 
-SIZE_KEYS: dict[str, Reader] = {"width": length, "height": length, "depth": length}
-WINDOW_KEYS: dict[str, Reader] = {
+SIZE_KEYS: dict[str, ReadValue] = {"width": length, "height": length, "depth": length}
+WINDOW_KEYS: dict[str, ReadValue] = {
     "wall": direction, "at": along, "width": length, "height": length, "sill": number, "curtains": whole,
 }  # fmt: skip
-DOOR_KEYS: dict[str, Reader] = {
+DOOR_KEYS: dict[str, ReadValue] = {
     "between": list, "wall": direction, "at": along, "width": length, "leaf": yes_or_no, "into": word,
     "hinge": one_of("low", "high"),
 }  # fmt: skip
-ROOM_KEYS: dict[str, Reader] = {
+ROOM_KEYS: dict[str, ReadValue] = {
     "name": word, "class": word, "at": pair, "size": extent, "windows": list, "furniture": list,
 }  # fmt: skip
-PLAN_KEYS: dict[str, Reader] = {
+PLAN_KEYS: dict[str, ReadValue] = {
     "home": word, "about": word, "height": length, "character": word, "rooms": list, "doors": list,
 }  # fmt: skip
 
@@ -161,7 +161,7 @@ class _Reader:
         self.faults = faults
 
     def fields(
-        self, entry: Any, keys: dict[str, Reader], what: str, need: tuple[str, ...] = (), line: int = 0
+        self, entry: Any, keys: dict[str, ReadValue], what: str, need: tuple[str, ...] = (), line: int = 0
     ) -> dict[str, Any]:
         """The values of a mapping, read by their keys' readers."""
         if not isinstance(entry, located.Mapping):
@@ -182,7 +182,7 @@ class _Reader:
                 self.faults.add(Code.SYNTAX, f"{what} needs `{key}`", entry.line or line)
         return found
 
-    def _value(self, found: dict[str, Any], key: str, value: Any, read: Reader, line: int) -> None:
+    def _value(self, found: dict[str, Any], key: str, value: Any, read: ReadValue, line: int) -> None:
         try:
             if read is list:
                 if not isinstance(value, list) and value is not None:

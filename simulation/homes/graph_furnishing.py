@@ -11,7 +11,7 @@ from hearth.simulation.homes.floor import BODY, CELL, HEAD
 from hearth.simulation.homes.forms import Form, form
 from hearth.simulation.homes.geometry import DIRECTIONS, Rect, bottom, box_over, facing_from, footprint, top
 from hearth.simulation.homes.geometry import turned as extents
-from hearth.simulation.homes.graph_obstacles import Obstacles, Spot
+from hearth.simulation.homes.graph_obstacles import Obstacles, Stand
 from hearth.simulation.homes.graph_parts import Parts
 from hearth.simulation.homes.graph_relations import NEAR, gap, gaps, seen
 from hearth.simulation.homes.packing import contents
@@ -113,7 +113,7 @@ def _front(class_name: str, shaped: Form) -> float:
     return 0.0 if class_name == "bed" else min(shaped.front, FRONT)
 
 
-def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing], kept: list[Rect]) -> Spot | None:
+def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing], kept: list[Rect]) -> Stand | None:
     """The free spot where most relations are met; of equal ones the first."""
     front = _front(crowd.parts.nodes[node].class_name, shaped)
     every = list(spots(room, shaped))
@@ -134,7 +134,7 @@ def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing]
     return None
 
 
-def _scores(crowd: Crowd, room: Room, node: int, spots: list[Spot], height: float) -> np.ndarray:
+def _scores(crowd: Crowd, room: Room, node: int, spots: list[Stand], height: float) -> np.ndarray:
     """For each spot how much would be met of what the graph says of a thing and of all on and in it."""
     import numpy as np
 
@@ -162,7 +162,7 @@ def _over(box: Box, thing: Thing) -> bool:
     return footprint(box).overlap(footprint(thing.box)) > 0.01
 
 
-def spots(room: Room, shaped: Form) -> Iterator[tuple[Spot, float]]:
+def spots(room: Room, shaped: Form) -> Iterator[tuple[Stand, float]]:
     """Where in a room a thing of that shape may stand or hang, along walls first, each with what that is worth."""
     inner, height = interior(room), shaped.size[1]
     if shaped.mount == "ceiling":

@@ -23,7 +23,7 @@ from hearth.simulation.homes.graph_embedding import guessed
 from hearth.simulation.homes.graph_furnishing import Crowd, furnish
 from hearth.simulation.homes.graph_parts import Parts
 from hearth.simulation.homes.graph_relations import missed, unmet
-from hearth.simulation.homes.graph_rooms import Pair, packed
+from hearth.simulation.homes.graph_rooms import RoomPair, packed
 from hearth.simulation.homes.layout import Layout
 from hearth.simulation.homes.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
 from hearth.simulation.homes.shell import Thing, shared_wall, span
@@ -142,7 +142,7 @@ def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, 
 
 def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
     """One for each pair of rooms that share a wall and a door; with a leaf where there is a door, not only its jamb."""
-    pairs: dict[Pair, list[int]] = {}
+    pairs: dict[RoomPair, list[int]] = {}
     for door, pair in sorted(parts.between.items()):
         if shared_wall(rects[pair[0]], rects[pair[1]]) is not None:
             pairs.setdefault(pair, []).append(door)

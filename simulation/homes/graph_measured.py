@@ -76,17 +76,17 @@ def _openings(node: Node, rooms: list[int], names: Mapping[int, str], boxes: Map
         yield Opening(names[room], wall, start, end, 0.0, top(node.box), door=door, number=node.id)
 
 
-Hole = tuple[bool, float, float, float]
+DoorHole = tuple[bool, float, float, float]
 """Whether it runs along x, from where to where, and at which z (or x)."""
 
 
-def _hole(jamb: Box) -> Hole:
+def _hole(jamb: Box) -> DoorHole:
     along = jamb.size[0] > jamb.size[2]
     rect = footprint(jamb)
     return (True, rect.x0, rect.x1, rect.center[1]) if along else (False, rect.z0, rect.z1, rect.center[0])
 
 
-def _beside_leaf(leaf: Box, one: Box, other: Box) -> Hole | None:
+def _beside_leaf(leaf: Box, one: Box, other: Box) -> DoorHole | None:
     """An open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long."""
     shared = shared_wall(footprint(one).inset(-WALL), footprint(other).inset(-WALL))
     if shared is None:

@@ -14,7 +14,7 @@ from hearth.simulation.homes.shell import Opening, Thing, interior, strip
 if TYPE_CHECKING:
     import numpy as np
 
-Spot = tuple[Rect, float, float]
+Stand = tuple[Rect, float, float]
 """Where a thing may stand: the floor under it, its yaw, its underside."""
 TOUCH = 0.005
 """Things that meet by less than this do not."""
@@ -40,7 +40,7 @@ class Obstacles:
         self._kept = kept
         self._openings = openings
 
-    def free(self, spots: Sequence[Spot], shaped: Form, front: float) -> np.ndarray:
+    def free(self, spots: Sequence[Stand], shaped: Form, front: float) -> np.ndarray:
         """Bool (spots): whether a thing of that shape, with `front` metres before it, may stand there."""
         import numpy as np
 

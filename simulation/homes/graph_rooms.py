@@ -15,11 +15,11 @@ BRANCHES = 10
 MOST_TRIES, FEWER_TRIES = 400, 100
 """Places tried before the first door is given up, and before each further one."""
 
-Pair = tuple[int, int]
-Size = tuple[float, float]
+RoomPair = tuple[int, int]
+FloorSize = tuple[float, float]
 
 
-def packed(sizes: Mapping[int, Size], doors: Sequence[Pair]) -> tuple[dict[int, Rect], tuple[Pair, ...]]:
+def packed(sizes: Mapping[int, FloorSize], doors: Sequence[RoomPair]) -> tuple[dict[int, Rect], tuple[RoomPair, ...]]:
     """A rectangle for every room, and the pairs whose door found no common wall.
 
     Args:
@@ -27,7 +27,7 @@ def packed(sizes: Mapping[int, Size], doors: Sequence[Pair]) -> tuple[dict[int, 
         doors: pairs of rooms that a door joins.
     """
     wanted = list(dict.fromkeys((min(pair), max(pair)) for pair in doors))
-    missed: list[Pair] = []
+    missed: list[RoomPair] = []
     while True:
         search = _Search(sizes, wanted, FEWER_TRIES if missed else MOST_TRIES)
         found = search.place({}, search.order)
@@ -39,7 +39,7 @@ def packed(sizes: Mapping[int, Size], doors: Sequence[Pair]) -> tuple[dict[int, 
 class _Search:
     """Depth first, room by room along the doors."""
 
-    def __init__(self, sizes: Mapping[int, Size], doors: Sequence[Pair], tries: int) -> None:
+    def __init__(self, sizes: Mapping[int, FloorSize], doors: Sequence[RoomPair], tries: int) -> None:
         self.sizes = sizes
         self.joined: dict[int, list[int]] = {room: [] for room in sizes}
         for one, other in doors:

@@ -38,7 +38,7 @@ FAR = 0.12
 Local = tuple[float, float, float, float]
 """A rectangle in a support's own axes: along its back from the west or south end, and outwards from its back."""
 
-Named = tuple[Piece, list[str]]
+NamedPiece = tuple[Piece, list[str]]
 """An entry, and the names of its things."""
 
 
@@ -125,7 +125,7 @@ def _arranged(
     thing: Thing,
     shaped: Form,
     relation: str,
-    wanted: tuple[Sequence[Named], Sequence[tuple[Piece, str, Rect]]],
+    wanted: tuple[Sequence[NamedPiece], Sequence[tuple[Piece, str, Rect]]],
     knowledge: Knowledge,
 ) -> tuple[list[tuple[Piece, Thing]], list[tuple[Piece, str]]]:
     """Everything in its place, well apart if it can be, closer together if it must; and what has none, with why."""

@@ -25,7 +25,7 @@ from hearth.simulation.homes.shell import Thing, interior, span, strip
 GAP = 0.03
 """Between furniture and the wall behind it: a socket fits in."""
 
-Spot = tuple[Rect, float]
+Standing = tuple[Rect, float]
 """Where a thing stands, and the way it faces."""
 
 
@@ -138,7 +138,7 @@ def _underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
     return shaped.up if shaped.mount == "wall" else 0.0
 
 
-def _spots(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _spots(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     for key, place in PLACERS.items():
         if piece.has(key):
             return place(piece, shaped, room)
@@ -153,7 +153,7 @@ def _target(piece: Piece, key: str, room: Furnishing) -> Thing:
     return room.named[piece.place[key]][-1].thing
 
 
-def _on_wall(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _on_wall(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     wall = piece.place["wall"]
     low, high = span(room.inner, wall)
     yaw = _yaw(piece, facing_from(wall))
@@ -180,7 +180,7 @@ def _extents(shaped: Form, yaw: float, wall: str) -> tuple[float, float]:
     return (x, z) if along_x(wall) else (z, x)
 
 
-def _in_corner(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _in_corner(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     corner = piece.place["corner"]
     north_south, east_west = corner[:5], corner[5:]
     wall = piece.place.get("wall", north_south)
@@ -196,7 +196,7 @@ def _in_corner(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     return [(Rect(x0, z0, x0 + x, z0 + z), yaw)]
 
 
-def _beside(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _beside(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """Next along the wall that the other has its back to, backs in line; on its east or north side unless said."""
     other = _target(piece, "beside", room)
     if other.yaw is None:
@@ -219,7 +219,7 @@ def _beside(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     return spots
 
 
-def _before(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _before(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """In front of the other, their middles in line, facing it."""
     other = _target(piece, "before", room)
     if other.yaw is None:
@@ -229,7 +229,7 @@ def _before(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     return _row(_rect(other), front, piece, shaped, yaw=yaw, gap=piece.place.get("gap", 0.4))
 
 
-def _row(rect: Rect, side: str, piece: Piece, shaped: Form, *, yaw: float, gap: float) -> list[Spot]:
+def _row(rect: Rect, side: str, piece: Piece, shaped: Form, *, yaw: float, gap: float) -> list[Standing]:
     """Things in a row along the outside of a rectangle's side, spread evenly over its length."""
     along, out = _extents(shaped, yaw, side)
     low, high = span(rect, side)
@@ -241,7 +241,7 @@ def _row(rect: Rect, side: str, piece: Piece, shaped: Form, *, yaw: float, gap: 
     return spots
 
 
-def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """At the wall that the other faces, their middles in line."""
     other = _target(piece, "opposite", room)
     if other.yaw is None:
@@ -257,7 +257,7 @@ def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     return [(strip(room.inner.inset(off), wall, start, start + along, out), yaw)]
 
 
-def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """Around the other, facing it: the long sides first, then the ends."""
     other = _rect(_target(piece, "around", room))
     gap = piece.place.get("gap", 0.06)
@@ -271,7 +271,7 @@ def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
         if not free:
             raise NoPlaceError(f"there is no room for {piece.count} around it; {k} fit")
         sides[min(free, key=lambda side: sides[side])] += 1
-    spots: list[Spot] = []
+    spots: list[Standing] = []
     for side, count in sides.items():
         if count:
             part = Piece(piece.class_name, count=count)
@@ -279,7 +279,7 @@ def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     return spots
 
 
-def _above(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _above(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """On the wall behind the other, spread evenly over its width."""
     other = _target(piece, "above", room)
     if other.yaw is None:
@@ -295,7 +295,7 @@ def _above(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
     ]
 
 
-def _at_spot(piece: Piece, shaped: Form, room: Furnishing) -> list[Spot]:
+def _at_spot(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """With its middle at a point of the room; several stand in a row eastwards."""
     yaw = _yaw(piece, 180.0)
     x, z = turned(shaped.size[0], shaped.size[2], yaw)
@@ -314,7 +314,7 @@ def _rect(thing: Thing) -> Rect:
     return Rect(x - w / 2, z - d / 2, x + w / 2, z + d / 2)
 
 
-PLACERS: dict[str, Callable[[Piece, Form, Furnishing], list[Spot]]] = {
+PLACERS: dict[str, Callable[[Piece, Form, Furnishing], list[Standing]]] = {
     "corner": _in_corner,
     "wall": _on_wall,
     "beside": _beside,
