@@ -176,7 +176,7 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
         print(f"A fault of Hearth's, not of yours: {what}\n`--debug` before the command shows where.", file=sys.stderr)
         raise typer.Exit(output.BAD_INPUT) from error
     if as_json:
-        output.emit({"errors": [output.diagnostic_json(fault) for fault in faults]})
+        output.emit({"errors": faults})
     else:
         output.report(faults)
     asked = all(fault.code in NAMED and not fault.file for fault in faults)

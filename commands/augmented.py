@@ -7,14 +7,14 @@ from typing import Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
 Dataset = Annotated[Path, typer.Argument(metavar="DATASET", help="A published dataset, or the folder of a build.")]
 Figures = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Draw the figures into this folder.")]
 _BAR = 40
 
 
-def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json: output.Json = False) -> None:
+def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json: options.Json = False) -> None:
     """Print table 5.1 of the thesis beside a dataset's own figures, and what augmenting has changed.
 
     Programs, lengths, nodes and edges; how long programs are before and after; which conditions their objects start in
@@ -55,10 +55,11 @@ def _published(folder: Path) -> Path:
 
 
 def _print_table(table: dict[str, Any]) -> None:
-    rows = []
-    for group, told in table.items():
-        for who, row in told.items():
-            rows.append((group, who, *("-" if value is None else value for value in row.values())))
+    rows = [
+        (group, who, *("-" if value is None else value for value in row.values()))
+        for group, told in table.items()
+        for who, row in told.items()
+    ]
     output.table(("programs", "", "how many", "length", "nodes", "edges"), rows)
     print("The thesis's 1,387 and 27,284 add up to 28,671; it says 32,761.")
 

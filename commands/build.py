@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.build import Funnel
@@ -17,14 +18,16 @@ Sources = Annotated[
     list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Files and folders; the embedded corpus if none.")
 ]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Gets one folder a stage.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
-Jobs = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0 for one a core.")]
-Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
+Jobs = Annotated[
+    int,
+    typer.Option(
+        "--workers", "-j", metavar="N", min=0, callback=options.processes, help="Processes; 0 for one a core."
+    ),
+]
 Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on what is there.")]
 InHomes = Annotated[
     list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")
 ]
-HomesFolder = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
 SomeHomes = Annotated[
     list[str] | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours; or `all` of them.")
 ]
@@ -40,7 +43,6 @@ NodesWanted = Annotated[
         help="With SOURCE: environments of N nodes, 10 more or less: small homes are filled, large ones thinned.",
     ),
 ]
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Salt = Annotated[
     str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
 ]
@@ -84,13 +86,13 @@ def build(
     context: typer.Context,
     sources: Sources = None,
     out: Out = _OUT,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     workers: Jobs = 0,
-    limit: Limit = None,
+    limit: options.Limit = None,
     only: Only = None,
     home: InHomes = None,
-    homes: HomesFolder = None,
-    kb: Kb = None,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     salt: Salt = None,
     homes_each: HomesEach = 0,
     variants: Variants = 3,
@@ -103,8 +105,8 @@ def build(
     time_limit: TimeLimit = 60.0,
     force: Force = False,
     log_json: LogJson = False,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Run the stages one after another and publish a dataset.
 
@@ -120,29 +122,22 @@ def build(
       python cli.py build corpus.csv --out small --tier mini
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
-    more = {"homes_each": homes_each, "variants": variants, "target": target, "pictures": pictures, "videos": videos}
-    spread = {"engine": engine, "scheduler": scheduler, "time_limit": time_limit, "force": force, "log_json": log_json}
-    options = _options(seed, limit, home, homes, kb, salt, **more, **spread)
-    _run(sources, out, workers, only, _tiered(context, tier, options), strict, as_json)
-
-
-def _tiered(context: typer.Context, tier: str, options: dict[str, Any]) -> dict[str, Any]:
     from hearth.pipelines.tiers import tiered
 
-    given = [
-        name for name in options if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
-    ]
-    return tiered(tier, options, given)
+    sources_of = {name: context.get_parameter_source(name) for name in context.params}
+    given = [name for name, source in sources_of.items() if source and source.name == "COMMANDLINE"]
+    _run(context, only, tiered(tier, context.params, given))
 
 
 def ingest(
+    context: typer.Context,
     sources: Sources = None,
     out: Out = _OUT,
-    limit: Limit = None,
+    limit: options.Limit = None,
     salt: Salt = None,
     workers: Jobs = 0,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Read descriptions and programs, from whatever they arrived in.
 
@@ -150,11 +145,16 @@ def ingest(
     Example:
       python cli.py ingest batch.csv --out data_out
     """
-    _run(sources, out, workers, "ingest", {"limit": limit, "salt": salt}, strict, as_json)
+    _run(context, "ingest")
 
 
 def validate(
-    out: Out = _OUT, kb: Kb = None, workers: Jobs = 0, strict: output.Strict = False, as_json: output.Json = False
+    context: typer.Context,
+    out: Out = _OUT,
+    kb: options.Kb = None,
+    workers: Jobs = 0,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Check every ingested program against the action grammar.
 
@@ -162,21 +162,22 @@ def validate(
     Example:
       python cli.py validate --out data_out
     """
-    _run(None, out, workers, "validate", {"kb_folder": _text(kb)}, strict, as_json)
+    _run(context, "validate")
 
 
 def sample(
+    context: typer.Context,
     sources: Rehearsed = None,
     out: Out = _OUT,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     home: InHomes = None,
     homes: SomeHomes = None,
-    kb: Kb = None,
+    kb: options.Kb = None,
     size: NodesWanted = None,
-    limit: Limit = None,
+    limit: options.Limit = None,
     workers: Jobs = 0,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Place every valid program in homes where it runs.
 
@@ -195,25 +196,26 @@ def sample(
         if size is not None or limit is not None:
             raise typer.BadParameter("only for programs of a SOURCE, which are tried and not written",
                                      param_hint="--nodes, --limit")  # fmt: skip
-        _run(None, out, workers, "sample", _options(seed, None, home, folder, kb, None), strict, as_json)
+        _run(context, "sample", {**context.params, "homes": folder})
         return
     from hearth.commands import rehearsal
 
-    settings = {"seed": seed, "homes": tuple(home or ()), "homes_folder": _text(folder), "kb_folder": _text(kb)}
+    settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb})
     rehearsal.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
 def augment(
+    context: typer.Context,
     out: Out = _OUT,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     home: InHomes = None,
     homes: SomeHomes = None,
-    kb: Kb = None,
+    kb: options.Kb = None,
     variants: Variants = 3,
     target: Target = 0,
     workers: Jobs = 0,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Perturb what programs rely on, run them, and repair what breaks.
 
@@ -226,13 +228,13 @@ def augment(
       python cli.py augment --out data_out --target 30000 --homes maple,birch --json
     """
     folder, names = _homes_or_names(homes)
-    options = _options(seed, None, [*(home or ()), *names], folder, kb, None, variants=variants, target=target)
+    chosen = {**context.params, "home": [*(home or ()), *names], "homes": folder}
     if not as_json:
-        _run(None, out, workers, "augment", options, strict, as_json)
+        _run(context, "augment", chosen)
         return
     from hearth.pipelines.augment_figures import outcome
 
-    found = _built(None, out, workers, "augment", options)
+    found = _built("augment", chosen)
     output.emit(outcome(out / "augment"))
     output.status(found.stages["augment"].rejected, strict=strict)
 
@@ -245,15 +247,16 @@ def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
 
 
 def render(
+    context: typer.Context,
     out: Out = _OUT,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     pictures: Pictures = 3,
     videos: Videos = 1,
-    homes: HomesFolder = None,
-    kb: Kb = None,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     workers: Jobs = 0,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Picture a few programs while they run, and film some of them.
 
@@ -261,18 +264,18 @@ def render(
     Example:
       python cli.py render --out data_out --pictures 10 --videos 2
     """
-    options = _options(seed, None, None, homes, kb, None, pictures=pictures, videos=videos)
-    _run(None, out, workers, "render", options, strict, as_json)
+    _run(context, "render")
 
 
 def publish(
+    context: typer.Context,
     out: Out = _OUT,
-    seed: Seed = 0,
-    homes: HomesFolder = None,
-    kb: Kb = None,
+    seed: options.Seed = 0,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     workers: Jobs = 0,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Write the tables, the catalog and the manifest; what does not replay is refused.
 
@@ -280,52 +283,41 @@ def publish(
     Example:
       python cli.py publish --out data_out
     """
-    _run(None, out, workers, "publish", _options(seed, None, None, homes, kb, None), strict, as_json)
+    _run(context, "publish")
 
 
-def _options(
-    seed: int,
-    limit: int | None,
-    home: list[str] | None,
-    homes: Path | None,
-    kb: Path | None,
-    salt: str | None,
-    **more: Any,
-) -> dict[str, Any]:
-    folders = {"homes_folder": _text(homes), "kb_folder": _text(kb)}
-    return {"seed": seed, "limit": limit, "homes": tuple(home or ()), "salt": salt, **folders, **more}
-
-
-def _text(path: Path | None) -> str | None:
-    return None if path is None else str(path)
-
-
-def _run(
-    sources: list[Path] | None,
-    out: Path,
-    workers: int,
-    only: str | None,
-    options: dict[str, Any],
-    strict: bool,
-    as_json: bool,
-) -> None:
-    found = _built(sources, out, workers, only, options)
-    if as_json:
+def _run(context: typer.Context, only: str | None, chosen: Mapping[str, Any] | None = None) -> None:
+    """Build as a command's options say, or as `chosen` does instead, and print what became of the records."""
+    given = context.params
+    found = _built(only, chosen or given)
+    if given["as_json"]:
         output.emit(found.to_json())
     else:
-        _print(found, out, whole=only is None)
-    output.status(found.rejected, strict=strict)
+        _print(found, given["out"], whole=only is None)
+    output.status(found.rejected, strict=given["strict"])
 
 
-def _built(sources: list[Path] | None, out: Path, workers: int, only: str | None, options: dict[str, Any]) -> Funnel:
-    import os
-
+def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
     from hearth.pipelines.build import build as run
     from hearth.pipelines.progress import JsonLines, for_terminal
 
-    paths = [str(path) for path in sources or ()]
-    progress = JsonLines() if options.pop("log_json", False) else for_terminal()
-    return run(paths, str(out), workers=workers or os.cpu_count() or 1, only=only, progress=progress, **options)
+    paths = [str(path) for path in chosen.get("sources") or ()]
+    progress = JsonLines() if chosen.get("log_json") else for_terminal()
+    return run(paths, str(chosen["out"]), only=only, progress=progress, **_settings(chosen))
+
+
+_NAMES = {"homes": "homes_folder", "kb": "kb_folder", "home": "homes"}
+"""Options that are called otherwise in `Settings`."""
+
+_OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "strict", "as_json"})
+"""Options that are none of the settings."""
+
+
+def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of a build by what was chosen for the options of a command."""
+    found = {_NAMES.get(name, name): value for name, value in chosen.items() if name not in _OTHERS}
+    folders = {name: str(found[name]) for name in ("homes_folder", "kb_folder") if found.get(name) is not None}
+    return {**found, **folders, **({"homes": tuple(found["homes"] or ())} if "homes" in found else {})}
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:

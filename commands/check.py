@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import inputs, options, output
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from hearth.schemas.program import Program
 
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Program files; `-` reads standard input.")]
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Affordances = Annotated[
     bool, typer.Option("--affordances", help="Report objects that an action is never done to, as well.")
 ]
@@ -49,8 +48,8 @@ def check(
     lint: Lint = False,
     fix: Fix = False,
     diff: DryRun = False,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Check program files and underline what is wrong.
 
@@ -63,9 +62,7 @@ def check(
       python cli.py check morning.txt evening.txt
       python cli.py check --fix morning.txt
     """
-    from hearth.kb.loading import default, load
-
-    known = load(overlay=kb) if kb else default()
+    known = inputs.read_knowledge(kb)
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}
     checked = [
         replace(check_file(file, known, affordances=affordances, lint=lint), diff=diffs.get(file, "")) for file in files
@@ -137,11 +134,8 @@ def _warnings(program: Program, knowledge: Knowledge, file: str, source: list[st
 
 
 def _json(checked: Checked) -> dict[str, Any]:
-    faults = [output.diagnostic_json(fault) for fault in checked.faults]
-    told = {"file": checked.file, "programs": checked.programs, "steps": checked.steps, "faults": faults}
-    if checked.warnings:
-        told["warnings"] = [output.diagnostic_json(fault) for fault in checked.warnings]
-    return {**told, "diff": checked.diff} if checked.diff else told
+    found = {name: getattr(checked, name) for name in ("file", "programs", "steps", "faults")}
+    return found | {name: value for name in ("warnings", "diff") if (value := getattr(checked, name))}
 
 
 def _print(checked: list[Checked], faults: int) -> None:

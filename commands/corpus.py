@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
-from hearth.commands.inputs import Kb
+from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.corpus import Corpus, Similarities
@@ -18,14 +17,13 @@ if TYPE_CHECKING:
 app = typer.Typer(help="What people say and write: statistics, synthesis, ratings, and how well faults are found.")
 
 Count = Annotated[int, typer.Argument(metavar="[N]", min=1, help="How many programs.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
 Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Where to; standard output if left out.")]
 
 
 @app.command()
 def synthesize(
     count: Count = 5_193,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     actions: Annotated[
         str, typer.Option("--actions", metavar="animated|all", help="The 14 that the thesis animates, or all.")
     ] = "animated",
@@ -34,8 +32,8 @@ def synthesize(
         Path | None, typer.Option("--grammar", metavar="FILE", help="A grammar instead of ours.")
     ] = None,
     out: Out = None,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Draw distinct programs with descriptions from a probabilistic grammar, as JSON Lines that `build` reads.
 
@@ -47,13 +45,12 @@ def synthesize(
     """
     import orjson
 
-    from hearth.commands.inputs import read_knowledge
     from hearth.pipelines import synthesis
     from hearth.pipelines.files import replacing
 
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
-    weights = synthesis.load(grammar or synthesis.FILE, read_knowledge(kb), every_action=actions == "all")
+    weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
     drawn = synthesis.synthesize(count, seed, weights, told)
     lines = (orjson.dumps(synthesis.record(one, number, seed)) + b"\n" for number, one in enumerate(drawn, 1))
     if out is None:
@@ -61,10 +58,8 @@ def synthesize(
         return
     with replacing(out) as temporary, temporary.open("wb") as file:
         file.writelines(lines)
-    if as_json:
-        output.emit({"programs": count, "seed": seed, "file": out})
-    else:
-        print(f"{output.counted(count, 'program')} in {out}")
+    text = f"{output.counted(count, 'program')} in {out}"
+    output.say(text, {"programs": count, "seed": seed, "file": out}, as_json)
 
 
 Sources = Annotated[
@@ -78,8 +73,8 @@ def stats(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Gets the figures and the numbers as Parquet.")
     ] = None,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Say what a corpus looks like, beside the thesis's numbers: funnel, variety, diversity, averages, missing actions.
 
@@ -91,13 +86,10 @@ def stats(
       python cli.py corpus stats data_out --out figures
       python cli.py corpus stats release.zip
     """
-    from hearth.commands.inputs import read_knowledge
     from hearth.pipelines import corpus as numbers
     from hearth.pipelines import corpus_figures
-    from hearth.pipelines.build import corpus as embedded
 
-    paths = [str(path) for path in sources or embedded()]
-    found = numbers.gather(paths, read_knowledge(kb))
+    found = numbers.gather(inputs.paths(sources), inputs.read_knowledge(kb))
     alike = numbers.similarities(found)
     files = corpus_figures.write(found, alike, out) if out else []
     if as_json:
@@ -116,9 +108,7 @@ def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[s
         "funnel": numbers.funnel(found),
         "variety": numbers.variety(found),
         "averages": dict(zip(("programs", "steps", "sentences", "words"), numbers.averages(found), strict=True)),
-        "refused": dict(found.refused.most_common()),
-        "warnings": dict(found.warnings.most_common()),
-        "specials": dict(found.specials.most_common()),
+        **{name: dict(getattr(found, name).most_common()) for name in ("refused", "warnings", "specials")},
         "actions": dict(actions.most_common()),
         "objects": dict(objects.most_common()),
         "activities": [
@@ -132,12 +122,11 @@ def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[s
 def _print_stats(found: Corpus, alike: Similarities) -> None:
     from hearth.pipelines import corpus as numbers
 
-    ours = numbers.funnel(found)
-    rows = [(name, ours[name], theirs) for name, theirs in numbers.THESIS_FUNNEL.items()]
-    _say("What became of the descriptions", ("", "here", "thesis 3.4"), rows)
-    counted = numbers.variety(found)
-    rows = [(name, counted[name], theirs) for name, theirs in numbers.THESIS_VARIETY.items()]
-    _say("How various they are", ("", "here", "thesis 3.4"), rows)
+    for title, ours, thesis in (
+        ("What became of the descriptions", numbers.funnel(found), numbers.THESIS_FUNNEL),
+        ("How various they are", numbers.variety(found), numbers.THESIS_VARIETY),
+    ):
+        _say(title, ("", "here", "thesis 3.4"), [(name, ours[name], theirs) for name, theirs in thesis.items()])
     table = [("here", *numbers.averages(found)), *((name, *row) for name, row in numbers.THESIS_AVERAGES.items())]
     _say("Averages (table 4.1)", ("dataset", "programs", "steps", "sentences", "words"), table)
     compared = [
@@ -159,8 +148,8 @@ def dirt(
     sources: Annotated[
         list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="What it is the key of; our corpus if none.")
     ] = None,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Say how well faults are found in a corpus whose faults are known: precision and recall.
 
@@ -168,12 +157,9 @@ def dirt(
     Example:
       python cli.py corpus dirt data_raw/crowd/key.csv
     """
-    from hearth.commands.inputs import read_knowledge
     from hearth.pipelines import dirt as finding
-    from hearth.pipelines.build import corpus as embedded
 
-    paths = [str(path) for path in sources or embedded()]
-    report = finding.score(finding.find(paths, read_knowledge(kb)), finding.read_key(key))
+    report = finding.score(finding.find(inputs.paths(sources), inputs.read_knowledge(kb)), finding.read_key(key))
     if as_json:
         output.emit(report)
         return
@@ -191,9 +177,9 @@ def _codes(codes: tuple[tuple[str, int], ...]) -> str:
 @app.command()
 def fuzz(
     seconds: Annotated[float, typer.Option("--seconds", metavar="S", min=0, help="How long to go on.")] = 300,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     most: Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="At most so many cases.")] = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Give every reader mutated input; the status is 1 if any of it made a traceback or vanished.
 
@@ -203,10 +189,9 @@ def fuzz(
     Example:
       python cli.py corpus fuzz --seconds 60 --seed 7
     """
-    from hearth.kb.loading import default
     from hearth.pipelines import fuzzing
 
-    report = fuzzing.fuzz(default(), seconds, seed, most)
+    report = fuzzing.fuzz(inputs.read_knowledge(None), seconds, seed, most)
     if as_json:
         output.emit(report)
     else:
@@ -229,9 +214,9 @@ def sheet(
     sources: Sources = None,
     count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="How many programs.")] = 100,
     raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Rows for so many raters.")] = 5,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     out: Out = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Write a sheet on which people rate how complete programs are (thesis 3.4.1).
 
@@ -246,21 +231,17 @@ def sheet(
     text = ratings.sheet(drawn, raters)
     if out is not None:
         write_bytes(out, text.encode())
-    if as_json:
-        output.emit({"programs": [name for name, _ in drawn], "raters": raters, "file": out})
-    else:
-        sys.stdout.write(text if out is None else f"{out}: ratings are 1, 2 or 3\n")
+    said = text.removesuffix("\n") if out is None else f"{out}: ratings are 1, 2 or 3"
+    output.say(said, {"programs": [name for name, _ in drawn], "raters": raters, "file": out}, as_json)
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
     """Some valid programs, the same for the same seed."""
-    from hearth.kb.loading import default
     from hearth.pipelines import corpus as numbers
-    from hearth.pipelines.build import corpus as embedded
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng
 
-    found = numbers.gather([str(path) for path in sources or embedded()], default())
+    found = numbers.gather(inputs.paths(sources), inputs.read_knowledge(None))
     chosen = rng(seed, "ratings").sample(found.programs, min(count, len(found.programs)))
     return [(p.program_id, Program(p.title, found.descriptions.get(p.description_id, ""), p.steps)) for p in chosen]
 
@@ -271,8 +252,8 @@ def completeness(
     sheets: Annotated[list[Path] | None, typer.Option("--sheet", metavar="FILE", help="Filled in by raters.")] = None,
     count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Estimate for so many.")] = 100,
     home: Annotated[str, typer.Option("--home", metavar="NAME", help="The home to try them in.")] = "maple",
-    seed: Seed = 0,
-    as_json: output.Json = False,
+    seed: options.Seed = 0,
+    as_json: options.Json = False,
 ) -> None:
     """Estimate how complete programs are from what repairing has to insert, beside raters and the thesis's 64/28/8%.
 
@@ -281,13 +262,11 @@ def completeness(
       python cli.py corpus completeness data_out --programs 100
       python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
     """
-    from hearth.commands.inputs import read_home
-    from hearth.kb.loading import default
     from hearth.pipelines import ratings
     from hearth.schemas.failures import Failure
 
-    known = default()
-    place = read_home(home, None, None, known)
+    known = inputs.read_knowledge(None)
+    place = inputs.read_home(home, None, None, known)
     guessed = {name: ratings.estimate(one, place, known, seed) for name, one in _drawn(sources, count, seed)}
     estimated = {name: found for name, found in guessed.items() if not isinstance(found, Failure)}
     rated = ratings.medians(ratings.read_sheets(sheets or []))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.compare import TableDifference
@@ -19,7 +19,7 @@ Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Tell at m
 
 
 def diff(
-    first: First, second: Second, rows: Rows = 5, strict: output.Strict = False, as_json: output.Json = False
+    first: First, second: Second, rows: Rows = 5, strict: options.Strict = False, as_json: options.Json = False
 ) -> None:
     """Say what changed between two datasets, by table and by row.
 
@@ -54,11 +54,6 @@ def _key(key: tuple[Any, ...]) -> str:
 
 
 def _json(found: TableDifference) -> dict[str, Any]:
-    first, second, changed = found.counts
-    return {
-        "table": found.table,
-        "counts": {"only_first": first, "only_second": second, "changed": changed},
-        "only_first": [list(key) for key in found.only_first],
-        "only_second": [list(key) for key in found.only_second],
-        "changed": [{"key": list(each.key), "columns": list(each.columns)} for each in found.changed],
-    }
+    kinds = ("only_first", "only_second", "changed")
+    rows = {kind: getattr(found, kind) for kind in kinds}
+    return {"table": found.table, "counts": dict(zip(kinds, found.counts, strict=True)), **rows}

@@ -18,7 +18,7 @@ from typing import Annotated
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 from hearth.rendering.quiet import quiet
 
 LIBRARIES = {
@@ -209,7 +209,7 @@ Libraries = Annotated[
 ]
 
 
-def doctor(libraries: Libraries = False, as_json: output.Json = False) -> None:
+def doctor(libraries: Libraries = False, as_json: options.Json = False) -> None:
     """Say what is there, what is missing and what it costs.
 
     The status is 1 only if something is missing that nothing works without.

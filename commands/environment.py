@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import inputs, output
+from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.library import Homes as AllHomes
@@ -18,14 +18,11 @@ app = typer.Typer(
     help="What programs need of a home, and how realistic and varied sampled environments are.",
 )
 
-Source = Annotated[Path, typer.Argument(metavar="SOURCE", help="Programs: a release, a folder or a file.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
-Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
 Names = Annotated[list[str] | None, typer.Option("--home", metavar="NAME", help="In this home; all of them if none.")]
 
 
 @app.command()
-def conditions(file: inputs.File, kb: inputs.Kb = None, as_json: output.Json = False) -> None:
+def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Json = False) -> None:
     """What a program needs at its start, step by step, beside what the release's own rules would name.
 
     \b
@@ -66,7 +63,7 @@ def conditions(file: inputs.File, kb: inputs.Kb = None, as_json: output.Json = F
 
 
 @app.command()
-def rules(source: Source, limit: Limit = None, as_json: output.Json = False) -> None:
+def rules(source: options.Source, limit: options.Limit = None, as_json: options.Json = False) -> None:
     """Over all programs: the conditions that the release's rules name, which are ours, and why the others are not.
 
     `not needed`: every step runs without it. `refused`: with it, a step would fail. `missed`: ours alone.
@@ -78,11 +75,11 @@ def rules(source: Source, limit: Limit = None, as_json: output.Json = False) -> 
     """
     from itertools import islice
 
-    from hearth.kb.loading import default
     from hearth.pipelines.agreement import agreement
     from hearth.pipelines.rehearsal import scripts
 
-    told = agreement(islice(scripts([str(source)], default()), limit), default())
+    known = inputs.read_knowledge(None)
+    told = agreement(islice(scripts([str(source)], known), limit), known)
     if as_json:
         output.emit(told)
         return
@@ -101,15 +98,15 @@ def sample_one(
         list[str] | None,
         typer.Option("--goal", metavar="WHAT", help="What is not so yet, as in `ON(plate, kitchen_table): 3`."),
     ] = None,
-    home: inputs.HomeName = "maple",
-    homes: inputs.Homes = None,
-    kb: inputs.Kb = None,
+    home: options.HomeName = "maple",
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     nodes: Annotated[
         int | None, typer.Option("--nodes", metavar="N", min=1, help="About so many nodes; large homes are thinned.")
     ] = None,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")] = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Draw one environment: for a program, for a goal that can be reached and is not met, or for nothing.
 
@@ -137,19 +134,18 @@ def sample_one(
         return
     print(f"{told['nodes']:,} nodes, {told['edges']:,} edges" + (f"; {out}" if out else ""))
     for name in ("objects", "conditions", "goal"):
-        if rows := drawn.told.get(name):
-            output.table(tuple(rows[0]), [tuple(row.values()) for row in rows])
+        output.records(drawn.told.get(name) or ())
 
 
 @app.command()
 def realism(
-    source: Source,
+    source: options.Source,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Gets two heat maps, as SVG.")] = None,
     home: Names = None,
-    homes: inputs.Homes = None,
-    seed: Seed = 0,
-    limit: Limit = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    seed: options.Seed = 0,
+    limit: options.Limit = None,
+    as_json: options.Json = False,
 ) -> None:
     """Where sampled objects are, beside where a release's stored start graphs have them (figure B-4), and their states.
 
@@ -183,12 +179,12 @@ def realism(
 
 @app.command()
 def diversity(
-    file: inputs.File,
-    home: inputs.HomeName = "maple",
-    homes: inputs.Homes = None,
+    file: options.Program,
+    home: options.HomeName = "maple",
+    homes: options.Homes = None,
     samples: Annotated[int, typer.Option("--samples", metavar="N", min=1, help="Environments drawn.")] = 1000,
-    seed: Seed = 0,
-    as_json: output.Json = False,
+    seed: options.Seed = 0,
+    as_json: options.Json = False,
 ) -> None:
     """How many different environments there are among so many samples of one program.
 
@@ -204,12 +200,12 @@ def diversity(
     if as_json:
         output.emit({"home": home, **told})
     else:
-        output.table(("figure", "value"), [(name.replace("_", " "), str(value)) for name, value in told.items()])
+        output.figures({name: str(value) for name, value in told.items()})
 
 
 @app.command()
 def preconditions(
-    source: Source,
+    source: options.Source,
     classes: Annotated[
         list[str] | None, typer.Option("--class", metavar="NAME", help="cup and sauce_pan if none.")
     ] = None,
@@ -217,8 +213,8 @@ def preconditions(
         Path | None, typer.Option("--out", metavar="DIR", help="Stages' folder: counts augmented programs' too.")
     ] = None,
     drawing: Annotated[Path | None, typer.Option("--drawing", metavar="FILE", help="Draw the bars, as .svg.")] = None,
-    limit: Limit = None,
-    as_json: output.Json = False,
+    limit: options.Limit = None,
+    as_json: options.Json = False,
 ) -> None:
     """How the preconditions about some classes are distributed, before and after augmenting (figure 5-4).
 
@@ -227,11 +223,10 @@ def preconditions(
       python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
       python cli.py environment preconditions release.zip --drawing bars.svg
     """
-    from hearth.kb.loading import default
     from hearth.pipelines import realism as report
 
     names = classes or ["cup", "sauce_pan"]
-    groups = {"programs": report.of_programs(source, default(), names, limit)}
+    groups = {"programs": report.of_programs(source, inputs.read_knowledge(None), names, limit)}
     for stage in ("sample", "augment"):
         if dataset is not None and (dataset / stage).is_dir():
             groups[stage] = report.of_cases(dataset / stage, names)

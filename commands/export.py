@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
-Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
 Format = Annotated[str, typer.Option("--format", "-f", metavar="FORM", help="release, nl, jsonl, code, networkx, ...")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new or empty folder.")]
 Programs = Annotated[
@@ -19,7 +18,12 @@ Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=0, help="
 
 
 def export(
-    dataset: Folder, form: Format, out: Out, program: Programs = None, limit: Limit = None, as_json: output.Json = False
+    dataset: options.Dataset,
+    form: Format,
+    out: Out,
+    program: Programs = None,
+    limit: Limit = None,
+    as_json: options.Json = False,
 ) -> None:
     """Write a published dataset in another form.
 
@@ -37,7 +41,5 @@ def export(
     from hearth.pipelines.dataset import Dataset
 
     number = exported(Dataset.open(dataset), form, out, Wanted(tuple(program or ()), limit))
-    if as_json:
-        output.emit({"format": form, "out": str(out), "count": number})
-    else:
-        print(f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}")
+    text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
+    output.say(text, {"format": form, "out": out, "count": number}, as_json)

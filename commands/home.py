@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
 if TYPE_CHECKING:
     from hearth.schemas.errors import Diagnostic
@@ -23,11 +23,10 @@ app = typer.Typer(
 )
 
 Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
-Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
 
 
 @app.command("list")
-def list_homes(homes: Homes = None, as_json: output.Json = False) -> None:
+def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> None:
     """List the homes with their rooms, things and relations.
 
     \b
@@ -55,8 +54,8 @@ def show(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="Draw the floor plan: .svg or .png.")
     ] = None,
-    homes: Homes = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    as_json: options.Json = False,
 ) -> None:
     """Show a home: its rooms and what is in them; with --out, draw its floor plan.
 
@@ -86,8 +85,8 @@ def lint(
     layout: Annotated[
         bool, typer.Option("--layout", help="Lay a scene graph out, and say what of it no geometry could show.")
     ] = False,
-    homes: Homes = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    as_json: options.Json = False,
 ) -> None:
     """Report what is wrong with a home or with any scene graph; the status is 1 if something is.
 
@@ -99,16 +98,15 @@ def lint(
       python cli.py home lint TrimmedTestScene1_graph.json
       python cli.py home lint TrimmedTestScene1_graph.json --layout
     """
+    from hearth.simulation.homes import catalog
     from hearth.simulation.homes.lint import lint as check
 
     graph = _graph(home, homes)
     faults = check(graph, file=home if Path(home).suffix else "")
-    laid = _laid_out(home, homes) if layout else None
+    laid = catalog.laid_out(home, homes) if layout else None
     if as_json:
-        told = {"home": home, "faults": [output.diagnostic_json(fault) for fault in faults], "by_code": _codes(faults)}
-        if laid is not None:
-            told |= {"met": met(laid), "unmet": [output.diagnostic_json(fault) for fault in laid.unmet]}
-        output.emit(told)
+        told = {"home": home, "faults": faults, "by_code": _codes(faults)}
+        output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
     else:
         output.report(faults)
         if laid is not None:
@@ -136,12 +134,6 @@ def met(laid: LaidOut) -> list[dict[str, Any]]:
     return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
 
 
-def _laid_out(home: str, homes: Path | None) -> LaidOut:
-    from hearth.simulation.homes import catalog
-
-    return catalog.laid_out(home, homes)
-
-
 @app.command()
 def convert(
     home: Home,
@@ -149,8 +141,8 @@ def convert(
     layout: Annotated[
         bool, typer.Option("--layout", help="Give a scene graph the geometry that its relations suggest.")
     ] = False,
-    homes: Homes = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    as_json: options.Json = False,
 ) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
@@ -163,17 +155,14 @@ def convert(
       python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
       python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
-    from hearth.simulation.homes import exporting
+    from hearth.simulation.homes import catalog, exporting
 
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(_laid_out(home, homes).graph if layout else graph, out)
-    if as_json:
-        output.emit({"home": home, "file": out, "nodes": written})
-    else:
-        print(f"{out}: {output.counted(written, 'node')}")
+        written = exporting.write_release(catalog.laid_out(home, homes).graph if layout else graph, out)
+    output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
 @app.command()
@@ -184,7 +173,7 @@ def generate(
         Path | None,
         typer.Option("--out", metavar="FILE", help="A plan (.yaml), a scene graph (.json) or a drawing (.svg, .png)."),
     ] = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Draw up a home by lot: rooms along a hall, furniture with clearances, things where the knowledge puts them.
 
@@ -200,11 +189,9 @@ def generate(
     if out is not None:
         exporting.write(layout, out)
     figures = _figures(scene(layout))
-    if as_json:
-        output.emit({"home": layout.plan.name, "seed": seed, **figures, "file": out})
-    else:
-        names = ", ".join(room.name for room in layout.plan.rooms)
-        print(f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else ""))
+    names = ", ".join(room.name for room in layout.plan.rooms)
+    text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
+    output.say(text, {"home": layout.plan.name, "seed": seed, **figures, "file": out}, as_json)
 
 
 @app.command()
@@ -217,8 +204,8 @@ def edit(
     remove: Annotated[list[int] | None, typer.Option("--remove", metavar="ID", help="A thing that vanishes.")] = None,
     move: Annotated[list[str] | None, typer.Option("--move", metavar="ID:on:ID", help="A thing put elsewhere.")] = None,
     states: Annotated[list[str] | None, typer.Option("--set", metavar="ID:STATE", help="A state to be in.")] = None,
-    homes: Homes = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    as_json: options.Json = False,
 ) -> None:
     """Add, remove and move things of a home and set states, each as often as wanted, as far as the knowledge allows.
 
@@ -233,19 +220,17 @@ def edit(
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
                         knowledge=default(), name=home)  # fmt: skip
     exporting.write_release(graph, out)
-    if as_json:
-        output.emit({"home": home, "file": out, "added": list(new), **_figures(graph)})
-    else:
-        ids = f", new ids {', '.join(map(str, new))}" if new else ""
-        print(f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}")
+    ids = f", new ids {', '.join(map(str, new))}" if new else ""
+    text = f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}"
+    output.say(text, {"home": home, "file": out, "added": new, **_figures(graph)}, as_json)
 
 
 @app.command()
 def stats(
     generated: Annotated[int, typer.Option("--generated", metavar="N", min=0, help="Draw up so many homes too.")] = 28,
     seed: Annotated[int, typer.Option("--seed", help="Of the first one drawn up; the rest follow.")] = 0,
-    homes: Homes = None,
-    as_json: output.Json = False,
+    homes: options.Homes = None,
+    as_json: options.Json = False,
 ) -> None:
     """Room sizes, things, degrees and relations of our homes, of generated ones, and of those in a folder.
 

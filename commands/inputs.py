@@ -1,23 +1,24 @@
-"""What several commands read: a program file, and the home it is tried in."""
+"""What several commands read: knowledge, a program file, the home it is tried in, the paths of sources."""
 
 from __future__ import annotations
 
 import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from hearth.kb.knowledge import Knowledge
     from hearth.schemas.program import Program
     from hearth.simulation.home import Home
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file; `-` reads standard input.")]
-HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
-Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
-Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
+
+def paths(sources: Sequence[Path] | None) -> list[str]:
+    """Sources as a stage takes them; those of the embedded corpus if there are none."""
+    from hearth.pipelines.build import corpus
+
+    return [str(path) for path in sources or corpus()]
 
 
 def read_knowledge(overlay: Path | None) -> Knowledge:

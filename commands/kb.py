@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
+from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
     from hearth.kb.compare import Comparison
-    from hearth.kb.knowledge import Knowledge
-    from hearth.kb.mine import ProgramSteps
 
 app = typer.Typer(
     name="kb",
@@ -22,20 +20,13 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
 Name = Annotated[str, typer.Argument(metavar="NAME", help="A name or synonym, in any case.")]
 Many = Annotated[bool, typer.Option("--all", help="Show every row instead of the first ones.")]
 _SHOWN = 20
 
 
-def _known(kb: Path | None) -> Knowledge:
-    from hearth.kb.loading import default, load
-
-    return load(overlay=kb) if kb else default()
-
-
 @app.command()
-def show(name: Name, every: Many = False, kb: Kb = None, as_json: output.Json = False) -> None:
+def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: options.Json = False) -> None:
     """Show everything known about an object, or an action when no object has the name.
 
     \b
@@ -46,22 +37,18 @@ def show(name: Name, every: Many = False, kb: Kb = None, as_json: output.Json = 
     from hearth.kb.show import about_object
     from hearth.schemas.errors import HearthError
 
-    known = _known(kb)
+    known = read_knowledge(kb)
     thing = known.object_class(name)
     if thing is None and known.action(name) is not None:
         action(name, kb, as_json)
         return
     if thing is None:
         raise HearthError(unknown(known, name, "object"))
-    sheet = about_object(known, thing)
-    if as_json:
-        output.emit(sheet)
-    else:
-        _print_sheet(sheet, every)
+    _show(about_object(known, thing), every, as_json)
 
 
 @app.command()
-def action(name: Name, kb: Kb = None, as_json: output.Json = False) -> None:
+def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> None:
     """Show what an action takes, needs and changes, how it is said, and what repairs it.
 
     \b
@@ -72,15 +59,11 @@ def action(name: Name, kb: Kb = None, as_json: output.Json = False) -> None:
     from hearth.kb.show import about_action
     from hearth.schemas.errors import HearthError
 
-    known = _known(kb)
+    known = read_knowledge(kb)
     found = known.action(name)
     if found is None:
         raise HearthError(unknown(known, name, "action"))
-    sheet = about_action(known, found)
-    if as_json:
-        output.emit(sheet)
-    else:
-        _print_sheet(sheet, True)
+    _show(about_action(known, found), True, as_json)
 
 
 @app.command()
@@ -97,8 +80,8 @@ def find(
         list[str] | None, typer.Option("--state", metavar="STATE", help="It may be in this state.")
     ] = None,
     kind: Annotated[str, typer.Option("--kind", metavar="KIND", help="It is one of this kind.")] = "",
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Find the objects that meet every condition given, most usual first where a place is given.
 
@@ -110,7 +93,7 @@ def find(
     from hearth.kb.find import find as find_objects
 
     query = Query(tuple(can or ()), on, inside, near, room, tuple(has or ()), tuple(may_be or ()), kind)
-    found = find_objects(_known(kb), query)
+    found = find_objects(read_knowledge(kb), query)
     if as_json:
         output.emit({"found": [thing.name for thing in found], "count": len(found)})
         return
@@ -124,8 +107,8 @@ def find(
 def path(
     first: Annotated[str, typer.Argument(metavar="FROM")],
     second: Annotated[str, typer.Argument(metavar="TO")],
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Show how two things, actions or kinds are related: the most telling chain of facts.
 
@@ -137,13 +120,13 @@ def path(
     from hearth.kb.paths import path as chain
     from hearth.schemas.errors import HearthError
 
-    known = _known(kb)
+    known = read_knowledge(kb)
     try:
         links = chain(known, first, second)
     except KeyError as error:
         raise HearthError(unknown(known, error.args[0], "object")) from error
     if as_json:
-        output.emit({"links": [link._asdict() for link in links]})
+        output.emit({"links": links})
         return
     for link in links:
         print(f"{link}  ({link.evidence})" if link.evidence else link)
@@ -152,7 +135,7 @@ def path(
 
 
 @app.command()
-def lint(kb: Kb = None, as_json: output.Json = False) -> None:
+def lint(kb: options.Kb = None, as_json: options.Json = False) -> None:
     """Look for contradictions; the status is 1 if there are any.
 
     \b
@@ -162,9 +145,9 @@ def lint(kb: Kb = None, as_json: output.Json = False) -> None:
     from hearth.kb.lint import CHECKS
     from hearth.kb.lint import lint as contradictions
 
-    found = contradictions(_known(kb))
+    found = contradictions(read_knowledge(kb))
     if as_json:
-        output.emit({"findings": [finding._asdict() for finding in found], "checks": list(CHECKS)})
+        output.emit({"findings": found, "checks": list(CHECKS)})
     else:
         for finding in found:
             print(f"{finding.check}: {finding.subject} {finding.message}")
@@ -178,8 +161,8 @@ def diff(
         Path, typer.Argument(metavar="OTHER", help="The release's five JSON files, or a folder like ours.")
     ],
     every: Annotated[bool, typer.Option("--all", help="List explained differences as well.")] = False,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Compare with another's knowledge fact by fact, with the reason beside each deliberate difference.
 
@@ -191,7 +174,7 @@ def diff(
     """
     from hearth.kb.compare import compare, rejection
 
-    known = _known(kb)
+    known = read_knowledge(kb)
     found = compare(known, other)
     rejected = rejection(known)
     unexplained = sum(found.count(table, "missing", False) for table in found.theirs)
@@ -210,8 +193,8 @@ def mine(
     ],
     least: Annotated[int, typer.Option("--least", min=1, help="Programs that must show a fact.")] = 3,
     confidence: Annotated[float, typer.Option("--confidence", min=0, max=1, help="Share that must show it.")] = 0.3,
-    kb: Kb = None,
-    as_json: output.Json = False,
+    kb: options.Kb = None,
+    as_json: options.Json = False,
 ) -> None:
     """Propose new facts from a dataset's programs, as lines to review and add.
 
@@ -221,10 +204,11 @@ def mine(
     """
     from hearth.kb.mine import as_lines
     from hearth.kb.mine import mine as propose
+    from hearth.kb.published import programs
 
-    found = propose(_programs(dataset), _known(kb), least, confidence)
+    found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:
-        output.emit({"proposals": [proposal._asdict() for proposal in found], "lines": as_lines(found)})
+        output.emit({"proposals": found, "lines": as_lines(found)})
         return
     new = [p for p in found if not p.known]
     rows = [(p.kind, p.subject, p.relation, p.other, p.seen, p.confidence, p.lift) for p in new]
@@ -241,7 +225,7 @@ def export(
     to: Annotated[
         Path | None, typer.Option("--to", metavar="FILE", help="Where to; standard output when left out.")
     ] = None,
-    kb: Kb = None,
+    kb: options.Kb = None,
 ) -> None:
     """Write the knowledge in another form: the table of actions, the PDDL domain, the graph, a database.
 
@@ -251,26 +235,23 @@ def export(
     """
     from hearth.kb.export import export as write
 
-    text = write(_known(kb), form, to)
+    text = write(read_knowledge(kb), form, to)
     if text:
         print(text, end="")
 
 
-def _programs(dataset: Path) -> Iterator[ProgramSteps]:
-    from hearth.kb.published import programs
-
-    return programs(dataset)
-
-
-def _print_sheet(sheet: dict[str, Any], every: bool) -> None:
-    """Plain facts as a table of two columns, then each list of rows as a table of its own."""
+def _show(sheet: dict[str, Any], every: bool, as_json: bool) -> None:
+    """Print plain facts as a table of two columns, then each list of rows as a table of its own."""
+    if as_json:
+        output.emit(sheet)
+        return
     plain = [(key, _said(value)) for key, value in sheet.items() if not _is_rows(value) and value not in ("", [], 0)]
     output.table(("", ""), plain)
     for key, rows in sheet.items():
         if _is_rows(rows):
             shown = rows if every else rows[:_SHOWN]
             print()
-            output.table(list(rows[0]), [list(row.values()) for row in shown], key)
+            output.records(shown, key)
             if len(shown) < len(rows):
                 print(f"... {len(rows) - len(shown)} more with --all")
 
@@ -301,7 +282,7 @@ def _comparison(found: Comparison) -> dict[str, Any]:
             for table, count in found.theirs.items()
         },
         "affordance_cells": found.cells,
-        "differences": [difference._asdict() for difference in found.differences],
+        "differences": found.differences,
     }
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, TextIO
+from typing import Any, TextIO
 
 import typer
 
@@ -20,9 +19,6 @@ BAD_INPUT = 1
 
 USAGE = 2
 """The command line itself is wrong (typer's own status)."""
-
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document for machines instead of text.")]
-Strict = Annotated[bool, typer.Option("--strict", help="Exit with status 1 if anything was rejected.")]
 
 _RED, _BLUE, _BOLD, _RESET = "\x1b[31m", "\x1b[34m", "\x1b[1m", "\x1b[0m"
 _SHOWN = 100
@@ -56,6 +52,22 @@ def _plain(value: Any) -> Any:
     if isinstance(value, tuple):
         return list(value)
     raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+def say(text: str, document: Any, as_json: bool) -> None:
+    """Print a text, or the document that says the same to machines."""
+    emit(document) if as_json else print(text)
+
+
+def records(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
+    """Print rows as a table; their keys are its columns."""
+    if rows:
+        table(tuple(rows[0]), [tuple(row.values()) for row in rows], title)
+
+
+def figures(values: Mapping[str, Any]) -> None:
+    """Print values by their names, one a line."""
+    table(("figure", "value"), [(name.replace("_", " "), value) for name, value in values.items()])
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = "") -> None:
@@ -105,11 +117,6 @@ def _is_numeric(cells: Iterable[str]) -> bool:
 
 def _aligned(cell: str, width: int, right: bool) -> str:
     return cell.rjust(width) if right else cell.ljust(width)
-
-
-def diagnostic_json(fault: Diagnostic) -> dict[str, Any]:
-    """A fault as JSON: the fields of `Diagnostic`."""
-    return asdict(fault)
 
 
 def report(faults: Iterable[Diagnostic], stream: TextIO | None = None, kind: str = "error") -> None:

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
-Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
 Sql = Annotated[str, typer.Argument(metavar="SQL", help="One question; `-` reads it from standard input.")]
 Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Print at most N rows; 0 for all.")]
 
 
-def query(dataset: Folder, sql: Sql, rows: Rows = 100, as_json: output.Json = False) -> None:
+def query(dataset: options.Dataset, sql: Sql, rows: Rows = 100, as_json: options.Json = False) -> None:
     """Ask a published dataset a question in SQL.
 
     Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,

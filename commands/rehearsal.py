@@ -36,7 +36,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     else:
         figures = {**found.summary(), "homes": len(found.homes)}
         figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
-        output.table(("figure", "value"), [(name.replace("_", " "), value) for name, value in figures.items()])
+        output.figures(figures)
         for one in (*_impossible(found, homes), *_failures(found)):
             print(f"{one['place']} in {one['home']}: {one['message']}")
     output.status(len(found.failed), strict=strict)

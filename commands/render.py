@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +23,6 @@ File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file.")]
 HomeName = Annotated[
     str, typer.Option("--home", metavar="NAME", help="A home; one without geometry is laid out by its relations.")
 ]
-Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the pictures go.")]
 OutFile = Annotated[Path, typer.Option("--out", metavar="FILE", help="A PNG file.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Bodies, colours, and what has to be added.")]
@@ -57,7 +56,7 @@ def program(
     file: File,
     out: Out,
     home: HomeName = "maple",
-    homes: Homes = None,
+    homes: options.Homes = None,
     mode: Mode = "snapshots",
     cameras: Cameras = "auto",
     seed: Seed = 0,
@@ -67,7 +66,7 @@ def program(
     fine: Fine = False,
     vary: Vary = False,
     modalities: Names = "rgb,instance_ids",
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
@@ -90,9 +89,8 @@ def program(
         told = _snapshots(execution, graph, out, "fine" if fine else "draft", taken, _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
-        output.emit(
-            {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made, **told}
-        )
+        said = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
+        output.emit({**said, **told})
     else:
         print(note, end="\n" if note else "")
         print(f"{told['pictures']} pictures of {file.name} in {out}; all together: {told['sheet']}")
@@ -157,16 +155,8 @@ def _videos(
         files = [path.name for path in done.files]
         (out / f"{name}.html").write_text(page(taken.title, files, done.steps), encoding="utf-8")
         pages.append(str(out / f"{name}.html"))
-        videos.append(
-            {
-                "camera": name,
-                "files": files,
-                "fps": fps,
-                "frames": done.frames,
-                "steps": done.steps,
-                "variation": staged.variation.told(),
-            }
-        )
+        made = {"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps}
+        videos.append({**made, "variation": staged.variation.told()})
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.moments]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
@@ -183,7 +173,7 @@ def _sheet(out: Path, frames: list[Any], title: str) -> str:
 
 
 @app.command()
-def sheet(out: OutFile, fine: Fine = False, as_json: output.Json = False) -> None:
+def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> None:
     """Draw every model, variant and state at 128 pixels.
 
     \b
@@ -197,10 +187,7 @@ def sheet(out: OutFile, fine: Fine = False, as_json: output.Json = False) -> Non
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
     labels = [label for label, _ in entries()]
-    if as_json:
-        output.emit({"file": out, "models": labels})
-    else:
-        print(f"Every model ({len(labels)}) is in {out}.")
+    output.say(f"Every model ({len(labels)}) is in {out}.", {"file": out, "models": labels}, as_json)
 
 
 @app.command()
@@ -208,7 +195,7 @@ def visible(
     sources: Annotated[list[Path] | None, typer.Argument(metavar="SOURCE...", help="Else the corpus within.")] = None,
     count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Programs that run.")] = 30,
     seed: Seed = 0,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Count the steps of which every named object is visible in a chosen picture, over programs drawn from a corpus.
 
@@ -232,11 +219,10 @@ def visible(
         ]
     share = shares(found)
     if as_json:
-        output.emit({"programs": programs, **share._asdict(), "unseen": [list(row) for row in missed]})
+        output.emit({"programs": programs, **share._asdict(), "unseen": missed})
         return
-    print(
-        f"{share.steps} steps of {programs} programs name objects. All of them are visible in {share.chosen:.1%} by the"
-    )
+    steps = f"{share.steps} steps of {programs} programs name objects."
+    print(f"{steps} All of them are visible in {share.chosen:.1%} by the")
     print(f"camera that is chosen, in {share.either:.1%} by that or from above; in {share.open_:.1%} of the steps that")
     print("name nothing inside something closed.")
     output.table(("program", "tick", "not visible"), missed)
@@ -245,8 +231,6 @@ def visible(
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[Looked]]]:
     """Programs that run, drawn by the seed, each in the next of our homes; with what can be seen of each."""
     from hearth.grounding.trial import attempt
-    from hearth.kb.loading import default
-    from hearth.pipelines.build import corpus
     from hearth.pipelines.rehearsal import Script, scripts
     from hearth.rendering.snapshots import play
     from hearth.rendering.visibility import looks
@@ -255,8 +239,8 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     from hearth.simulation.home import Home
     from hearth.simulation.homes import catalog
 
-    known, names = default(), catalog.names()
-    read = [script.program for script in scripts(map(str, sources or corpus()), known) if isinstance(script, Script)]
+    known, names = inputs.read_knowledge(None), catalog.names()
+    read = [script.program for script in scripts(inputs.paths(sources), known) if isinstance(script, Script)]
     rng(seed, "visible", "").shuffle(read)
     for number, program in enumerate(read):
         name = names[number % len(names)]
@@ -271,13 +255,12 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 
 def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Execution:
-    from hearth.commands.inputs import read_home, read_knowledge, read_program
     from hearth.grounding.trial import attempt
     from hearth.schemas.errors import HearthError
     from hearth.schemas.failures import Failure
 
-    known = read_knowledge(None)
-    trial = attempt(read_program(file, known), read_home(home, None, homes, known), seed)
+    known = inputs.read_knowledge(None)
+    trial = attempt(inputs.read_program(file, known), inputs.read_home(home, None, homes, known), seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, trial.message(), file=str(file))
     return trial.execution

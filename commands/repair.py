@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
 from difflib import ndiff
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from hearth.commands import output
-from hearth.commands.inputs import File, Graph, HomeName, Homes, Kb, read_home, read_knowledge, read_program
+from hearth.commands import options, output
+from hearth.commands.inputs import read_home, read_knowledge, read_program
 
 if TYPE_CHECKING:
     from hearth.grounding.perturbing import Chances
@@ -28,15 +27,15 @@ Kinds = Annotated[
 
 
 def repair(
-    file: File,
-    home: HomeName = "maple",
-    graph: Graph = None,
-    homes: Homes = None,
-    kb: Kb = None,
+    file: options.Program,
+    home: options.HomeName = "maple",
+    graph: options.Graph = None,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     seed: Seed = 0,
     variants: Variants = 1,
     perturb: Kinds = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Perturb what a program relies on, and show how it is repaired.
 
@@ -68,10 +67,8 @@ _HARMLESS = ("UNPERTURBED", "DUPLICATE")
 
 
 def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
-    if as_json:
-        output.emit({"home": home, "failure": asdict(failure)})
-    else:
-        print(f"This program can't be placed in {home}. {failure.message()}")
+    text = f"This program can't be placed in {home}. {failure.message()}"
+    output.say(text, {"home": home, "failure": failure}, as_json)
     raise typer.Exit(output.BAD_INPUT)
 
 
@@ -146,15 +143,15 @@ def _pair_json(pair: Pair) -> dict[str, Any]:
         "perturbations": [
             {
                 "kind": one.kind,
-                "dropped": [str(condition) for condition in one.dropped],
-                "added": [str(condition) for condition in one.added],
+                "dropped": [*map(str, one.dropped)],
+                "added": [*map(str, one.added)],
             }
             for one in pair.perturbations
         ],
         "original": _texts(pair.environment.program.steps),
         "attempts": [_attempt_json(attempt) for attempt in pair.attempts],
         "repaired": _texts(pair.program.steps) if pair.failure is None else None,
-        "failure": asdict(pair.failure) if pair.failure is not None else None,
+        "failure": pair.failure,
     }
 
 
@@ -162,7 +159,7 @@ def _attempt_json(attempt: Attempt) -> dict[str, Any]:
     return {
         "attempt": attempt.number,
         "step": attempt.step,
-        "failure": asdict(attempt.failure),
+        "failure": attempt.failure,
         "handler": attempt.handler,
         "before": _texts(attempt.before),
         "after": _texts(attempt.after),

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import options, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.replay import Replayed
@@ -24,8 +23,8 @@ def replay(
     release: Release,
     limit: Limit = None,
     default_rules: Strange = False,
-    strict: output.Strict = False,
-    as_json: output.Json = False,
+    strict: options.Strict = False,
+    as_json: options.Json = False,
 ) -> None:
     """Run a release's programs on their stored start graphs and compare with the stored end graphs.
 
@@ -51,7 +50,7 @@ def replay(
     if as_json:
         output.emit({**summary, "mismatches": [_json(one) for one in inexact]})
     else:
-        output.table(("figure", "value"), summary.items())
+        output.figures(summary)
         for one in inexact:
             _explain(one)
     output.status(len(inexact), strict=strict)
@@ -76,8 +75,8 @@ def _json(one: Replayed) -> dict[str, Any]:
     return {
         "program_id": one.program_id,
         "home": one.home,
-        "faults": [output.diagnostic_json(fault) for fault in one.faults],
-        "failure": None if one.failure is None else asdict(one.failure),
+        "faults": one.faults,
+        "failure": one.failure,
         "difference": {
             "missing": one.difference.added,
             "surplus": one.difference.removed,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections import Counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
-from hearth.commands.inputs import File, Graph, HomeName, Homes, Kb, read_home, read_knowledge, read_program
+from hearth.commands import options, output
+from hearth.commands.inputs import read_home, read_knowledge, read_program
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,15 +30,15 @@ _SHOWN = 6
 
 
 def run(
-    file: File,
-    home: HomeName = "maple",
-    graph: Graph = None,
-    homes: Homes = None,
-    kb: Kb = None,
+    file: options.Program,
+    home: options.HomeName = "maple",
+    graph: options.Graph = None,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     seed: Seed = 0,
     as_is: AsIs = False,
     explain: Explain = False,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Run a program in a home and print what happens.
 
@@ -136,10 +136,7 @@ def _summary(change: Change, world: World) -> str:
     parts = [f"{name(node)} is {state}" for node, state in change.set_states]
     loud = [edge for edge in change.added if edge.relation not in ("CLOSE", "FACING")]
     parts += [f"{name(e.source)} {e.relation} {name(e.target)}" for e in loud]
-    quiet = {edge.relation: 0 for edge in change.added if edge not in loud}
-    for edge in change.added:
-        if edge.relation in quiet:
-            quiet[edge.relation] += 1
+    quiet = Counter(edge.relation for edge in change.added if edge not in loud)
     parts += [f"{count} more {relation}" for relation, count in quiet.items()]
     if change.removed:
         parts.append(f"{output.counted(len(change.removed), 'edge')} less")
@@ -160,17 +157,17 @@ def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, 
     from hearth.schemas.syntax import print_step
 
     if isinstance(trial, Failure):
-        return {"home": place.name, "executable": False, "failure": asdict(trial)}
+        return {"home": place.name, "executable": False, "failure": trial}
     execution = trial.execution
     changes = [change_row(change) for change in execution.changes()]
     return {
         "home": place.name,
         "executable": execution.executable,
-        "failure": asdict(execution.failure) if execution.failure else None,
+        "failure": execution.failure,
         "sampled": trial.environment is not None,
-        "added_nodes": [asdict(node) for node in trial.environment.nodes] if trial.environment else [],
+        "added_nodes": trial.environment.nodes if trial.environment else [],
         "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
         "steps": [print_step(step) for step in execution.program.steps],
         "changes": changes,
-        "stances": [[asdict(stance) for stance in tick] for tick in _stances(trial, place, homes)],
+        "stances": _stances(trial, place, homes),
     }

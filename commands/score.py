@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
     from hearth.scoring.bootstrap import Interval
     from hearth.scoring.evaluate import Options, Scored, Summary
-    from hearth.scoring.graph_f1 import GraphScore
     from hearth.scoring.lcs import LcsScore
     from hearth.scoring.predictions import Pair
 
@@ -66,7 +65,7 @@ def lcs(
     references: References = None,
     instances: Instances = False,
     seed: Seed = 0,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Longest common subsequence over the longer program's length, by step, by action and by object, and their mean.
 
@@ -101,7 +100,7 @@ def _lcs_json(
         {"id": pair.id, **score._asdict(), "mean": score.mean, "missing": pair.predicted is None}
         for pair, score in zip(pairs, scores, strict=True)
     ]
-    return {"signature": signature, **_counts(pairs), "mean": _intervals_json(means), "scores": rows}
+    return {"signature": signature, **_counts(pairs), "mean": means, "scores": rows}
 
 
 def _print_lcs(pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str) -> None:
@@ -127,10 +126,6 @@ def _counts(pairs: Sequence[Pair]) -> dict[str, int]:
     return {"count": len(pairs), "missing": missing, "empty": sum(pair.predicted == () for pair in pairs)}
 
 
-def _intervals_json(means: dict[str, Interval]) -> dict[str, dict[str, float]]:
-    return {name: found._asdict() for name, found in means.items()}
-
-
 @app.command("program")
 def program(
     file: File,
@@ -148,7 +143,7 @@ def program(
     instances: Instances = False,
     seed: Seed = 0,
     by: By = None,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Every score: LCS and parsability; where rows name an environment also executability, final-graph F1 and goal.
 
@@ -161,7 +156,6 @@ def program(
     """
     from functools import partial
 
-    from hearth.kb.loading import default
     from hearth.pipelines.judging import read_line
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
@@ -169,18 +163,27 @@ def program(
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
-    options = Options(chosen, match.value, scope.value, instances, seed)
-    known = default()
+    how = Options(chosen, match.value, scope.value, instances, seed)
+    known = inputs.read_knowledge(None)
     pairs = read_pairs(file, references, partial(read_line, known))
-    scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), options)
+    scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), how)
+    _show(scored, how, by, as_json)
+
+
+def _show(scored: Sequence[Scored], how: Options, by: str | None, as_json: bool) -> None:
+    from hearth.scoring.evaluate import by_field, summarise
+
+    summary, groups = summarise(scored, how.seed), by_field(scored, by, how.seed) if by else {}
     if as_json:
-        output.emit(_program_json(scored, options, by))
+        output.emit(_program_json(scored, how, summary, {"by": groups} if by else {}))
     else:
-        _print_program(scored, options, by)
+        _print_program(how, summary, by, groups)
 
 
-def _program_json(scored: Sequence[Scored], options: Options, by: str | None) -> dict[str, Any]:
-    from hearth.scoring.evaluate import METRICS, by_field, signatures, summarise
+def _program_json(
+    scored: Sequence[Scored], how: Options, summary: Summary, groups: dict[str, dict[str, Summary]]
+) -> dict[str, Any]:
+    from hearth.scoring.evaluate import METRICS, signatures
 
     rows = [
         {
@@ -193,35 +196,20 @@ def _program_json(scored: Sequence[Scored], options: Options, by: str | None) ->
         }
         for each in scored
     ]
-    groups = by_field(scored, by, options.seed) if by else {}
-    return {
-        "signatures": signatures(options),
-        **_summary_json(summarise(scored, options.seed)),
-        **({"by": {name: _summary_json(group) for name, group in groups.items()}} if by else {}),
-        "scores": rows,
-    }
+    parts = {key: {name: _summary_json(group) for name, group in found.items()} for key, found in groups.items()}
+    return {"signatures": signatures(how), **_summary_json(summary), **parts, "scores": rows}
 
 
 def _summary_json(summary: Summary) -> dict[str, Any]:
-    return {
-        "count": summary.count,
-        "missing": summary.missing,
-        "empty": summary.empty,
-        "incomparable": summary.incomparable,
-        "inexact": summary.inexact,
-        "mean": _intervals_json(dict(summary.means)),
-        "errors": dict(summary.errors),
-        "failed_at": dict(summary.failed_at),
-    }
+    counts = {name: getattr(summary, name) for name in ("count", "missing", "empty", "incomparable", "inexact")}
+    return {**counts, "mean": summary.means, "errors": summary.errors, "failed_at": summary.failed_at}
 
 
-def _print_program(scored: Sequence[Scored], options: Options, by: str | None) -> None:
-    from hearth.scoring.evaluate import by_field, signatures, summarise
+def _print_program(how: Options, summary: Summary, by: str | None, groups: dict[str, Summary]) -> None:
+    from hearth.scoring.evaluate import signatures
 
-    summary = summarise(scored, options.seed)
     output.table(["score", "mean", "95% from", "to"], [[name, *found] for name, found in summary.means.items()])
     if by:
-        groups = by_field(scored, by, options.seed)
         print()
         columns = list(summary.means)
         rows = [[name, group.count, *_means(group, columns)] for name, group in groups.items()]
@@ -230,7 +218,7 @@ def _print_program(scored: Sequence[Scored], options: Options, by: str | None) -
         print()
         output.table(["first failure", "programs"], summary.errors.items())
     print(f"\n{_said(summary)}")
-    for signature in signatures(options).values():
+    for signature in signatures(how).values():
         print(signature)
 
 
@@ -249,7 +237,7 @@ def _said(summary: Summary) -> str:
 
 @app.command("dataset")
 def dataset(
-    folder: Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")],
+    folder: options.Dataset,
     file: File,
     *,
     split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
@@ -259,8 +247,8 @@ def dataset(
     instances: Instances = False,
     seed: Seed = 0,
     by: By = None,
-    workers: Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")] = 0,
-    as_json: output.Json = False,
+    workers: options.Workers = 0,
+    as_json: options.Json = False,
 ) -> None:
     """Every score against a dataset: its programs are the references, its environments where programs run.
 
@@ -271,32 +259,26 @@ def dataset(
     Example:
       python cli.py score dataset data_out mine.jsonl --split activities --by activity
     """
-    import os
-
     from hearth.commands.waiting import bar
     from hearth.pipelines.dataset import Dataset
     from hearth.pipelines.judging import judge
     from hearth.scoring.evaluate import Options
 
-    options = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
+    how = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
     with bar("shares scored") as seen:
-        count = workers or os.cpu_count() or 1
-        scored = judge(Dataset.open(folder), file, split, part if split else "", options, count, seen)
-    if as_json:
-        output.emit(_program_json(scored, options, by))
-    else:
-        _print_program(scored, options, by)
+        scored = judge(Dataset.open(folder), file, split, part if split else "", how, workers, seen)
+    _show(scored, how, by, as_json)
 
 
 @app.command("baselines")
 def baselines(
-    folder: Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")],
+    folder: options.Dataset,
     *,
     split: Annotated[str, typer.Option("--split", metavar="NAME", help="Which split to learn from and test on.")] = (
         "activities"
     ),
     seed: Seed = 0,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Every score of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
 
@@ -312,8 +294,7 @@ def baselines(
 
     found = run(Dataset.open(folder), split, seed)
     if as_json:
-        thesis = [row._asdict() for row in THESIS]
-        output.emit({"split": split, "here": [row._asdict() for row in found], "thesis": thesis})
+        output.emit({"split": split, "here": found, "thesis": THESIS})
         return
     output.table([name.replace("_", " ") for name in Result._fields], [*found, *THESIS])
     if not found:
@@ -330,7 +311,7 @@ def graphs(
     ],
     match: Match = MatchName.BEST,
     scope: Scope = ScopeName.EITHER,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Compare two final graphs, whoever made them: precision, recall and F1 over states, relations and both.
 
@@ -347,13 +328,9 @@ def graphs(
     found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value)
     signature = f1_signature(match.value, scope.value)
     if as_json:
-        output.emit({"signature": signature, **_graph_json(found)})
+        parts = {name: getattr(found, name) for name in ("states", "relations", "both", "exact", "assigned")}
+        output.emit({"signature": signature, **parts})
         return
     rows = [["states", *found.states], ["relations", *found.relations], ["both", *found.both]]
     output.table(["", "precision", "recall", "f1"], rows)
     print(f"\n{signature}{'' if found.exact else '; a lower bound'}")
-
-
-def _graph_json(found: GraphScore) -> dict[str, Any]:
-    parts = {name: getattr(found, name)._asdict() for name in ("states", "relations", "both")}
-    return {**parts, "exact": found.exact, "assigned": found.assigned}

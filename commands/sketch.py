@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hearth.commands import output
-from hearth.commands.inputs import Homes, Kb, read_knowledge
+from hearth.commands import options, output
+from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -28,10 +28,10 @@ def sketch(
     sources: Sources,
     judge: Judge = None,
     disagreements: Every = False,
-    homes: Homes = None,
-    kb: Kb = None,
+    homes: options.Homes = None,
+    kb: options.Kb = None,
     seed: Seed = 0,
-    as_json: output.Json = False,
+    as_json: options.Json = False,
 ) -> None:
     """Print the sketch of programs: the steps that any environment would ask for.
 

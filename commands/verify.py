@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from hearth.commands import output
-
-Folder = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]
-
-Workers = Annotated[int, typer.Option("--workers", "-j", metavar="N", min=0, help="Processes; 0: one a core.")]
+from hearth.commands import options, output
 
 
-def verify(dataset: Folder, workers: Workers = 0, as_json: output.Json = False) -> None:
+def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: options.Json = False) -> None:
     """Check a dataset: hashes, columns, counts, references, and every execution run again from what is on disk.
 
     Exit status 1 where anything is wrong, each fault with its file.
@@ -24,22 +16,18 @@ def verify(dataset: Folder, workers: Workers = 0, as_json: output.Json = False) 
     Example:
       python cli.py verify data_out
     """
-    import os
-
     from hearth.commands.waiting import bar
     from hearth.pipelines.verify import verify as checked
 
     with bar("shares run again") as seen:
-        found = checked(dataset, workers or os.cpu_count() or 1, seen)
-    if found.note and not as_json:
-        print(f"Note: {found.note}", file=sys.stderr)
-    if as_json:
-        told = {"files": found.files, "rows": found.rows, "executions": found.executions}
-        faults = [output.diagnostic_json(fault) for fault in found.faults]
-        output.emit({**told, "note": found.note, "faults": faults})
-    else:
+        found = checked(dataset, workers, seen)
+    if not as_json:
+        if found.note:
+            print(f"Note: {found.note}", file=sys.stderr)
         output.report(found.faults)
-        ran = f"{output.counted(found.executions, 'execution')} run again"
-        said = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
-        print(f"{said}: {output.counted(len(found.faults), 'fault')}" if found.faults else f"{said}: all as it says")
+    ran = f"{output.counted(found.executions, 'execution')} run again"
+    said = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
+    result = output.counted(len(found.faults), "fault") if found.faults else "all as it says"
+    counts = {"files": found.files, "rows": found.rows, "executions": found.executions}
+    output.say(f"{said}: {result}", {**counts, "note": found.note, "faults": found.faults}, as_json)
     output.status(len(found.faults), strict=True)

@@ -41,7 +41,7 @@ def test_the_command_takes_a_tier_and_what_was_chosen_goes_first(monkeypatch, tm
     from hearth.commands import build
 
     found = {}
-    monkeypatch.setattr(build, "_run", lambda sources, out, workers, only, options, *rest: found.update(options))
+    monkeypatch.setattr(build, "_run", lambda context, only, chosen: found.update(chosen))
     done = CliRunner().invoke(cli.app, ["build", "--tier", "frames", "--videos", "2", "--out", str(tmp_path)])
     assert done.exit_code == 0
     assert (found["pictures"], found["videos"], found["homes_each"]) == (200, 2, 1)
