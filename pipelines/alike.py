@@ -7,8 +7,9 @@ from collections.abc import Hashable, Iterator, Sequence
 from math import ceil, inf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 _ROUNDING = 1e-6
@@ -69,7 +70,6 @@ def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
         texts: any.
         least: from 0 to 1; twice what two texts have in common, in order, over the sum of their lengths.
     """
-    import numpy as np
     from rapidfuzz import fuzz
 
     order = sorted(range(len(texts)), key=lambda place: (len(texts[place]), place))
@@ -101,8 +101,6 @@ def _apart(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[np.int
 
 def _character_counts(texts: Sequence[str]) -> NDArray[np.int32]:
     """(_KINDS, texts) how often each has characters of each kind."""
-    import numpy as np
-
     codes = (np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32) % _KINDS for text in texts)
     counts = [np.bincount(each, minlength=_KINDS) for each in codes]
     return np.array(counts, np.int32).reshape(-1, _KINDS).T.copy()

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
 from hearth.pipelines.ingest import READERS, items
@@ -21,7 +23,6 @@ from hearth.schemas.program import Step
 from hearth.schemas.syntax import normal_name
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 THESIS_FUNNEL = {
@@ -211,8 +212,6 @@ class Similarities:
 
 def similarities(corpus: Corpus, most: int = 60, workers: int = -1) -> Similarities:
     """Compare all pairs of programs, within activities and between the commonest `most` of them."""
-    import numpy as np
-
     from hearth.scoring.lcs import matrix
 
     programs = [written.steps for written in corpus.programs]
@@ -242,8 +241,6 @@ def _members(programs: Sequence[Written]) -> Members:
 def _compared(
     name: str, titles: Counter[str], rows: list[int], pairs: NDArray[np.float32], lengths: NDArray[np.float32]
 ) -> Activity:
-    import numpy as np
-
     title = min(titles, key=lambda each: (-titles[each], each))
     if len(rows) < 2:
         return Activity(name, title, len(rows), float("nan"), float("nan"))
@@ -254,8 +251,6 @@ def _compared(
 
 
 def _between(pairs: NDArray[np.float32], one: list[int], other: list[int]) -> float:
-    import numpy as np
-
     return float(pairs[np.ix_(one, other)].mean())
 
 
@@ -263,7 +258,6 @@ def _sorted(between: NDArray[np.float32]) -> list[int]:
     """An order in which what is alike stands together: leaves of a hierarchical clustering (figure 3-6)."""
     if len(between) < 3:
         return list(range(len(between)))
-    import numpy as np
     from scipy.cluster.hierarchy import leaves_list, linkage
     from scipy.spatial.distance import squareform
 

@@ -6,6 +6,8 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hearth.pipelines import corpus as numbers
 from hearth.pipelines.corpus import Corpus, Similarities
 from hearth.pipelines.files import replacing
@@ -141,8 +143,6 @@ def _bars(counts: Counter[str], label: str) -> Figure:
 
 def _together(found: Corpus, objects: Counter[str]) -> Figure:
     """In how many programs each two of the commonest objects are used."""
-    import numpy as np
-
     names = [name for name, _ in _ranked(objects)[:USED_TOGETHER]]
     place = {name: number for number, name in enumerate(names)}
     counts = np.full((len(names), len(names)), np.nan)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from hearth.pipelines.rows import Bindings
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import PROPERTY_ID, RELATION_ID, ROOM_CATEGORY, STATE_ID
-
-if TYPE_CHECKING:
-    import numpy as np
 
 INSIDE_ROOM = len(RELATION_ID)
 """The type of an edge INSIDE a room, apart from INSIDE a thing (thesis 5.4.1); the others are `RELATION_ID`."""
@@ -65,8 +64,6 @@ def to_tensors(moments: Iterable[Moment], vocabulary: Iterable[tuple[str, str, i
         moments: programs with one of their graphs each.
         vocabulary: kind (`action` or `class`), name and id.
     """
-    import numpy as np
-
     ids = _Ids({(kind, name): number for kind, name, number in vocabulary})
     parts: dict[str, list[Any]] = {name: [] for name in Tensors._fields}
     first = 0
@@ -111,8 +108,6 @@ class _Ids(dict[tuple[str, str], int]):
 
 
 def _marks(found: Iterable[Iterable[str]], known: dict[str, int]) -> np.ndarray:
-    import numpy as np
-
     rows = [[known[name] for name in names if name in known] for names in found]
     marks = np.zeros((len(rows), len(known)), dtype=np.float32)
     for place, columns in enumerate(rows):

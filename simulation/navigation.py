@@ -8,11 +8,12 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from hearth.schemas.graph import Box, Spot
 from hearth.simulation.homes.floor import Floor
 
 if TYPE_CHECKING:
-    import numpy as np
     from scipy.sparse import csr_matrix
 
 
@@ -46,8 +47,6 @@ class Ways:
     """The walkable cells of a floor as a graph of eight neighbours; made once a floor."""
 
     def __init__(self, floor: Floor) -> None:
-        import numpy as np
-
         self.floor = floor
         self.cells = np.argwhere(floor.walkable)
         self.number = np.full(floor.walkable.shape, -1, np.int64)
@@ -57,7 +56,6 @@ class Ways:
     @cached_property
     def graph(self) -> csr_matrix:
         """Distances between neighbouring cells, metres; a diagonal needs both its sides free."""
-        import numpy as np
         from scipy.sparse import csr_matrix
 
         sources, targets, lengths = [], [], []
@@ -78,8 +76,6 @@ class Ways:
 
     def nearest(self, point: Spot, blocked: np.ndarray | None = None) -> int:
         """Number of the walkable cell nearest to a point, or -1 when there is none."""
-        import numpy as np
-
         distance = np.hypot(*(self.points - point).T)
         if blocked is not None:
             distance[blocked] = np.inf
@@ -88,8 +84,6 @@ class Ways:
 
     def blocked(self, others: Sequence[Spot]) -> np.ndarray:
         """Bool by cell: where other characters stand in the way."""
-        import numpy as np
-
         taken = np.zeros(len(self.cells), bool)
         for other in others:
             taken |= np.hypot(*(self.points - other).T) < 2 * BODY_RADIUS

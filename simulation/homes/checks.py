@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.schemas.failures import Code
 from hearth.simulation.homes.floor import Floor, stands_on_floor
 from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
 from hearth.simulation.homes.plan import OUTSIDE, Faults, Plan
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
-
-if TYPE_CHECKING:
-    import numpy as np
 
 TOUCH = 0.011
 """Things may stand this far in each other: plans are rounded to centimetres."""
@@ -177,8 +175,6 @@ def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faul
 
 
 def _main_region(regions: np.ndarray) -> int:
-    import numpy as np
-
     sizes = np.bincount(regions.ravel())[1:]
     return int(sizes.argmax()) + 1 if sizes.size else 0
 

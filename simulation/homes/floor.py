@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.simulation.homes import raster
 from hearth.simulation.homes.geometry import Rect, bottom, footprint
 from hearth.simulation.homes.plan import Plan
 from hearth.simulation.homes.shell import WALL, Shell, Thing, interior, strip
-
-if TYPE_CHECKING:
-    import numpy as np
 
 CELL = 0.1
 """Metres a cell."""
@@ -64,8 +62,6 @@ def stands_on_floor(thing: Thing) -> bool:
 
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
     """The floor of a furnished plan."""
-    import numpy as np
-
     x0, z0 = min(room.rect.x0 for room in plan.rooms), min(room.rect.z0 for room in plan.rooms)
     x1, z1 = max(room.rect.x1 for room in plan.rooms), max(room.rect.z1 for room in plan.rooms)
     shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))

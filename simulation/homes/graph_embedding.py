@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.schemas.graph import Box
 from hearth.simulation.homes.forms import form
@@ -16,9 +17,6 @@ from hearth.simulation.homes.geometry import Rect
 from hearth.simulation.homes.graph_parts import Parts
 from hearth.simulation.homes.plan import Plan
 from hearth.simulation.homes.shell import Thing, interior
-
-if TYPE_CHECKING:
-    import numpy as np
 
 TURN = 5
 """Degrees between the ways that a map is turned."""
@@ -70,7 +68,6 @@ def _anchors(parts: Parts, room: int, members: list[int], doors: Mapping[int, Th
 
 def _map(parts: Parts, members: list[int]) -> np.ndarray:
     """Coordinates (members, 2) whose distances are about as many steps as CLOSE takes between them."""
-    import numpy as np
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import shortest_path
 
@@ -90,7 +87,6 @@ def _map(parts: Parts, members: list[int]) -> np.ndarray:
 
 def _laid(points: np.ndarray, inner: Rect) -> Iterator[np.ndarray]:
     """The map filling the floor, turned so that it does so best, in all eight ways round."""
-    import numpy as np
 
     def turned(angle: float) -> np.ndarray:
         c, s = cos(radians(angle)), sin(radians(angle))
@@ -107,8 +103,6 @@ def _laid(points: np.ndarray, inner: Rect) -> Iterator[np.ndarray]:
 
 
 def _misfit(places: np.ndarray, members: list[int], anchors: Mapping[int, tuple[float, float]]) -> float:
-    import numpy as np
-
     known = [k for k, node in enumerate(members) if node in anchors]
     wanted = np.array([anchors[members[k]] for k in known], float).reshape(-1, 2)
     return round(float(np.hypot(*(places[known] - wanted).T).sum()), 6)

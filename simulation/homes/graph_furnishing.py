@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from hearth.simulation.homes import raster
 from hearth.simulation.homes.floor import BODY, CELL, HEAD
 from hearth.simulation.homes.forms import Form, form
@@ -19,8 +21,6 @@ from hearth.simulation.homes.plan import Faults, Room
 from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from hearth.schemas.graph import Box
 
 ALONG, ACROSS = 0.25, 0.5
@@ -136,8 +136,6 @@ def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing]
 
 def _scores(crowd: Crowd, room: Room, node: int, spots: list[Stand], height: float) -> np.ndarray:
     """For each spot how much would be met of what the graph says of a thing and of all on and in it."""
-    import numpy as np
-
     parts, own = crowd.parts, sorted(crowd.parts.family(node))
     boxes = [box_over(rect, low, low + height) for rect, _, low in spots]
     yaws = [yaw for _, yaw, _ in spots]
@@ -212,8 +210,6 @@ def passable(room: Room, standing: list[Rect], doors: list[Rect]) -> bool:
         standing: what is in the way.
         doors: floor before each door, inside the room.
     """
-    import numpy as np
-
     inner, around = interior(room), interior(room).inset(-MARGIN)
     shape = round(around.width / CELL), round(around.depth / CELL)
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.simulation.homes.floor import HEAD
 from hearth.simulation.homes.forms import Form
 from hearth.simulation.homes.geometry import DIRECTIONS, Rect, along_x, bottom, facing_from, footprint, top
 from hearth.simulation.homes.plan import Room
 from hearth.simulation.homes.shell import Opening, Thing, interior, strip
-
-if TYPE_CHECKING:
-    import numpy as np
 
 Stand = tuple[Rect, float, float]
 """Where a thing may stand: the floor under it, its yaw, its underside."""
@@ -42,8 +40,6 @@ class Obstacles:
 
     def free(self, spots: Sequence[Stand], shaped: Form, front: float) -> np.ndarray:
         """Bool (spots): whether a thing of that shape, with `front` metres before it, may stand there."""
-        import numpy as np
-
         rects = np.array([spot[0] for spot in spots], float).reshape(-1, 4)
         found = _within(rects, self._inner, TOUCH)
         if shaped.mount == "flat" or not spots:
@@ -84,16 +80,12 @@ def before(rect: Rect, yaw: float, depth: float) -> Rect:
 
 
 def _within(rects: np.ndarray, room: Rect, slack: float) -> np.ndarray:
-    import numpy as np
-
     low, high = np.array(room[:2]) - slack, np.array(room[2:]) + slack
     return np.asarray((rects[:, :2] >= low).all(axis=1) & (rects[:, 2:] <= high).all(axis=1))
 
 
 def _meets(rects: np.ndarray, others: Sequence[Rect]) -> np.ndarray:
     """Bool (rects): whether each meets any of the others."""
-    import numpy as np
-
     taken = np.array(others, float).reshape(-1, 4)
     lows, highs = rects[:, None, :2], rects[:, None, 2:]
     apart = np.any((lows >= taken[None, :, 2:] - TOUCH) | (taken[None, :, :2] >= highs - TOUCH), axis=2)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import hypot, sqrt
 
+import numpy as np
+
 from hearth.simulation.homes.geometry import (
     DIRECTIONS,
     Rect,
@@ -79,7 +81,6 @@ def assigned(parts: Parts, places: Slots, things: Mapping[int, Thing], anew: boo
         things: what has its place already, by node id.
         anew: the panels among them are but guesses: each gets the place nearest to its own.
     """
-    import numpy as np
     from scipy.optimize import linear_sum_assignment
 
     groups = {key: [n for n in parts.of_class(*key) if anew or n not in things] for key in places}

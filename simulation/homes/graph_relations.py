@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import cos, hypot, radians, sqrt
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
@@ -13,9 +14,6 @@ from hearth.simulation.homes.geometry import DIRECTIONS, bottom, footprint, top
 from hearth.simulation.homes.graph_parts import SHELL, Parts
 from hearth.simulation.homes.relations import CLOSE_WITHIN, VIEW
 from hearth.simulation.homes.shell import Thing
-
-if TYPE_CHECKING:
-    import numpy as np
 
 NEAR = CLOSE_WITHIN + 0.4
 """Metres within which CLOSE counts as met: other people's graphs measured otherwise."""
@@ -108,8 +106,6 @@ def gap(one: Box, other: Box) -> float:
 
 def gaps(ones: Sequence[Box], others: Sequence[Box]) -> np.ndarray:
     """Metres of free space between each of some boxes and each of others."""
-    import numpy as np
-
     centers, halves = (np.array([getattr(b, k) for b in ones], float).reshape(-1, 3) for k in ("center", "size"))
     aims, sizes = (np.array([getattr(b, k) for b in others], float).reshape(-1, 3) for k in ("center", "size"))
     apart = np.abs(centers[:, None] - aims[None]) - (halves[:, None] + sizes[None]) / 2
@@ -119,8 +115,6 @@ def gaps(ones: Sequence[Box], others: Sequence[Box]) -> np.ndarray:
 
 def seen(ones: Sequence[Box], yaws: Sequence[float], others: Sequence[Box]) -> np.ndarray:
     """Bool (ones, others): as `sees`, for all of them at once."""
-    import numpy as np
-
     centers, aims = (np.array([b.center for b in boxes], float).reshape(-1, 3) for boxes in (ones, others))
     fronts = np.array([FRONTS.get(yaw % 360, (0.0, 1.0)) for yaw in yaws], float).reshape(-1, 2)
     towards = (aims[None] - centers[:, None])[..., (0, 2)]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
@@ -16,9 +17,6 @@ from hearth.simulation.homes.laying import places, setting
 from hearth.simulation.homes.placing import NoPlaceError, shape
 from hearth.simulation.homes.plan import Faults, Piece
 from hearth.simulation.homes.shell import Thing
-
-if TYPE_CHECKING:
-    import numpy as np
 
 MARGIN = 0.015
 """Free rim of a top, and half the least distance between two things on it."""
@@ -326,8 +324,6 @@ def _check(support: Support, level: Level, local: Local) -> None:
 
 def _best(support: Support, level: Level, width: float, depth: float) -> Local | None:
     """Where a thing of that size stands best: the first free place from the back on tidy supports, else well apart."""
-    import numpy as np
-
     across, out = support.width - width, support.depth - depth
     if across < -1e-9 or out < -1e-9:
         return None
@@ -350,16 +346,12 @@ def _best(support: Support, level: Level, width: float, depth: float) -> Local |
 
 def _steps(length: float) -> np.ndarray:
     """Places along a length, both ends among them."""
-    import numpy as np
-
     count = min(MOST_STEPS, max(1, round(length / STEP)))
     return np.arange(count + 1) * (max(length, 0.0) / count)
 
 
 def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float) -> np.ndarray:
     """For a thing with its corner at each (v, u): the least distance to what stands there; negative where they meet."""
-    import numpy as np
-
     taken = np.array([local for _, local in level.taken], float).reshape(-1, 4)
     gap_u = np.maximum(taken[:, 0, None] - (u + width), u - taken[:, 2, None])
     gap_v = np.maximum(taken[:, 1, None] - (v + depth), v - taken[:, 3, None])

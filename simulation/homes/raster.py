@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    import numpy as np
+import numpy as np
 
 
 def eroded(free: np.ndarray, reach: int) -> np.ndarray:
     """Bool, same shape: cells with everything free within `reach` cells of them; beyond the grid nothing is free."""
-    import numpy as np
-
     columns, rows = free.shape
     padded = np.zeros((columns + 2 * reach, rows + 2 * reach), bool)
     padded[reach : reach + columns, reach : reach + rows] = free
@@ -25,8 +20,6 @@ def eroded(free: np.ndarray, reach: int) -> np.ndarray:
 
 def regions(mask: np.ndarray) -> np.ndarray:
     """Int32, same shape: cells that join side by side share a number, from 1 in the order of their first cells."""
-    import numpy as np
-
     columns, rows = mask.shape
     edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     starts, ends = np.argwhere(edges == 1), np.argwhere(edges == -1)
@@ -58,8 +51,6 @@ def clearance(free: np.ndarray) -> np.ndarray:
 
     Beyond the grid nothing is said, as in a Euclidean distance transform; a grid free throughout is far from all.
     """
-    import numpy as np
-
     columns, rows = free.shape
     far = columns + rows
     along = np.where(free, far, 0).astype(np.int64)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 from hearth.simulation.homes.shell import Thing
-
-if TYPE_CHECKING:
-    import numpy as np
 
 CLOSE_WITHIN = 0.8
 """Metres of free space between two things that are CLOSE; chosen so that homes are as dense as the release's."""
@@ -37,8 +35,6 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
         ids: node ids by the things' names.
         lookable: classes that one can look at: what things are FACING.
     """
-    import numpy as np
-
     own = np.array([ids[thing.name] for thing in things], np.int64)
     tables = [np.array([(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]).reshape(-1, 3)]
     for relation, pairs in (("CLOSE", _close_pairs(things)), ("FACING", np.array([*facing(things, lookable)], int))):
@@ -76,8 +72,6 @@ def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
 
 def _close_pairs(things: Sequence[Thing]) -> np.ndarray:
     """The same as an int array of shape (pairs, 2)."""
-    import numpy as np
-
     found = [np.zeros((0, 2), np.int64)]
     doorway = np.array([bool(thing.between) for thing in things])
     for members in _rooms(things).values():
@@ -104,8 +98,6 @@ def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
 
 def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:
     """Centres and half sizes, both of shape (things, 3)."""
-    import numpy as np
-
     centers = np.array([thing.box.center for thing in things], float).reshape(-1, 3)
     halves = np.array([thing.box.size for thing in things], float).reshape(-1, 3) / 2
     return centers, halves
@@ -129,8 +121,6 @@ def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[
 
 def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int, int]]:
     """Which things of one room face which of its targets."""
-    import numpy as np
-
     centers, _ = _arrays(things)
     towards = centers[targets][None] - centers[:, None]
     distance = np.maximum(np.hypot(towards[..., 0], towards[..., 2]), 1e-9)
@@ -156,8 +146,6 @@ def _direction(yaw: float) -> tuple[float, float]:
 
 def _blocked(things: Sequence[Thing], sources: np.ndarray, aims: np.ndarray) -> np.ndarray:
     """Bool (pairs): the line of sight cuts through something of size other than the two and what they are on."""
-    import numpy as np
-
     centers, halves = _arrays(things)
     walls = np.array([k for k, thing in enumerate(things) if thing.mount in TALL], int)
     start = centers[sources].copy()
@@ -177,8 +165,6 @@ def _cuts(start: np.ndarray, end: np.ndarray, low: np.ndarray, high: np.ndarray)
         start, end: of shape (segments, 3).
         low, high: corners, of shape (boxes, 3).
     """
-    import numpy as np
-
     step = (end - start)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = (low[None] - start[:, None]) / step, (high[None] - start[:, None]) / step
