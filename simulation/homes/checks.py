@@ -9,8 +9,9 @@ import numpy as np
 from hearth.schemas.failures import Code
 from hearth.simulation.homes.floor import Floor, stands_on_floor
 from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
+from hearth.simulation.homes.lint import joined
 from hearth.simulation.homes.plan import OUTSIDE, Faults, Plan
-from hearth.simulation.homes.shell import Shell, Thing, interior, span, strip
+from hearth.simulation.homes.shell import Shell, Thing, before, interior, strip
 
 TOUCH = 0.011
 """Things may stand this far in each other: plans are rounded to centimetres."""
@@ -70,14 +71,7 @@ def _short(thing: Thing) -> str:
 def _check_doors(plan: Plan, faults: Faults) -> None:
     if not plan.rooms:
         return
-    reached, grown = {plan.rooms[0].name}, True
-    while grown:
-        grown = False
-        for door in plan.doorways:
-            ends = set(door.rooms) - {OUTSIDE}
-            if ends & reached and not ends <= reached:
-                reached |= ends
-                grown = True
+    reached = joined(plan.rooms[0].name, [set(door.rooms) - {OUTSIDE} for door in plan.doorways])
     for room in plan.rooms:
         if room.name not in reached:
             faults.add(Code.NO_PATH, f"nobody can enter {room.name} from {plan.rooms[0].name}", room.line,
@@ -86,13 +80,8 @@ def _check_doors(plan: Plan, faults: Faults) -> None:
 
 def _check_walls(thing: Thing, inner: Rect, height: float, faults: Faults) -> None:
     rect = footprint(thing.box)
-    beyond = {
-        "west": inner.x0 - rect.x0,
-        "south": inner.z0 - rect.z0,
-        "east": rect.x1 - inner.x1,
-        "north": rect.z1 - inner.z1,
-    }
-    for wall, distance in beyond.items():
+    for wall in ("west", "south", "east", "north"):
+        distance = rect.reach(wall) - inner.reach(wall)
         if distance > TOUCH:
             faults.add(Code.NO_PLACE, f"{_short(thing)} stands {distance:.2f} m through the {wall} wall", thing.line,
                        "move it or make it smaller")  # fmt: skip
@@ -118,9 +107,7 @@ def _check_openings(thing: Thing, shell: Shell, faults: Faults) -> None:
 
 
 def _wall_line(shell: Shell, room: str, wall: str) -> Rect:
-    floors = [footprint(t.box) for t in shell.things if t.room == room and t.class_name == "floor"]
-    return Rect(min(r.x0 for r in floors), min(r.z0 for r in floors), max(r.x1 for r in floors),
-                max(r.z1 for r in floors))  # fmt: skip
+    return Rect.over(footprint(t.box) for t in shell.things if t.room == room and t.class_name == "floor")
 
 
 def _check_apart(things: Sequence[Thing], faults: Faults) -> None:
@@ -166,12 +153,10 @@ def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faul
                        "clear half a metre from its door")  # fmt: skip
     for thing in things:
         if thing.front and thing.mount == "floor" and thing.yaw is not None and thing.line not in faulty:
-            front = front_of(thing.yaw)
-            start, end = span(footprint(thing.box), front)
-            zone = strip(footprint(thing.box), front, start, end, -max(thing.front, REACH))
+            zone = before(footprint(thing.box), thing.yaw, max(thing.front, REACH))
             if not _any_in(regions == main, floor, zone):
                 faults.add(Code.NO_PATH, f"nobody can get to the front of {_short(thing)}", thing.line,
-                           f"leave {thing.front:g} m free on its {front} side")  # fmt: skip
+                           f"leave {thing.front:g} m free on its {front_of(thing.yaw)} side")  # fmt: skip
 
 
 def _main_region(regions: np.ndarray) -> int:

@@ -62,34 +62,28 @@ def stands_on_floor(thing: Thing) -> bool:
 
 def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
     """The floor of a furnished plan."""
-    x0, z0 = min(room.rect.x0 for room in plan.rooms), min(room.rect.z0 for room in plan.rooms)
-    x1, z1 = max(room.rect.x1 for room in plan.rooms), max(room.rect.z1 for room in plan.rooms)
+    x0, z0, x1, z1 = Rect.over(room.rect for room in plan.rooms)
     shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))
-    free = np.zeros(shape, bool)
-    room_of = np.full(shape, -1, np.int16)
-    for number, room in enumerate(plan.rooms):
-        room_of[_cells(room.rect, (x0, z0), cell, shape)] = number
-        free[_cells(interior(room), (x0, z0), cell, shape)] = True
-    for opening in shell.openings:
-        if opening.door is not None:
-            inner = interior(plan.room(opening.room))
-            hole = strip(inner.inset(-0.001), opening.wall, opening.start, opening.end, -WALL - cell)
-            inside = room_of[_cells(hole, (x0, z0), cell, shape)] >= 0
-            free[_cells(hole, (x0, z0), cell, shape)] |= inside
-    for thing in things:
-        if stands_on_floor(thing):
-            free[_cells(footprint(thing.box), (x0, z0), cell, shape)] = False
-    return Floor((x0, z0), cell, free, raster.eroded(free, round(BODY / cell)), room_of)
-
-
-def _cells(rect: Rect, origin: tuple[float, float], cell: float, shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """The cells whose middles lie in a rectangle."""
 
     def part(low: float, high: float, size: int) -> slice:
         first, last = int(low / cell + 0.5 - 1e-6), int(high / cell + 0.5 - 1e-6)
         return slice(max(0, min(first, size)), max(0, min(last, size)))
 
-    return (
-        part(rect.x0 - origin[0], rect.x1 - origin[0], shape[0]),
-        part(rect.z0 - origin[1], rect.z1 - origin[1], shape[1]),
-    )
+    def cells(rect: Rect) -> tuple[slice, slice]:
+        """The cells whose middles lie in a rectangle."""
+        return part(rect.x0 - x0, rect.x1 - x0, shape[0]), part(rect.z0 - z0, rect.z1 - z0, shape[1])
+
+    free = np.zeros(shape, bool)
+    room_of = np.full(shape, -1, np.int16)
+    for number, room in enumerate(plan.rooms):
+        room_of[cells(room.rect)] = number
+        free[cells(interior(room))] = True
+    for opening in shell.openings:
+        if opening.door is not None:
+            inner = interior(plan.room(opening.room))
+            hole = strip(inner.inset(-0.001), opening.wall, opening.start, opening.end, -WALL - cell)
+            free[cells(hole)] |= room_of[cells(hole)] >= 0
+    for thing in things:
+        if stands_on_floor(thing):
+            free[cells(footprint(thing.box))] = False
+    return Floor((x0, z0), cell, free, raster.eroded(free, round(BODY / cell)), room_of)

@@ -11,11 +11,10 @@ from typing import Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.simulation.homes import located
-from hearth.simulation.homes.forms import Form
 from hearth.simulation.homes.geometry import DIRECTIONS, Rect, box_over, footprint, front_of, wall_of
-from hearth.simulation.homes.placing import PLACERS, Furnishing, NoPlaceError, Placed, shape
+from hearth.simulation.homes.placing import PLACERS, Furnishing, NoPlaceError, Placed, shape, underside
 from hearth.simulation.homes.plan import Faults, Piece, Room
-from hearth.simulation.homes.shell import Opening, Shell, Thing, interior, span, strip
+from hearth.simulation.homes.shell import Opening, Shell, Thing, before, interior, span, strip
 from hearth.simulation.homes.stocking import stock
 from hearth.simulation.homes.suite import Suite
 
@@ -152,12 +151,12 @@ def _try(suite: Suite, piece: Piece) -> bool:
         spots = PLACERS[key](piece, shaped, known)
     except NoPlaceError:
         return False
-    low = _underside(piece, shaped, known)
+    low = underside(piece, shaped, known)
     front = 0.0 if piece.class_name == "bed" else shaped.front
     for number, (rect, yaw) in enumerate(spots):
         if not _fits(suite, rect, low, low + shaped.size[1], shaped.mount, yaw):
             return False
-        zone = _zone(rect, front, yaw)
+        zone = before(rect, yaw, front)
         if front and any(y0 < LOW and _meet(zone, other) for other, y0, _ in suite.solids):
             return False
         if shaped.mount != "flat":
@@ -176,20 +175,6 @@ def _try(suite: Suite, piece: Piece) -> bool:
 def _stand_in(suite: Suite, piece: Piece, number: int, rect: Rect, yaw: float, heights: tuple[float, float]) -> Thing:
     name = f"{suite.furnishing.room.name}/{piece.class_name}.{number}"
     return Thing(name, piece.class_name, suite.furnishing.room.name, box_over(rect, *heights), yaw)
-
-
-def _underside(piece: Piece, shaped: Form, known: Furnishing) -> float:
-    if "up" in piece.place:
-        return float(piece.place["up"])
-    if shaped.mount == "ceiling":
-        return known.height - shaped.size[1]
-    return shaped.up if shaped.mount == "wall" else 0.0
-
-
-def _zone(rect: Rect, front: float, yaw: float) -> Rect:
-    side = front_of(yaw)
-    start, end = span(rect, side)
-    return strip(rect, side, start, end, -front)
 
 
 def _meet(a: Rect, b: Rect) -> bool:
@@ -282,7 +267,7 @@ def _couch(suite: Suite, shown: Thing) -> Piece:
     yaw = shown.yaw or 0.0
     front = front_of(yaw)
     x, _, z = shown.box.center
-    far = {"north": inner.z1 - z, "south": z - inner.z0, "east": inner.x1 - x, "west": x - inner.x0}[front]
+    far = inner.reach(front) - Rect(x, z, x, z).reach(front)
     couch = Piece("couch", on=(Piece("pillow", count=suite.rng.choice((1, 2, 3))),))
     if far <= 4.0:
         return replace(couch, place={"opposite": "tvstand"})

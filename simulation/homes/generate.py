@@ -92,35 +92,18 @@ def _numbered(plan: Plan) -> Plan:
     """Every entry with a line of its own, by which its faults are known."""
     counter = iter(range(10_000, 100_000))
 
-    def number(piece: Piece) -> Piece:
-        return replace(
-            piece,
-            line=next(counter),
-            on=tuple(map(number, piece.on)),
-            inside=tuple(map(number, piece.inside)),
-            lay=tuple(map(number, piece.lay)),
-        )
+    def numbered(pieces: tuple[Piece, ...]) -> tuple[Piece, ...]:
+        return tuple(replace(piece, line=next(counter)).with_parts(numbered) for piece in pieces)
 
-    return replace(plan, rooms=tuple(replace(r, furniture=tuple(map(number, r.furniture))) for r in plan.rooms))
+    return replace(plan, rooms=tuple(replace(room, furniture=numbered(room.furniture)) for room in plan.rooms))
 
 
 def _without(plan: Plan, lines: set[int]) -> Plan:
     """The plan without some entries; rooms that lose none stay the same objects."""
 
     def kept(pieces: tuple[Piece, ...]) -> tuple[Piece, ...]:
-        return tuple(
-            replace(piece, on=kept(piece.on), inside=kept(piece.inside), lay=kept(piece.lay))
-            for piece in pieces
-            if piece.line not in lines
-        )
+        return tuple(piece.with_parts(kept) for piece in pieces if piece.line not in lines)
 
-    rooms = (replace(room, furniture=kept(room.furniture)) if _any(room.furniture, lines) else room
-             for room in plan.rooms)  # fmt: skip
+    found = ((room, kept(room.furniture)) for room in plan.rooms)
+    rooms = (room if left == room.furniture else replace(room, furniture=left) for room, left in found)
     return replace(plan, rooms=tuple(rooms))
-
-
-def _any(pieces: tuple[Piece, ...], lines: set[int]) -> bool:
-    return any(
-        piece.line in lines or _any(piece.on, lines) or _any(piece.inside, lines) or _any(piece.lay, lines)
-        for piece in pieces
-    )

@@ -5,6 +5,7 @@ Metres; x grows eastwards, y upwards, z northwards. Yaw is in degrees about y fr
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from hearth.schemas.graph import Box
@@ -22,6 +23,17 @@ class Rect(NamedTuple):
     x1: float
     z1: float
 
+    @classmethod
+    def around(cls, x: float, z: float, width: float, depth: float) -> Rect:
+        """The rectangle of that extent with its middle at a point."""
+        return cls(x - width / 2, z - depth / 2, x + width / 2, z + depth / 2)
+
+    @classmethod
+    def over(cls, rects: Iterable[Rect]) -> Rect:
+        """The smallest rectangle over some others."""
+        x0, z0, x1, z1 = zip(*rects, strict=True)
+        return cls(min(x0), min(z0), max(x1), max(z1))
+
     @property
     def width(self) -> float:
         """Extent from west to east."""
@@ -37,6 +49,11 @@ class Rect(NamedTuple):
         """The middle, as (x, z)."""
         return (self.x0 + self.x1) / 2, (self.z0 + self.z1) / 2
 
+    def reach(self, direction: str) -> float:
+        """How far it reaches in a direction: its bound there, counted that way."""
+        west, south, east, north = self
+        return {"west": -west, "south": -south, "east": east, "north": north}[direction]
+
     def inset(self, margin: float) -> Rect:
         """Smaller by `margin` on every side (larger when negative)."""
         return Rect(self.x0 + margin, self.z0 + margin, self.x1 - margin, self.z1 - margin)
@@ -49,12 +66,8 @@ class Rect(NamedTuple):
 
     def contains(self, other: Rect, slack: float = 0.005) -> bool:
         """Whether the other lies within, give or take `slack`."""
-        return (
-            other.x0 >= self.x0 - slack
-            and other.z0 >= self.z0 - slack
-            and other.x1 <= self.x1 + slack
-            and other.z1 <= self.z1 + slack
-        )
+        west_south = other.x0 >= self.x0 - slack and other.z0 >= self.z0 - slack
+        return west_south and other.x1 <= self.x1 + slack and other.z1 <= self.z1 + slack
 
     def holds(self, x: float, z: float) -> bool:
         """Whether a point lies within."""
@@ -73,18 +86,18 @@ def facing_from(wall: str) -> float:
 
 def wall_of(yaw: float) -> str:
     """The wall that a thing of this yaw turns its back to."""
-    return next(wall for wall in DIRECTIONS if facing_from(wall) == yaw % 360)
+    return OPPOSITE_WALL[front_of(yaw)]
 
 
 def front_of(yaw: float) -> str:
     """The direction a thing of this yaw faces."""
-    return OPPOSITE_WALL[wall_of(yaw)]
+    return next(name for name, degrees in DIRECTIONS.items() if degrees == yaw % 360)
 
 
 def footprint(box: Box) -> Rect:
     """The floor a box stands over."""
     (x, _, z), (w, _, d) = box
-    return Rect(x - w / 2, z - d / 2, x + w / 2, z + d / 2)
+    return Rect.around(x, z, w, d)
 
 
 def bottom(box: Box) -> float:
@@ -100,9 +113,7 @@ def top(box: Box) -> float:
 def box_over(rect: Rect, y0: float, y1: float) -> Box:
     """The box over a rectangle between two heights, to a tenth of a millimetre."""
     x, z = rect.center
-    center = (x, (y0 + y1) / 2, z)
-    size = (rect.width, y1 - y0, rect.depth)
-    return Box(_rounded(center), _rounded(size))
+    return Box(_rounded((x, (y0 + y1) / 2, z)), _rounded((rect.width, y1 - y0, rect.depth)))
 
 
 def _rounded(values: tuple[float, float, float]) -> tuple[float, float, float]:

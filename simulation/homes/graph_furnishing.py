@@ -101,7 +101,7 @@ def _squeeze_in(crowd: Crowd, node: int) -> None:
             width, depth = min(shaped.size[0], 0.9 * rect.width), min(shaped.size[2], 0.9 * rect.depth)
             low, room = (top(holder.box), 1.0) if word == "on" else (bottom(holder.box) + 0.01, holder.box.size[1])
             (x, z), height = rect.center, min(shaped.size[1], 0.9 * room)
-            box = box_over(Rect(x - width / 2, z - depth / 2, x + width / 2, z + depth / 2), low, low + height)
+            box = box_over(Rect.around(x, z, width, depth), low, low + height)
             on, inside = (holder.name, "") if word == "on" else ("", holder.name)
             crowd.things[child] = Thing(str(child), class_name, holder.room, box, holder.yaw, "item", on=on,
                                         inside=inside, line=child)  # fmt: skip

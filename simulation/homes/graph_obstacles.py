@@ -8,9 +8,9 @@ import numpy as np
 
 from hearth.simulation.homes.floor import HEAD
 from hearth.simulation.homes.forms import Form
-from hearth.simulation.homes.geometry import DIRECTIONS, Rect, along_x, bottom, facing_from, footprint, top
+from hearth.simulation.homes.geometry import Rect, bottom, facing_from, footprint, top
 from hearth.simulation.homes.plan import Room
-from hearth.simulation.homes.shell import Opening, Thing, interior, strip
+from hearth.simulation.homes.shell import Opening, Thing, before, interior, strip
 
 Stand = tuple[Rect, float, float]
 """Where a thing may stand: the floor under it, its yaw, its underside."""
@@ -70,13 +70,6 @@ class Obstacles:
         for hole in self._openings:
             if low < hole.y1 and high > hole.y0:
                 yield hole, strip(self._inner, hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
-
-
-def before(rect: Rect, yaw: float, depth: float) -> Rect:
-    """The floor before a thing that faces that way."""
-    side = next(name for name, degrees in DIRECTIONS.items() if degrees == yaw % 360)
-    start, end = (rect.x0, rect.x1) if along_x(side) else (rect.z0, rect.z1)
-    return strip(rect, side, start, end, -depth)
 
 
 def _within(rects: np.ndarray, room: Rect, slack: float) -> np.ndarray:

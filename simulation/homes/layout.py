@@ -162,8 +162,7 @@ def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowle
         known = form("ceilinglamp", knowledge)
         if known is not None:
             (x, z), (width, height, depth) = interior(room).center, known.size
-            rect = Rect(x - width / 2, z - depth / 2, x + width / 2, z + depth / 2)
-            box = box_over(rect, plan.height - height, plan.height)
+            box = box_over(Rect.around(x, z, width, depth), plan.height - height, plan.height)
             yield Thing(f"{room.name}/ceilinglamp.1", "ceilinglamp", room.name, box, 0.0, "ceiling", line=room.line)
     if "light" not in classes:
         switch = _switch(room, built, knowledge)
@@ -206,7 +205,7 @@ def _character(layout: Layout) -> Thing:
     i, j = divmod(int(space.argmax()), space.shape[1])
     x, z = floor.center(i, j)
     width, height, depth = PERSON
-    box = box_over(Rect(x - width / 2, z - depth / 2, x + width / 2, z + depth / 2), 0.0, height)
+    box = box_over(Rect.around(x, z, width, depth), 0.0, height)
     inner = interior(plan.rooms[number])
     toward_x = abs(inner.center[0] - x) > abs(inner.center[1] - z)
     yaw = (90.0 if inner.center[0] > x else 270.0) if toward_x else (0.0 if inner.center[1] >= z else 180.0)

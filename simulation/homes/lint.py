@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
+from typing import TypeVar
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading import default
@@ -12,13 +13,9 @@ from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.literals import HANDS
-from hearth.schemas.vocabulary import (
-    CHARACTER_CLASS,
-    PROPERTIES,
-    RELATIONS,
-    ROOM_CATEGORY,
-    STATES,
-)
+from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATIONS, ROOM_CATEGORY, STATES
+
+Id = TypeVar("Id", int, str)
 
 CATEGORIES = (
     "Animals", "Appliances", "BodyParts", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor",
@@ -214,20 +211,18 @@ def _doors(view: View) -> Iterator[Diagnostic]:
             message = f"{view.said(door)} is BETWEEN {len(real)} room{'s' * (len(real) != 1)}"
             yield _fault(Code.BAD_GRAPH, message, (door, *rooms), "a door joins two rooms")
     rooms = [node_id for node_id in view.nodes if view.is_room(node_id)]
-    cut = sorted(set(rooms) - _joined(view, rooms[:1]))
+    cut = sorted(set(rooms) - joined(rooms[0], map(set, view.targets["BETWEEN"].values()))) if rooms else []
     if rooms and cut and view.targets["BETWEEN"]:
         names = ", ".join(map(view.said, cut))
         yield _fault(Code.NO_PATH, f"no door leads from {view.said(rooms[0])} to {names}", tuple(cut), "add a door")
 
 
-def _joined(view: View, start: list[int]) -> set[int]:
-    found, grown = set(start), True
-    while grown:
-        grown = False
-        for rooms in view.targets["BETWEEN"].values():
-            if found & set(rooms) and not set(rooms) <= found:
-                found |= set(rooms)
-                grown = True
+def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
+    """What is reached from `start` through doors, each a set of what it joins."""
+    found, left = {start}, list(doors)
+    while through := [ends for ends in left if ends & found]:
+        left = [ends for ends in left if not ends & found]
+        found.update(*through)
     return found
 
 

@@ -14,7 +14,7 @@ from hearth.simulation.homes.entries import ON_TOP
 from hearth.simulation.homes.forms import Form, form
 from hearth.simulation.homes.geometry import Rect, bottom, box_over, footprint, top, wall_of
 from hearth.simulation.homes.laying import places, setting
-from hearth.simulation.homes.placing import NoPlaceError, shape
+from hearth.simulation.homes.placing import NoPlaceError, names_of, shape
 from hearth.simulation.homes.plan import Faults, Piece
 from hearth.simulation.homes.shell import Thing
 
@@ -93,7 +93,7 @@ def contents(
     shaped = shape(piece, knowledge)
     laid = list(_settings(thing, piece.lay, seats, numbers, knowledge))
     for relation, pieces in (("on", piece.on), ("inside", piece.inside)):
-        named = [(entry, _names(entry, numbers)) for entry in pieces]
+        named = [(entry, names_of(entry, numbers)) for entry in pieces]
         # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
         named.sort(key=lambda pair: _rank(pair[0], knowledge))
         fixed = laid if relation == "on" else []
@@ -116,7 +116,7 @@ def _settings(
     for place in places(table, seats) if lay else ():
         rects = setting(place, [(width, depth) for width, _, depth in sizes])
         for entry, rect in zip(lay, rects, strict=True):
-            yield entry, _names(entry, numbers)[0], rect
+            yield entry, names_of(entry, numbers)[0], rect
 
 
 def _arranged(
@@ -145,15 +145,6 @@ def _arranged(
         if not missed or support.tidy:
             break
     return found, missed
-
-
-def _names(piece: Piece, numbers: dict[str, int]) -> list[str]:
-    base = piece.name or piece.class_name
-    names = []
-    for _ in range(piece.count):
-        numbers[base] = numbers.get(base, 0) + 1
-        names.append(base if piece.name and piece.count == 1 else f"{base}.{numbers[base]}")
-    return names
 
 
 def _rank(piece: Piece, knowledge: Knowledge) -> tuple[bool, bool, float]:

@@ -15,10 +15,11 @@ from hearth.simulation.homes.geometry import (
     along_x,
     box_over,
     facing_from,
+    footprint,
     front_of,
     turned,
     wall_of,
-)
+)  # fmt: skip
 from hearth.simulation.homes.plan import Faults, Piece, Room
 from hearth.simulation.homes.shell import Thing, interior, span, strip
 
@@ -66,7 +67,7 @@ def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> 
     """Place a room's furniture; each entry after those it refers to. What cannot be placed is noted and left out."""
     found = Furnishing(room, interior(room), height, knowledge, faults)
     numbers: dict[str, int] = {}
-    waiting = [(piece, _names(piece, numbers)) for piece in room.furniture]
+    waiting = [(piece, names_of(piece, numbers)) for piece in room.furniture]
     while waiting:
         ready = [entry for entry in waiting if _reference(entry[0]) in (None, *found.named)]
         if not ready:
@@ -101,8 +102,8 @@ def _reference(piece: Piece) -> str | None:
     return next((name for name in found if name is not None), None)
 
 
-def _names(piece: Piece, numbers: dict[str, int]) -> list[str]:
-    """The names of a piece's things: its own, else its class with a number."""
+def names_of(piece: Piece, numbers: dict[str, int]) -> list[str]:
+    """The names of a piece's things: its own, else its class with a number; `numbers` counts them."""
     base = piece.name or piece.class_name
     names = []
     for _ in range(piece.count):
@@ -120,7 +121,7 @@ def _place(piece: Piece, names: Sequence[str], room: Furnishing) -> None:
         return
     base = piece.name or piece.class_name
     for name, (rect, yaw) in zip(names, spots, strict=True):
-        low = _underside(piece, shaped, room)
+        low = underside(piece, shaped, room)
         box = box_over(rect, low, low + shaped.size[1])
         thing = Thing(f"{room.room.name}/{name}", piece.class_name, room.room.name, box, yaw, shaped.mount,
                       front=shaped.front, line=piece.line)  # fmt: skip
@@ -130,7 +131,8 @@ def _place(piece: Piece, names: Sequence[str], room: Furnishing) -> None:
             room.named.setdefault(alias, []).append(placed)
 
 
-def _underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
+def underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
+    """The height at which a piece begins."""
     if "up" in piece.place:
         return float(piece.place["up"])
     if shaped.mount == "ceiling":
@@ -149,8 +151,16 @@ def _yaw(piece: Piece, usual: float) -> float:
     return DIRECTIONS[piece.place["facing"]] if piece.has("facing") else usual
 
 
-def _target(piece: Piece, key: str, room: Furnishing) -> Thing:
-    return room.named[piece.place[key]][-1].thing
+def _target(piece: Piece, key: str, room: Furnishing, side: str) -> tuple[Thing, float]:
+    """What a piece refers to, and its yaw.
+
+    Raises:
+        NoPlaceError: it has no such side.
+    """
+    other = room.named[piece.place[key]][-1].thing
+    if other.yaw is None:
+        raise NoPlaceError(f"`{other.class_name}` has no {side}")
+    return other, other.yaw
 
 
 def _on_wall(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
@@ -168,10 +178,8 @@ def _on_wall(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
         start = (low + high - total) / 2
     off = 0.0 if shaped.mount == "wall" else GAP
     inner = room.inner.inset(off)
-    return [
-        (strip(inner, wall, start + k * (along + gap), start + k * (along + gap) + along, out), yaw)
-        for k in range(piece.count)
-    ]
+    starts = (start + k * (along + gap) for k in range(piece.count))
+    return [(strip(inner, wall, begin, begin + along, out), yaw) for begin in starts]
 
 
 def _extents(shaped: Form, yaw: float, wall: str) -> tuple[float, float]:
@@ -198,35 +206,26 @@ def _in_corner(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 def _beside(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """Next along the wall that the other has its back to, backs in line; on its east or north side unless said."""
-    other = _target(piece, "beside", room)
-    if other.yaw is None:
-        raise NoPlaceError(f"`{other.class_name}` has no side")
-    rect = _rect(other)
-    wall = wall_of(other.yaw)
+    other, turned_to = _target(piece, "beside", room, "side")
+    rect, wall = footprint(other.box), wall_of(turned_to)
     side = piece.place.get("side", "east" if along_x(wall) else "north")
     if along_x(side) == along_x(wall):
         raise NoPlaceError(f"{side} of `{other.class_name}` is not beside it")
-    yaw = _yaw(piece, other.yaw)
+    yaw = _yaw(piece, turned_to)
     along, out = _extents(shaped, yaw, wall)
     gap = piece.place.get("gap", 0.0)
     forward = side in ("east", "north")
     low, high = span(rect, wall)
-    spots = []
-    for k in range(piece.count):
-        shift = gap + k * (along + gap)
-        start = high + shift if forward else low - shift - along
-        spots.append((strip(rect, wall, start, start + along, out), yaw))
-    return spots
+    shifts = (gap + k * (along + gap) for k in range(piece.count))
+    starts = (high + shift if forward else low - shift - along for shift in shifts)
+    return [(strip(rect, wall, start, start + along, out), yaw) for start in starts]
 
 
 def _before(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """In front of the other, their middles in line, facing it."""
-    other = _target(piece, "before", room)
-    if other.yaw is None:
-        raise NoPlaceError(f"`{other.class_name}` has no front")
-    front = front_of(other.yaw)
-    yaw = _yaw(piece, (other.yaw + 180) % 360)
-    return _row(_rect(other), front, piece, shaped, yaw=yaw, gap=piece.place.get("gap", 0.4))
+    other, turned_to = _target(piece, "before", room, "front")
+    yaw, gap = _yaw(piece, (turned_to + 180) % 360), piece.place.get("gap", 0.4)
+    return _row(footprint(other.box), front_of(turned_to), piece, shaped, yaw=yaw, gap=gap)
 
 
 def _row(rect: Rect, side: str, piece: Piece, shaped: Form, *, yaw: float, gap: float) -> list[Standing]:
@@ -234,22 +233,17 @@ def _row(rect: Rect, side: str, piece: Piece, shaped: Form, *, yaw: float, gap: 
     along, out = _extents(shaped, yaw, side)
     low, high = span(rect, side)
     step = (high - low) / piece.count
-    spots = []
-    for k in range(piece.count):
-        start = low + (k + 0.5) * step - along / 2
-        spots.append((strip(rect.inset(-gap), side, start, start + along, -out), yaw))
-    return spots
+    starts = (low + (k + 0.5) * step - along / 2 for k in range(piece.count))
+    return [(strip(rect.inset(-gap), side, start, start + along, -out), yaw) for start in starts]
 
 
 def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """At the wall that the other faces, their middles in line."""
-    other = _target(piece, "opposite", room)
-    if other.yaw is None:
-        raise NoPlaceError(f"`{other.class_name}` has no front")
-    wall = front_of(other.yaw)
+    other, turned_to = _target(piece, "opposite", room, "front")
+    wall = front_of(turned_to)
     yaw = _yaw(piece, facing_from(wall))
     along, out = _extents(shaped, yaw, wall)
-    low, high = span(_rect(other), wall)
+    low, high = span(footprint(other.box), wall)
     start = (low + high - along) / 2
     if piece.count != 1:
         raise NoPlaceError("opposite something stands one")
@@ -259,7 +253,7 @@ def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """Around the other, facing it: the long sides first, then the ends."""
-    other = _rect(_target(piece, "around", room))
+    other = footprint(room.named[piece.place["around"]][-1].thing.box)
     gap = piece.place.get("gap", 0.06)
     long_sides = ("north", "south") if other.width >= other.depth else ("east", "west")
     short_sides = ("east", "west") if long_sides[0] == "north" else ("north", "south")
@@ -281,18 +275,14 @@ def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 def _above(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """On the wall behind the other, spread evenly over its width."""
-    other = _target(piece, "above", room)
-    if other.yaw is None:
-        raise NoPlaceError(f"`{other.class_name}` has no back")
-    wall = wall_of(other.yaw)
+    other, turned_to = _target(piece, "above", room, "back")
+    wall = wall_of(turned_to)
     along, out = _extents(shaped, facing_from(wall), wall)
-    low, high = span(_rect(other), wall)
+    low, high = span(footprint(other.box), wall)
     step = max((high - low) / piece.count, along)
     first = (low + high) / 2 - step * (piece.count - 1) / 2
-    return [
-        (strip(room.inner, wall, first + k * step - along / 2, first + k * step + along / 2, out), facing_from(wall))
-        for k in range(piece.count)
-    ]
+    middles = (first + k * step for k in range(piece.count))
+    return [(strip(room.inner, wall, at - along / 2, at + along / 2, out), facing_from(wall)) for at in middles]
 
 
 def _at_spot(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
@@ -303,15 +293,7 @@ def _at_spot(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     east, north = room.inner.center if point is None else (room.inner.x0 + point[0], room.inner.z0 + point[1])
     step = x + piece.place.get("gap", 0.1)
     first = east - step * (piece.count - 1) / 2
-    return [
-        (Rect(first + k * step - x / 2, north - z / 2, first + k * step + x / 2, north + z / 2), yaw)
-        for k in range(piece.count)
-    ]
-
-
-def _rect(thing: Thing) -> Rect:
-    (x, _, z), (w, _, d) = thing.box
-    return Rect(x - w / 2, z - d / 2, x + w / 2, z + d / 2)
+    return [(Rect.around(first + k * step, north, x, z), yaw) for k in range(piece.count)]
 
 
 PLACERS: dict[str, Callable[[Piece, Form, Furnishing], list[Standing]]] = {

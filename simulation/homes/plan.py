@@ -5,8 +5,8 @@ Only what one entry says is checked here: names, keys, numbers. What entries say
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hearth.schemas.errors import Diagnostic
@@ -62,6 +62,10 @@ class Piece:
     inside: tuple[Piece, ...] = ()
     lay: tuple[Piece, ...] = ()
     line: int = 0
+
+    def with_parts(self, change: Callable[[tuple[Piece, ...]], tuple[Piece, ...]]) -> Piece:
+        """The same, with what is on and in it and laid at it changed."""
+        return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
 
     def has(self, key: str) -> bool:
         """Whether the plan places it by that key."""
@@ -143,10 +147,7 @@ class Plan:
         Raises:
             KeyError: there is none.
         """
-        for room in self.rooms:
-            if room.name == name:
-                return room
-        raise KeyError(name)
+        return {room.name: room for room in reversed(self.rooms)}[name]
 
 
 class Faults(list[Diagnostic]):

@@ -9,9 +9,9 @@ from xml.sax.saxutils import escape
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.homes.geometry import Rect, bottom, footprint, front_of
+from hearth.simulation.homes.geometry import Rect, bottom, footprint
 from hearth.simulation.homes.layout import Layout
-from hearth.simulation.homes.shell import Thing, strip
+from hearth.simulation.homes.shell import Thing, before
 
 SCALE = 90
 """Pixels a metre."""
@@ -81,9 +81,8 @@ def _furniture(thing: Thing, colour: str = "") -> Iterator[Shape]:
     rect = footprint(thing.box)
     yield Shape("rect", rect, colour or (FURNITURE if thing.mount == "floor" else HUNG), "#6b5535")
     if thing.yaw is not None:
-        side = front_of(thing.yaw)
-        start, end = (rect.x0, rect.x1) if side in ("north", "south") else (rect.z0, rect.z1)
-        yield Shape("rect", strip(rect, side, start, end, min(0.05, rect.width / 3, rect.depth / 3)), "#6b5535")
+        edge = before(rect, thing.yaw, -min(0.05, rect.width / 3, rect.depth / 3))
+        yield Shape("rect", edge, "#6b5535")
     if thing.mount != "wall":
         size = min(0.12, 1.5 * max(rect.width, rect.depth) / max(len(thing.class_name), 1))
         yield Shape("text", rect, INK, text=thing.class_name, size=size)
@@ -91,10 +90,7 @@ def _furniture(thing: Thing, colour: str = "") -> Iterator[Shape]:
 
 def bounds(layout: Layout) -> Rect:
     """What the drawing covers, metres."""
-    rects = [room.rect for room in layout.plan.rooms]
-    return Rect(
-        min(r.x0 for r in rects), min(r.z0 for r in rects), max(r.x1 for r in rects), max(r.z1 for r in rects)
-    ).inset(-BORDER)
+    return Rect.over(room.rect for room in layout.plan.rooms).inset(-BORDER)
 
 
 def svg(layout: Layout) -> str:

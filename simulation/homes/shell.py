@@ -8,7 +8,7 @@ from math import ceil
 
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
-from hearth.simulation.homes.geometry import DIRECTIONS, OPPOSITE_WALL, Rect, along_x, box_over, facing_from
+from hearth.simulation.homes.geometry import DIRECTIONS, OPPOSITE_WALL, Rect, along_x, box_over, facing_from, front_of
 from hearth.simulation.homes.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
 
 WALL = 0.06
@@ -127,6 +127,12 @@ def strip(rect: Rect, wall: str, start: float, end: float, depth: float) -> Rect
     if wall == "east":
         return _ordered(rect.x1 - depth, start, rect.x1, end)
     return _ordered(rect.x0, start, rect.x0 + depth, end)
+
+
+def before(rect: Rect, yaw: float, depth: float) -> Rect:
+    """The floor before a thing that faces that way; within the thing itself when `depth` is negative."""
+    side = front_of(yaw)
+    return strip(rect, side, *span(rect, side), -depth)
 
 
 def span(rect: Rect, wall: str) -> tuple[float, float]:
