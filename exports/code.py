@@ -6,12 +6,12 @@ import keyword
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from hearth.exports.reading import Wanted, programs, write
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import program_of
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import ProgramRow
 
 
 def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:
@@ -39,7 +39,7 @@ def call_name(action: str) -> str:
     return f"{name}_" if keyword.iskeyword(name) else name
 
 
-def _function(row: dict[str, Any], program: Program, name: str) -> Iterator[str]:
+def _function(row: ProgramRow, program: Program, name: str) -> Iterator[str]:
     yield f"def {name}():"
     yield f"    # {row['program_id']}"
     for line in f"{program.title}. {program.description}".strip().splitlines():

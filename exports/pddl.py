@@ -85,7 +85,7 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
     for _, run in runs(dataset, wanted):
         states, edges = _goal(run)
         if states or edges:
-            world = start_of(run.row, homes)
+            world = start_of(run.row["environment"], run.home, homes)
             named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
             objects = tuple(_objects(world, named))
             yield Task(run.row["execution_id"], world, objects, states, edges, run.row["program_id"])

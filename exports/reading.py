@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.pipelines.dataset import Dataset, Run
-
-Row = dict[str, Any]
+from hearth.schemas.rows import ProgramRow
 
 _BATCH = 128
 
@@ -34,24 +33,25 @@ class Wanted:
         return f"SELECT program_id FROM programs{where} ORDER BY program_id{limit}", asked
 
 
-def programs(dataset: Dataset, wanted: Wanted) -> Iterator[Row]:
+def programs(dataset: Dataset, wanted: Wanted) -> Iterator[ProgramRow]:
     """Rows of `programs`, sorted by id."""
     chosen, asked = wanted.chosen()
     yield from stream(dataset, f"SELECT * FROM programs SEMI JOIN ({chosen}) USING (program_id)"
                                 " ORDER BY program_id", asked)  # fmt: skip
 
 
-def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[Row, Run]]:
+def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[ProgramRow, Run]]:
     """Each execution with its program's row, sorted by the ids of both."""
     chosen, asked = wanted.chosen()
     query = f"""SELECT p AS program, e AS run, v AS environment
         FROM executions e JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
         WHERE e.program_id IN ({chosen}) ORDER BY e.program_id, e.execution_id"""
     for row in stream(dataset, query, asked):
-        yield row["program"], Run(dataset, {**row["run"], "environment": row["environment"]})
+        run: Any = {**row["run"], "environment": row["environment"]}
+        yield row["program"], Run(dataset, run)
 
 
-def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Row]:
+def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
     """The rows of a query."""
     # A cursor of its own: a connection has one open result, and homes are read meanwhile.
     with dataset.connection.cursor() as cursor:

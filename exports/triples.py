@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 from hearth.exports.reading import Wanted, programs
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.dataset import Dataset
+from hearth.schemas.rows import ProgramRow
 
 PREFIX = "https://hearth.invalid/terms#"
 
@@ -38,7 +38,7 @@ def rdf(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     return number
 
 
-def _program(row: dict[str, Any]) -> Iterator[str]:
+def _program(row: ProgramRow) -> Iterator[str]:
     me = iri("program", row["program_id"])
     yield f"{me} a h:Program ; rdfs:label {text(row['title'])} ; rdfs:comment {text(row['description'])} ;"
     yield f"  h:activity {iri('activity', row['activity_id'])} ; h:origin {text(row['origin'])} ;"

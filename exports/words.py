@@ -13,6 +13,7 @@ from hearth.kb.phrases import say
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import program_of
 from hearth.schemas.program import Program
+from hearth.schemas.rows import ProgramRow
 
 ASKED = "How do you do this at home? Answer with one step a line."
 
@@ -41,8 +42,8 @@ def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     for row in programs(dataset, wanted):
         program = program_of(row)
         said = sentences(program, knowledge)
-        told = {name: row[name] for name in ("program_id", "split", "title", "description")}
-        steps.append(orjson.dumps({**told, "steps": said}))
+        told = {"program_id": row["program_id"], "split": row["split"], "title": row["title"]}
+        steps.append(orjson.dumps({**told, "description": row["description"], "steps": said}))
         chat.append(orjson.dumps(_pair(row, said)))
         examples.append(numbered(program, knowledge))
     write(to / "steps.jsonl", b"".join(line + b"\n" for line in steps))
@@ -51,7 +52,7 @@ def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     return len(steps)
 
 
-def _pair(row: dict[str, Any], said: list[str]) -> dict[str, Any]:
+def _pair(row: ProgramRow, said: list[str]) -> dict[str, Any]:
     question = "\n".join(part for part in (ASKED, "", row["title"], row["description"]) if part is not None).strip()
     answer = "\n".join(f"{number}. {text}" for number, text in enumerate(said, 1))
     messages = [{"role": "user", "content": question}, {"role": "assistant", "content": answer}]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any
 
 from hearth.grounding.conditions import Preconditions
 from hearth.grounding.perturbing import Chances, Perturbation
@@ -14,7 +13,6 @@ from hearth.pipelines.augmenting import Augmented, Options, Pair, augment, defau
 from hearth.pipelines.cases import environment_of, rerun, run_row
 from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import Row
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.repairing import Attempt, successes
 from hearth.pipelines.rows import (
@@ -22,17 +20,19 @@ from hearth.pipelines.rows import (
     conditions_of,
     environment_row,
     failure_row,
+    named,
     program_of,
     step_rows,
 )
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
-from hearth.pipelines.stage import Job, Output, Plan, Record, Stage
+from hearth.pipelines.stage import Job, Output, Plan, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
+from hearth.schemas.rows import CaseRow, DifferenceRow, PerturbationRow, RepairRow, SketchRow, TriedRow
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED, TRIED
 from hearth.simulation.engine import Execution
@@ -47,8 +47,6 @@ ALLOWANCE = 1.3
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
 """Why a program that runs and does its work is refused all the same."""
-
-_KEPT = ("source", "place", "description_id", "title", "description", "scene", "worker", "platform", "rooms", "props")
 
 
 class Context:
@@ -94,7 +92,7 @@ def scaled(chances: Chances, factor: float) -> Chances:
     return replace(chances, kinds={kind: min(1.0, chance * factor) for kind, chance in chances.kinds.items()})
 
 
-def process(record: Record, context: Context) -> Iterator[Output]:
+def process(record: CaseRow, context: Context) -> Iterator[Output]:
     """A row for every repaired program, what was tried in vain and a reject for every environment that gave none.
 
     With them goes the sketch of the program, once however many homes it is in, and what its children inherit of it.
@@ -110,7 +108,7 @@ def process(record: Record, context: Context) -> Iterator[Output]:
 
 
 def _sketched(
-    record: Record, program: Program, original: tuple[Preconditions, Execution], context: Context
+    record: CaseRow, program: Program, original: tuple[Preconditions, Execution], context: Context
 ) -> Iterator[Output]:
     """The program's sketch, unless another home's record gave it."""
     name = record["program_id"]
@@ -121,7 +119,7 @@ def _sketched(
         yield "sketches", _sketch(name, "inferred", program, context.keep)
 
 
-def _outputs(record: Record, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
+def _outputs(record: CaseRow, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
     for pair in found.pairs:
         if pair.failure is not None:
             yield _reject(record, pair, pair.failure)
@@ -134,41 +132,41 @@ def _outputs(record: Record, found: Augmented, context: Context, *, wanted: bool
         yield _nothing_to_perturb(record)
 
 
-def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> Row:
+def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> SketchRow:
     steps = [_text(step) for step, kept in zip(program.steps, keep, strict=True) if kept]
     return {"program_id": program_id, "origin": origin, "keep": list(keep), "steps": steps}
 
 
-def _nothing_to_perturb(record: Record) -> Reject:
+def _nothing_to_perturb(record: CaseRow) -> Reject:
     failure = Failure(Code.UNPERTURBED, expected="something the program relies on", actual="nothing")
     return Reject.failed(failure, record["place"], where=f"in {record['home']}")
 
 
-def _reject(record: Record, pair: Pair, failure: Failure) -> Reject:
+def _reject(record: CaseRow, pair: Pair, failure: Failure) -> Reject:
     told = "; ".join(map(str, pair.perturbations))
     return Reject.failed(failure, record["place"], where=f"in {record['home']}, where {told}")
 
 
-def _in_vain(record: Record, pair: Pair, failure: Failure) -> Iterator[Row]:
-    told = {"parent_id": record["program_id"], "home": record["home"], "outcome": str(failure.code)}
+def _in_vain(record: CaseRow, pair: Pair, failure: Failure) -> Iterator[TriedRow]:
+    parent, home, outcome = record["program_id"], record["home"], str(failure.code)
     perturbations = [_perturbation(one) for one in pair.perturbations]
     for repair in _repairs(pair):
-        yield {**told, "perturbations": perturbations, **repair}
+        yield {"parent_id": parent, "home": home, "perturbations": perturbations, "outcome": outcome, **repair}
 
 
-def _conditions(record: Record) -> Preconditions:
+def _conditions(record: CaseRow) -> Preconditions:
     """The conditions of a row, those left out that name what the program does not."""
     keys = {(ref["name"], ref["instance"]) for step in record["steps"] for ref in step["objects"]} | {CHARACTER}
     found = conditions_of(record["conditions"])
     return found.without(*(condition for condition in found if not keys.issuperset(condition.objects)))
 
 
-def _row(record: Record, pair: Pair, context: Context) -> Row:
+def _row(record: CaseRow, pair: Pair, context: Context) -> CaseRow:
     home = record["home"]
     program_id = f"{record['program_id']}+{home}.{pair.number}"
     environment_id = f"{program_id}@{home}"
     return {
-        **{name: record[name] for name in _KEPT},
+        **named(record),
         "program_id": program_id,
         "origin": "augmented",
         "parent_id": record["program_id"],
@@ -181,12 +179,13 @@ def _row(record: Record, pair: Pair, context: Context) -> Row:
         "environment": _environment(pair.environment, home, context),
         "conditions": condition_rows(pair.environment.conditions),
         **run_row(pair.execution, "default"),
+        "reproduces": None,
         "perturbations": [_perturbation(one) for one in pair.perturbations],
         "repairs": _repairs(pair),
     }
 
 
-def _environment(environment: Environment, name: str, context: Context) -> Row:
+def _environment(environment: Environment, name: str, context: Context) -> DifferenceRow:
     if context.is_at_rest(name):
         return environment_of(environment, context.homes.edges(name))
     change = environment.world.changes(World.start(context.homes.home(name)))
@@ -197,17 +196,17 @@ def _environment(environment: Environment, name: str, context: Context) -> Row:
     return environment_row(replace(kept, added_nodes=tuple(nodes)))
 
 
-def _perturbation(perturbation: Perturbation) -> Row:
+def _perturbation(perturbation: Perturbation) -> PerturbationRow:
     return {"kind": perturbation.kind, "condition": condition_rows([perturbation.about])[0]}
 
 
-def _repairs(pair: Pair) -> list[Row]:
+def _repairs(pair: Pair) -> list[RepairRow]:
     given_up = pair.failure if pair.failure is not None and pair.failure.code not in _DONE else None
     helped = successes(pair.attempts, given_up)
     return [_repair(attempt, success) for attempt, success in zip(pair.attempts, helped, strict=True)]
 
 
-def _repair(attempt: Attempt, successful: bool) -> Row:
+def _repair(attempt: Attempt, successful: bool) -> RepairRow:
     return {
         "attempt": attempt.number,
         "step": attempt.step,
@@ -235,7 +234,7 @@ def open_context(job: Job) -> Context:
     return Context(job.settings, job.plan)
 
 
-def prepare(settings: Settings) -> dict[str, Any]:
+def prepare(settings: Settings) -> Plan:
     """What the user laid over our knowledge and homes, which homes are left out, and how many pairs fall to each."""
     plan = overlays(settings)
     if settings.homes:

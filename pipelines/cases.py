@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Protocol
 
 from hearth.grounding.sampling import Environment
 from hearth.grounding.thinning import without
@@ -21,6 +21,7 @@ from hearth.pipelines.rows import (
 )
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
+from hearth.schemas.rows import CaseRow, DifferenceRow, RunRow
 from hearth.simulation.change import encode_whole
 from hearth.simulation.derived import changed
 from hearth.simulation.engine import Execution, run
@@ -29,13 +30,11 @@ from hearth.simulation.nodes import states_of
 from hearth.simulation.rules import RULES
 from hearth.simulation.world import World
 
-Row = dict[str, Any]
-
 _SYMMETRIC = "CLOSE"
 
 
-def environment_of(environment: Environment, edges: frozenset[Edge]) -> Row:
-    """A sampled environment as `tables.ENVIRONMENT`, at a cost that follows what differs.
+def environment_of(environment: Environment, edges: frozenset[Edge]) -> DifferenceRow:
+    """A sampled environment as a row, at a cost that follows what differs.
 
     Args:
         environment: as sampled.
@@ -69,8 +68,8 @@ def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[St
     return tuple(sorted(came)), tuple(sorted(went))
 
 
-def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> Row:
-    """A world of any home, at its start, as what differs from another home, as `tables.ENVIRONMENT`.
+def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> DifferenceRow:
+    """A world of any home, at its start, as what differs from another home, as a row.
 
     Args:
         world: a start.
@@ -84,8 +83,8 @@ _without = lru_cache(maxsize=32)(without)
 """Many environments of one home go without the same."""
 
 
-def home_of(environment: Mapping[str, Any], base: Home) -> Home:
-    """The home that a row of `tables.ENVIRONMENT` describes."""
+def home_of(environment: DifferenceRow, base: Home) -> Home:
+    """The home that a row describes."""
     change = environment_change(environment)
     if change.removed_nodes:
         base = _without(base, change.removed_nodes)
@@ -99,32 +98,32 @@ class Source(Protocol):
         """The home that environments of that name differ from."""
 
 
-def start_of(case: Mapping[str, Any], homes: Source) -> World:
-    """The world that a case starts in."""
-    return World.start(home_of(case["environment"], homes.home(case["home"])))
+def start_of(environment: DifferenceRow, home: str, homes: Source) -> World:
+    """The world that an environment of a home is."""
+    return World.start(home_of(environment, homes.home(home)))
 
 
-def run_row(execution: Execution, rules: str) -> Row:
-    """What a run says, as columns of `tables.CASE`."""
+def run_row(execution: Execution, rules: str) -> RunRow:
+    """What a run says, as columns of a row."""
     return {
         "rules": rules,
         "bindings": binding_rows(execution.program),
         "ticks": tick_rows(execution),
         "executable": execution.executable,
-        "failure": failure_row(execution.failure),
+        "failure": failure_row(execution.failure) if execution.failure else None,
     }
 
 
-def rerun(case: Mapping[str, Any], homes: Source) -> Execution:
+def rerun(case: CaseRow, homes: Source) -> Execution:
     """Run a case again, from nothing but its row and its home."""
     program = program_of(case, bindings_of(case["bindings"]))
-    return run(start_of(case, homes), program, RULES[case["rules"]])
+    return run(start_of(case["environment"], case["home"], homes), program, RULES[case["rules"]])
 
 
-def difference_on_replay(case: Mapping[str, Any], homes: Source) -> str:
+def difference_on_replay(case: CaseRow, homes: Source) -> str:
     """How running a case again differs from what its row says; empty when it does not."""
     execution = rerun(case, homes)
-    if failure_row(execution.failure) != case["failure"]:
+    if (execution.failure and failure_row(execution.failure)) != case["failure"]:
         said = case["failure"]["code"] if case["failure"] else "no failure"
         found = execution.failure.message() if execution.failure else "it runs to its end"
         return f"the row says {said}, but {found}"

@@ -7,19 +7,20 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import validate
-from hearth.pipelines.ingest import READERS, items
+from hearth.pipelines.ingest import items, read
 from hearth.pipelines.naming import activity_id
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import steps_of
 from hearth.pipelines.sources import labelled
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step
+from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import normal_name
 
 if TYPE_CHECKING:
@@ -93,8 +94,7 @@ def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
     """
     corpus = Corpus()
     for _, item in items(labelled(paths)):
-        read = READERS[item.reader](item, "")
-        for row in [read] if isinstance(read, dict | Reject) else read:
+        for row in read(item):
             if isinstance(row, Reject):
                 corpus.refused[row.code] += 1
             elif row["kind"] == "program":
@@ -104,30 +104,19 @@ def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
     return corpus
 
 
-def _take(corpus: Corpus, row: dict[str, Any], known: Knowledge) -> None:
+def _take(corpus: Corpus, row: IngestedRow, known: Knowledge) -> None:
     described = row["description_id"]
     corpus.attempted.add(described)
     if row["description"]:
         corpus.descriptions.setdefault(described, row["description"])
-    record = dict.fromkeys(_COLUMNS) | row | {"groundings": None}
-    done = validate.process(record, known)
-    if isinstance(done, Reject):
-        corpus.refused[done.code] += 1
-        corpus.specials.update(_free_text(f.found) for f in done.diagnostics if f.code is Code.SPECIAL_BLOCK)
-        return
-    for valid in done:
-        if not isinstance(valid, Reject):
+    for valid in validate.process({**row, "groundings": None}, known):
+        if isinstance(valid, Reject):
+            corpus.refused[valid.code] += 1
+            corpus.specials.update(_free_text(f.found) for f in valid.diagnostics if f.code is Code.SPECIAL_BLOCK)
+        else:
             corpus.warnings.update({warning["code"] for warning in valid["warnings"]})
             told = Written(row["program_id"], valid["title"], described, steps_of(valid["steps"]))
             corpus.programs.append(told)
-
-
-def complete(row: dict[str, Any]) -> dict[str, Any]:
-    """A reader's row with every column that `validate` looks at; groundings are left out."""
-    return dict.fromkeys(_COLUMNS) | row | {"groundings": None}
-
-
-_COLUMNS = ("source", "scene", "worker", "platform", "rooms", "props", "conditions", "title", "description")
 
 
 def _free_text(block: str) -> str:

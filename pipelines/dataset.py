@@ -15,6 +15,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
+from hearth.schemas.rows import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
 
 if TYPE_CHECKING:
     import networkx
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
     from hearth.pipelines.tensors import Tensors
     from hearth.simulation.home import Home
-
-Row = dict[str, Any]
 
 _READING = frozenset({"SELECT", "EXPLAIN"})
 
@@ -35,7 +34,7 @@ class Dataset:
     `ds["release:..."]` is one program with its runs.
     """
 
-    def __init__(self, folder: Path, manifest: Row) -> None:
+    def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
         self.folder = folder
         self.manifest = manifest
 
@@ -147,7 +146,7 @@ class Dataset:
         rows = self._rows("SELECT * FROM executions WHERE program_id = $id ORDER BY execution_id", program_id)
         # Asked for by literal ids, DuckDB reads only the row groups that have them; a join would read all of the table.
         wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
-        runs = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
+        runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
         sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
         return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
@@ -188,7 +187,7 @@ class Dataset:
         )
         return to_tensors(moments, self.rows("SELECT kind, name, id FROM vocabulary")[1])
 
-    def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Row]:
+    def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Any]:
         if not ids:
             return {}
         asked = {f"id{number}": name for number, name in enumerate(ids)}
@@ -196,8 +195,8 @@ class Dataset:
         rows = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
         return {row[key]: row for row in rows}
 
-    def _rows(self, query: str, value: str) -> list[Row]:
-        rows: list[Row] = self.connection.sql(query, params={"id": value}).to_arrow_table().to_pylist()
+    def _rows(self, query: str, value: str) -> list[Any]:
+        rows: list[Any] = self.connection.sql(query, params={"id": value}).to_arrow_table().to_pylist()
         return rows
 
 
@@ -212,10 +211,10 @@ class Entry:
         sketches: which of its steps people kept as its gist.
     """
 
-    row: Row
+    row: ProgramRow
     runs: tuple[Run, ...]
-    repairs: tuple[Row, ...]
-    sketches: tuple[Row, ...] = ()
+    repairs: tuple[RepairedRow, ...]
+    sketches: tuple[SketchRow, ...] = ()
 
     @property
     def program(self) -> Program:
@@ -227,12 +226,12 @@ class Entry:
     @property
     def title(self) -> str:
         """The activity as written."""
-        return str(self.row["title"])
+        return self.row["title"]
 
     @property
     def description(self) -> str:
         """What is done, in words."""
-        return str(self.row["description"])
+        return self.row["description"]
 
 
 @dataclass(frozen=True)
@@ -240,22 +239,22 @@ class Run:
     """One execution of a program: its row, and the graphs it went through."""
 
     dataset: Dataset = field(repr=False)
-    row: Row
+    row: StoredRunRow
 
     @property
     def home(self) -> str:
         """The home its environment was made from."""
-        return str(self.row["home"])
+        return self.row["home"]
 
     @property
     def executable(self) -> bool:
         """Whether it ran to its end."""
-        return bool(self.row["executable"])
+        return self.row["executable"]
 
     @property
-    def conditions(self) -> list[Row]:
+    def conditions(self) -> list[ConditionRow]:
         """What had to hold at the start."""
-        return list(self.row["environment"]["conditions"])
+        return self.row["environment"]["conditions"]
 
     def bindings(self) -> dict[tuple[str, int], int]:
         """Which node each object of the program is."""
@@ -286,7 +285,7 @@ class Run:
         """The graph after the last tick that was done."""
         return self.graph(len(self.row["ticks"]))
 
-    def release_json(self, tick: int = 0) -> Row:
+    def release_json(self, tick: int = 0) -> dict[str, Any]:
         """The graph as the release writes it."""
         from hearth.schemas.graph import to_release
 
@@ -331,7 +330,7 @@ class _Home(NamedTuple):
         return cls(EnvironmentGraph(nodes, tuple(sorted(edges))), working)
 
 
-def _absent(folder: Path, content: Row) -> list[str]:
+def _absent(folder: Path, content: dict[str, Any]) -> list[str]:
     """The tables that a dataset never had, because an earlier version wrote it.
 
     Raises:

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from hearth.pipelines.files import write_json
 from hearth.pipelines.rows import graph_of
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release
+from hearth.schemas.rows import GraphRow
 
 
-def common(rows: Iterable[Mapping[str, Any]]) -> EnvironmentGraph:
-    """The nodes and edges that all graphs (rows of `tables.GRAPH`) share, with the states that most of them have."""
+def common(rows: Iterable[GraphRow]) -> EnvironmentGraph:
+    """The nodes and edges that all graphs share, with the states that most of them have."""
     nodes: dict[int, Node] = {}
     edges: set[Edge] = set()
     states: dict[int, Counter[tuple[str, ...]]] = defaultdict(Counter)

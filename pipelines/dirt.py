@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines import corpus, validate
-from hearth.pipelines.ingest import READERS, items
+from hearth.pipelines import validate
+from hearth.pipelines.ingest import items, read
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.sources import labelled
+from hearth.schemas.rows import IngestedRow
 
 IGNORED = frozenset({"NOT_SIMULATED"})
 """Warnings that are no fault of whoever wrote the program."""
@@ -58,23 +59,21 @@ def find(paths: Iterable[str], known: Knowledge) -> Found:
     for _, item in items(labelled(paths)):
         found.records += 1
         name = item.record_id.rpartition(":")[2]
-        read = READERS[item.reader](item, "")
-        for row in [read] if isinstance(read, dict | Reject) else read:
+        for row in read(item):
             codes = _codes(row, known)
             if codes:
                 found.codes.setdefault(name, set()).update(codes)
     return found
 
 
-def _codes(row: dict[str, object] | Reject, known: Knowledge) -> set[str]:
+def _codes(row: IngestedRow | Reject, known: Knowledge) -> set[str]:
     if isinstance(row, Reject):
         return {f"!{fault.code}" for fault in row.diagnostics}
     if row["kind"] != "program":
         return set()
-    done = validate.process(corpus.complete(row), known)
-    if isinstance(done, Reject):
-        return {f"!{fault.code}" for fault in done.diagnostics}
-    return {str(w["code"]) for one in done if not isinstance(one, Reject) for w in one["warnings"]} - IGNORED
+    done = validate.process({**row, "groundings": None}, known)
+    refused = {f"!{fault.code}" for one in done if isinstance(one, Reject) for fault in one.diagnostics}
+    return refused or {w["code"] for one in done if not isinstance(one, Reject) for w in one["warnings"]} - IGNORED
 
 
 def read_key(path: Path) -> dict[str, str]:

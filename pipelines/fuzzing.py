@@ -13,16 +13,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
-from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines import corpus, validate
-from hearth.pipelines.ingest import READERS, items
+from hearth.pipelines import validate
+from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.recognise import recognise
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.sources import labelled
 from hearth.schemas.errors import HearthError
 from hearth.schemas.rng import rng
+from hearth.schemas.rows import IngestedRow, Row
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"
 _GOOD = "Sleep\nGo to bed, it is late.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n[Sleep]\n"
@@ -138,7 +138,7 @@ _GENTLE = 0.5
 
 
 @dataclass(slots=True)
-class Row:
+class Tally:
     """What became of one reader's input. Always `records = accepted + rejected`, and `silent` is 0.
 
     Attributes:
@@ -174,7 +174,7 @@ class Report:
     """What came of it. `crashes` name the input and the case's number, from which `case` makes it again."""
 
     cases: int = 0
-    readers: dict[str, Row] = field(default_factory=dict)
+    readers: dict[str, Tally] = field(default_factory=dict)
     codes: Counter[str] = field(default_factory=Counter)
     crashes: list[str] = field(default_factory=list)
 
@@ -188,11 +188,11 @@ class Report:
         """Seconds for the slowest file."""
         return max((row.longest for row in self.readers.values()), default=0.0)
 
-    def row(self, reader: str) -> Row:
+    def row(self, reader: str) -> Tally:
         """The row of a reader."""
-        return self.readers.setdefault(reader, Row(reader))
+        return self.readers.setdefault(reader, Tally(reader))
 
-    def table(self) -> list[Row]:
+    def table(self) -> list[Tally]:
         """The rows by name."""
         return [self.readers[name] for name in sorted(self.readers)]
 
@@ -243,7 +243,7 @@ def fuzz(known: Knowledge, seconds: float, seed: int, most: int | None = None) -
     return report
 
 
-def _attempt(path: Path, known: Knowledge, report: Report) -> Row:
+def _attempt(path: Path, known: Knowledge, report: Report) -> Tally:
     """Read and check one file; the row of the reader that it was for."""
     reader = "none"
     try:
@@ -253,7 +253,7 @@ def _attempt(path: Path, known: Knowledge, report: Report) -> Row:
         if not found:
             raise AssertionError("a file gave neither a record nor a reject")
         for _, item in found:
-            _count(list(_outputs(READERS[item.reader](item, "salt"), known)), report.row(reader), report.codes)
+            _count(list(_outputs(read(item, salt="salt"), known)), report.row(reader), report.codes)
     except HearthError as error:
         report.row(reader).refused_whole += 1
         report.codes.update(str(fault.code) for fault in error.diagnostics[:1])
@@ -263,7 +263,7 @@ def _attempt(path: Path, known: Knowledge, report: Report) -> Row:
     return report.row(reader)
 
 
-def _count(outputs: list[Any], row: Row, codes: Counter[str]) -> None:
+def _count(outputs: list[Row | Reject], row: Tally, codes: Counter[str]) -> None:
     """A record is accepted where any row came of it, and rejected where only rejects did."""
     row.records += 1
     rejects = [output for output in outputs if isinstance(output, Reject)]
@@ -273,11 +273,10 @@ def _count(outputs: list[Any], row: Row, codes: Counter[str]) -> None:
     row.silent += not outputs
 
 
-def _outputs(read: Any, known: Knowledge) -> Iterator[Any]:
+def _outputs(rows: list[IngestedRow | Reject], known: Knowledge) -> Iterator[Row | Reject]:
     """What a record gives at the end of both stages."""
-    for row in [read] if isinstance(read, dict | Reject) else read:
+    for row in rows:
         if isinstance(row, Reject) or row["kind"] != "program":
             yield row
-            continue
-        done = validate.process(corpus.complete(row) | {"groundings": row.get("groundings")}, known)
-        yield from [done] if isinstance(done, Reject) else done
+        else:
+            yield from validate.process(row, known)

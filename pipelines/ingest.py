@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any
+from typing import Any, TypedDict
 
 from hearth.pipelines.described import Described
 from hearth.pipelines.duplicates import Copies, pasted
 from hearth.pipelines.files import value_digest
-from hearth.pipelines.parts import Row
 from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
 from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
@@ -16,8 +15,9 @@ from hearth.pipelines.rejects import Reject
 from hearth.pipelines.repeated import Repeated
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import labelled, salt
-from hearth.pipelines.stage import BATCH, Job, Partition, Record, Stage
+from hearth.pipelines.stage import BATCH, Job, Partition, Stage
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow
 from hearth.schemas.tables import INGESTED
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
@@ -35,16 +35,16 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
 }
 """What finds the records of a file or folder, by reader."""
 
-READERS: dict[str, Callable[[Item, str], Iterable[Row | Reject] | Row | Reject]] = {
+READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
-    crowd.NAME: crowd.read,
-    text.NAME: lambda item, salt: text.read(item),
-    spoken.NAME: lambda item, salt: spoken.read(item),
+    crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
+    text.NAME: lambda item, salt: [text.read(item)],
+    spoken.NAME: lambda item, salt: [spoken.read(item)],
     ours.NAME: lambda item, salt: ours.read(item),
     published.NAME: lambda item, salt: published.read(item),
-    sketches.NAME: lambda item, salt: sketches.read(item),
-    scenes.NAME: lambda item, salt: scenes.read(item),
-    "refused": lambda item, salt: read_refused(item),
+    sketches.NAME: lambda item, salt: [sketches.read(item)],
+    scenes.NAME: lambda item, salt: [scenes.read(item)],
+    "refused": lambda item, salt: [read_refused(item)],
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
@@ -123,22 +123,35 @@ def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:
     return Partition(number, value_digest(told), share, len(share))
 
 
-def records(job: Job, partition: Partition) -> Iterator[Record]:
+class Found(TypedDict):
+    """A record before it is read."""
+
+    program_id: str
+    source: str
+    item: Item
+
+
+def records(job: Job, partition: Partition) -> Iterator[Found]:
     """The items of a share, as records."""
-    return ({"program_id": item.record_id, "source": source, "item": item} for source, item in partition.payload)
+    for source, item in partition.payload:
+        yield {"program_id": item.record_id, "source": source, "item": item}
 
 
-def process(record: Record, salt: str) -> Iterable[Row | Reject] | Reject:
+def process(record: Found, salt: str) -> list[IngestedRow | Reject]:
     """Read one record."""
-    item: Item = record["item"]
-    read = READERS[item.reader](item, salt)
-    if isinstance(read, Reject):
-        return read
-    outputs = [read] if isinstance(read, dict) else list(read)
-    for output in outputs:
-        if not isinstance(output, Reject):
-            output["source"] = record["source"]
-    return outputs
+    return read(record["item"], record["source"], salt)
+
+
+def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Reject]:
+    """What an item holds: rows, and a reject for what can't be read of it.
+
+    Args:
+        item: as found by `items`.
+        source: the label of its source.
+        salt: for the hashes of workers' ids.
+    """
+    found = READERS[item.reader](item, salt)
+    return [row if isinstance(row, Reject) else {**row, "source": source} for row in found]
 
 
 def prepare(settings: Settings) -> dict[str, Any]:

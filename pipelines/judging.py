@@ -15,7 +15,7 @@ from hearth.pipelines.cases import Source, start_of
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
 from hearth.pipelines.spread import Seen, spread, unseen
-from hearth.pipelines.stored_cases import stored_cases
+from hearth.pipelines.stored_cases import StoredCaseRow, stored_cases
 from hearth.pipelines.verify import opened
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -102,10 +102,10 @@ def _judged(job: Job) -> list[Scored]:
 
 
 def _scored(
-    case: Mapping[str, Any], pairs: Sequence[tuple[Pair, LcsScore]], homes: Source, options: Options
+    case: StoredCaseRow, pairs: Sequence[tuple[Pair, LcsScore]], homes: Source, options: Options
 ) -> Iterator[Scored]:
     """The scores of an execution's predictions, given with their LCS."""
-    world, options = start_of(case, homes), replace(options, rules=RULES[case["rules"]])
+    world, options = start_of(case["environment"], case["home"], homes), replace(options, rules=RULES[case["rules"]])
     program = Program(steps=steps_of(pairs[0][0].reference))
     # To read and to apply the ticks that are stored takes four times as long as to run the program again.
     ran = run(world, program, options.rules)
@@ -116,7 +116,7 @@ def _scored(
         yield replace(each, execution=each.execution and replace(each.execution, final=None))
 
 
-def _filled(pair: Pair, case: dict[str, Any]) -> Pair:
+def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
     """A pair with its reference, and the fields it can be grouped by."""
     steps = program_of(case, bindings_of(case["bindings"])).steps
     return replace(pair, reference=steps, more={**pair.more, "activity": case["activity_id"], "home": case["home"]})

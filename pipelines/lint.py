@@ -16,6 +16,7 @@ from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import NAME_OF
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import BindingRow, ConditionRow, GraphRow, GroundingRow
 from hearth.schemas.syntax import print_object, print_step
 
 _MADE = {"ON": "switched on", "OFF": "switched off", "OPEN": "opened", "CLOSED": "closed"}
@@ -36,23 +37,20 @@ def contradictions(program: Program, known: Knowledge) -> Iterator[Finding]:
             made[key] = value
 
 
-Row = Mapping[str, Any]
-
-
 def already(
-    program: Program, groundings: Iterable[Row], conditions: Iterable[Row], known: Knowledge
+    program: Program, groundings: Iterable[GroundingRow], conditions: Iterable[ConditionRow], known: Knowledge
 ) -> Iterator[Finding]:
     """Goals that are true at the start, where a program came with its start: in a home's graph, or as conditions.
 
     Args:
         program: in canonical names.
-        groundings: with `home`, `bindings` and the `start` graph, which may be None.
-        conditions: with `name` and `objects`.
+        groundings: those it came with; their start graph may be None.
+        conditions: those it came with.
         known: what actions change.
     """
     told = [(ref["name"], ref["instance"], one["name"]) for one in conditions for ref in one["objects"][:1]]
     starts = [("by its own conditions", frozenset(told))]
-    starts += [(f"in {one['home']}", _held(one)) for one in groundings if one["start"]]
+    starts += [(f"in {one['home']}", _held(one["start"], one["bindings"])) for one in groundings if one["start"]]
     seen: set[tuple[tuple[str, int], str]] = set()
     for number, step in enumerate(program.steps):
         if step.action not in known.group("operates") or not step.objects:
@@ -68,13 +66,11 @@ def already(
             yield Finding(Code.NO_EFFECT, number, message, "leave the step out", (), True, step.action)
 
 
-def _held(grounding: Row) -> frozenset[tuple[str, int, str]]:
+def _held(start: GraphRow, bindings: list[BindingRow]) -> frozenset[tuple[str, int, str]]:
     """What is true of a program's objects in the graph that a grounding begins with."""
-    states = {node["id"]: node["states"] for node in grounding["start"]["nodes"]}
+    states = {node["id"]: node["states"] for node in start["nodes"]}
     return frozenset(
-        (bound["name"], bound["instance"], state)
-        for bound in grounding["bindings"]
-        for state in states.get(bound["node"]) or ()
+        (bound["name"], bound["instance"], state) for bound in bindings for state in states.get(bound["node"]) or ()
     )
 
 

@@ -19,9 +19,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.pipelines.files import TEMPORARY, commit
+from hearth.schemas.rows import Row
 from hearth.schemas.tables import REJECTED
-
-Row = dict[str, Any]
 
 ROW_GROUP = 512
 READ_BATCH = 64
@@ -90,8 +89,8 @@ def rejects_path(folder: Path, number: int) -> Path:
     return folder / f".rejects-{number:05d}.parquet"
 
 
-def read_rows(path: Path, columns: list[str] | None = None) -> Iterator[Row]:
-    """The rows of a Parquet file, a batch in memory at a time."""
+def read_rows(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
+    """The rows of a Parquet file, or of them these columns; a batch in memory at a time."""
     with pq.ParquetFile(path) as file:
         for batch in file.iter_batches(batch_size=READ_BATCH, columns=columns):
             yield from batch.to_pylist()

@@ -7,28 +7,19 @@ from collections.abc import Iterable, Iterator
 from hearth.pipelines.cases import difference_on_replay
 from hearth.pipelines.library import Homes
 from hearth.pipelines.naming import STAMP, activity_id, split_of
-from hearth.pipelines.parts import Row
 from hearth.pipelines.publishing import finish
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.stage import Job, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Code
-from hearth.schemas.tables import ENVIRONMENT, REPAIR, TABLES
+from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row
+from hearth.schemas.tables import TABLES
 
 PER_CASE = ("programs", "environments", "executions", "repairs")
 """Tables whose rows come from one case each; the others need all of them."""
 
 GATHER = 2_048
 """Cases published in one file: whoever asks for one opens every file's footer, so that there should be few."""
-
-_SHARED = {
-    "programs": ("program_id", "description_id", "parent_id", "origin", "source", "place", "title", "description",
-                 "steps", "rooms", "props", "worker", "platform", "warnings"),
-    "environments": ("environment_id", "home", "seed", "program_id", "conditions"),
-    "executions": ("execution_id", "program_id", "environment_id", "home", "rules", "bindings", "ticks",
-                   "executable", "failure", "reproduces"),
-    "repairs": ("program_id", "parent_id", "execution_id", "environment_id", "home", "perturbations"),
-}  # fmt: skip
 
 
 class Context:
@@ -39,7 +30,7 @@ class Context:
         self.last = ""
 
 
-def process(case: Record, context: Context) -> Iterable[tuple[str, Row]] | Reject:
+def process(case: CaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
     """The rows of one case, if running it again gives what it says."""
     difference = difference_on_replay(case, context.homes)
     if difference:
@@ -47,24 +38,79 @@ def process(case: Record, context: Context) -> Iterable[tuple[str, Row]] | Rejec
     return _rows(case, context)
 
 
-def _rows(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
+def _rows(case: CaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     if case["program_id"] != context.last:
         context.last = case["program_id"]
-        activity = activity_id(case["title"])
-        told = {"activity_id": activity, "split": split_of(activity, context.seed)}
-        yield "programs", {**_shared("programs", case), **told}
-    differs = {field.name: case["environment"][field.name] for field in ENVIRONMENT}
-    yield "environments", {**_shared("environments", case), **differs}
-    yield "executions", _shared("executions", case)
+        yield "programs", {**program_row(case, context.seed), **STAMP}
+    yield "environments", {**environment_row(case), **STAMP}
+    yield "executions", {**execution_row(case), **STAMP}
+    yield from (("repairs", {**row, **STAMP}) for row in repaired_rows(case))
+
+
+def program_row(case: CaseRow, seed: int) -> ProgramRow:
+    """The program of a case; its activity and the build's seed decide its split."""
+    activity = activity_id(case["title"])
+    return {
+        "program_id": case["program_id"],
+        "activity_id": activity,
+        "description_id": case["description_id"],
+        "parent_id": case["parent_id"],
+        "origin": case["origin"],
+        "source": case["source"],
+        "place": case["place"],
+        "title": case["title"],
+        "description": case["description"],
+        "split": split_of(activity, seed),
+        "steps": case["steps"],
+        "rooms": case["rooms"],
+        "props": case["props"],
+        "worker": case["worker"],
+        "platform": case["platform"],
+        "warnings": case["warnings"],
+    }
+
+
+def environment_row(case: CaseRow) -> EnvironmentRow:
+    """The environment of a case."""
+    return {
+        "environment_id": case["environment_id"],
+        "home": case["home"],
+        "seed": case["seed"],
+        "program_id": case["program_id"],
+        **case["environment"],
+        "conditions": case["conditions"],
+    }
+
+
+def execution_row(case: CaseRow) -> ExecutionRow:
+    """The run of a case."""
+    return {
+        "execution_id": case["execution_id"],
+        "program_id": case["program_id"],
+        "environment_id": case["environment_id"],
+        "home": case["home"],
+        "rules": case["rules"],
+        "bindings": case["bindings"],
+        "ticks": case["ticks"],
+        "executable": case["executable"],
+        "failure": case["failure"],
+        "reproduces": case["reproduces"],
+    }
+
+
+def repaired_rows(case: CaseRow) -> Iterator[RepairedRow]:
+    """The repairs that the program of a case came of."""
     for repair in case["repairs"]:
-        yield (
-            "repairs",
-            {**_shared("repairs", case), "outcome": "REPAIRED", **{field.name: repair[field.name] for field in REPAIR}},
-        )
-
-
-def _shared(table: str, case: Record) -> Row:
-    return {**{name: case[name] for name in _SHARED[table]}, **STAMP}
+        yield {
+            "program_id": case["program_id"],
+            "execution_id": case["execution_id"],
+            "environment_id": case["environment_id"],
+            "parent_id": case["parent_id"],
+            "home": case["home"],
+            "perturbations": case["perturbations"],
+            "outcome": "REPAIRED",
+            **repair,
+        }
 
 
 def open_context(job: Job) -> Context:

@@ -24,12 +24,30 @@ from hearth.pipelines.files import TEMPORARY, commit, sync_folder, write_json
 from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import Manifest, read_manifest
 from hearth.pipelines.naming import STAMP, activity_id
-from hearth.pipelines.parts import Counts, Row, part_path, read_rows, write_table
+from hearth.pipelines.parts import Counts, part_path, read_rows, write_table
 from hearth.pipelines.rows import node_row
 from hearth.pipelines.stage import Job
 from hearth.pipelines.tensors import EDGE_TYPES
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import (
+    ActivityRow,
+    DescriptionRow,
+    FrameRow,
+    HomeEdgeRow,
+    HomeNodeRow,
+    HomeRow,
+    IngestedRow,
+    LedgerRow,
+    NameRow,
+    ProgramRow,
+    RejectRow,
+    Row,
+    SketchRow,
+    SplitRow,
+    TriedRow,
+    VideoRow,
+)
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world import World
@@ -122,15 +140,18 @@ class _Told:
     """Activities and descriptions, gathered from what was ingested and published."""
 
     activities: dict[str, _Activity] = field(default_factory=dict)
-    descriptions: dict[str, Row] = field(default_factory=dict)
+    descriptions: dict[str, DescriptionRow] = field(default_factory=dict)
+    described: set[str] = field(default_factory=set)
 
-    def describe(self, row: Row) -> None:
+    def describe(self, row: IngestedRow) -> None:
         """Take the words of an ingested row; those of a description go before those repeated with a program."""
-        known = self.descriptions.get(row["description_id"])
-        if known is None or (row["kind"] == "description" and known["kind"] != "description"):
-            self.descriptions[row["description_id"]] = {**row, "programs": known["programs"] if known else 0}
+        name, own = row["description_id"], row["kind"] == "description"
+        if name not in self.descriptions or (own and name not in self.described):
+            self.descriptions[name] = _description(row)
+        if own:
+            self.described.add(name)
 
-    def count(self, program: Row) -> None:
+    def count(self, program: ProgramRow) -> None:
         """Take a published program."""
         activity = self.activities.setdefault(program["activity_id"], _Activity())
         activity.programs += 1
@@ -147,7 +168,7 @@ class _Told:
             if row["scene"]:
                 activity.scenes.add(row["scene"])
 
-    def activity_rows(self) -> Iterator[Row]:
+    def activity_rows(self) -> Iterator[ActivityRow]:
         for name, activity in sorted(self.activities.items()):
             title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
             yield {
@@ -158,10 +179,23 @@ class _Told:
                 "programs": activity.programs,
             }
 
-    def description_rows(self) -> Iterator[Row]:
-        names = [name for name in TABLES["descriptions"].names if name not in (*STAMP, "activity_id")]
-        for _, row in sorted(self.descriptions.items()):
-            yield {"activity_id": activity_id(row["title"]), **{name: row[name] for name in names}}
+    def description_rows(self) -> Iterator[DescriptionRow]:
+        yield from (row for _, row in sorted(self.descriptions.items()))
+
+
+def _description(row: IngestedRow) -> DescriptionRow:
+    return {
+        "description_id": row["description_id"],
+        "activity_id": activity_id(row["title"]),
+        "title": row["title"],
+        "description": row["description"],
+        "scene": row["scene"],
+        "origin": row["origin"],
+        "source": row["source"],
+        "worker": row["worker"],
+        "platform": row["platform"],
+        "programs": 0,
+    }
 
 
 _WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
@@ -180,7 +214,7 @@ def _activities(job: Job) -> _Told:
     return told
 
 
-def _sketches(job: Job) -> Iterator[Row]:
+def _sketches(job: Job) -> Iterator[SketchRow]:
     """What was inferred or inherited; what people drew, of which the program goes by the id of its description."""
     for path in _parts(job, "augment", "sketches"):
         yield from read_rows(path)
@@ -191,7 +225,7 @@ def _sketches(job: Job) -> Iterator[Row]:
                 yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
 
 
-def _in_vain(job: Job) -> Iterator[Row]:
+def _in_vain(job: Job) -> Iterator[TriedRow]:
     """Repairs that gave no program."""
     for path in _parts(job, "augment", "attempts"):
         yield from read_rows(path)
@@ -217,7 +251,7 @@ def _used_homes(job: Job) -> list[str]:
     return sorted(names)
 
 
-def _homes(job: Job, homes: Homes) -> Iterator[Row]:
+def _homes(job: Job, homes: Homes) -> Iterator[HomeRow]:
     for name in _used_homes(job):
         home = homes.home(name)
         rooms = [node for node in map(home.node, range(len(home))) if home.rooms >> home.index[node.id] & 1]
@@ -231,19 +265,19 @@ def _homes(job: Job, homes: Homes) -> Iterator[Row]:
         }
 
 
-def _home_nodes(job: Job, homes: Homes) -> Iterator[Row]:
+def _home_nodes(job: Job, homes: Homes) -> Iterator[HomeNodeRow]:
     for name in _used_homes(job):
         for node in World.start(homes.home(name)).graph().nodes:
             yield {"home": name, **node_row(node)}
 
 
-def _home_edges(job: Job, homes: Homes) -> Iterator[Row]:
+def _home_edges(job: Job, homes: Homes) -> Iterator[HomeEdgeRow]:
     for name in _used_homes(job):
         for edge in sorted(homes.edges(name)):
-            yield {"home": name, **edge._asdict()}
+            yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
 
 
-def _frames(job: Job, kind: str) -> Iterator[Row]:
+def _frames(job: Job, kind: str) -> Iterator[FrameRow | VideoRow]:
     home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet"):
         table = pq.read_table(path, columns=["execution_id", "home"])
@@ -251,10 +285,11 @@ def _frames(job: Job, kind: str) -> Iterator[Row]:
     for path in _parts(job, "render", kind):
         for row in read_rows(path):
             if row["execution_id"] in home:
-                yield {**row, "home": home[row["execution_id"]]}
+                row["home"] = home[row["execution_id"]]
+                yield row
 
 
-def _splits(job: Job) -> list[Row]:
+def _splits(job: Job) -> list[SplitRow]:
     told = _told_for_splits(job.folder)
     runs: list[Any] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
@@ -320,30 +355,34 @@ def _copy_folder(source: Path, folder: Path) -> None:
         sync_folder(folder)
 
 
-def _vocabulary(knowledge: Knowledge) -> Iterator[Row]:
+def _vocabulary(knowledge: Knowledge) -> Iterator[NameRow]:
     for action in sorted(knowledge.actions.values(), key=lambda action: action.id):
-        told = {"arity": action.arity, "simulated": action.executed}
-        yield {"kind": "action", "id": action.id, "name": action.name, **told}
+        yield _name("action", action.id, action.name, action.arity, action.executed)
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
-        yield {"kind": "class", "id": thing.id, "name": thing.name}
+        yield _name("class", thing.id, thing.name)
     graphs = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
     for kind, names in graphs.items():
-        yield from ({"kind": kind, "id": number, "name": name} for number, name in enumerate(names))
+        yield from (_name(kind, number, name) for number, name in enumerate(names))
     for code in sorted(Code, key=lambda code: code.number):
-        yield {"kind": "failure", "id": code.number, "name": str(code)}
+        yield _name("failure", code.number, str(code))
 
 
-def _rejects(job: Job) -> Iterator[Row]:
+def _name(kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None) -> NameRow:
+    return {"kind": kind, "id": number, "name": name, "arity": arity, "simulated": simulated}
+
+
+def _rejects(job: Job) -> Iterator[RejectRow]:
     for stage in STAGES:
         for row in read_rows(job.settings.folder(stage) / "rejects.parquet"):
-            yield {name: value for name, value in row.items() if name != "partition"}
+            del row["partition"]
+            yield row
 
 
-def _ledger(job: Job, counts: Counts) -> Iterator[Row]:
+def _ledger(job: Job, counts: Counts) -> Iterator[LedgerRow]:
     for order, stage in enumerate(STAGES):
         stage_counts = counts if stage == job.stage.name else _manifest(job, stage).counts
         codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
-        row: dict[str, Any] = {
+        yield {
             "stage": stage,
             "order": order,
             "records_in": stage_counts.records_in,
@@ -353,4 +392,3 @@ def _ledger(job: Job, counts: Counts) -> Iterator[Row]:
             "rows": stage_counts.rows.total(),
             "codes": [{"code": code, "count": count} for code, count in codes],
         }
-        yield row

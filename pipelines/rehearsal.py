@@ -27,6 +27,7 @@ from hearth.pipelines.sources import labelled
 from hearth.pipelines.workers import Workers
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
+from hearth.schemas.rows import DifferenceRow, IngestedRow, Row
 
 ANY_HOME = "any home"
 """Where a program is impossible that contradicts itself."""
@@ -98,12 +99,11 @@ class Rehearsal:
 def scripts(sources: Iterable[str], knowledge: Knowledge) -> Iterator[Script | Reject]:
     """The programs of sources in canonical names, stripped of node ids; graphs that came with them stay unread."""
     for _, item in ingest.items(labelled(sources)):
-        found = ingest.process({"program_id": item.record_id, "source": "", "item": _without_graphs(item)}, "")
-        for row in [found] if isinstance(found, Reject) else found:
+        for row in ingest.read(_without_graphs(item)):
             if isinstance(row, Reject):
                 yield row
             elif row["kind"] == "program":
-                yield from _checked({"description_id": "", "line": 0, **row}, knowledge)
+                yield from _checked(row, knowledge)
 
 
 def _without_graphs(item: Item) -> Item:
@@ -112,9 +112,8 @@ def _without_graphs(item: Item) -> Item:
     return replace(item, value={**item.value, "graphs": {}})
 
 
-def _checked(row: dict[str, Any], knowledge: Knowledge) -> Iterator[Script | Reject]:
-    outcome = validate.process({**dict.fromkeys(validate._KEPT), **row, "groundings": ()}, knowledge)
-    for found in [outcome] if isinstance(outcome, Reject) else outcome:
+def _checked(row: IngestedRow, knowledge: Knowledge) -> Iterator[Script | Reject]:
+    for found in validate.process({**row, "groundings": None}, knowledge):
         if isinstance(found, Reject):
             yield found
         else:
@@ -187,11 +186,11 @@ class _Stored:
         from hearth.schemas.tables import CASE
 
         self._schema = pa.schema([CASE.field("environment")])
-        self._rows: list[dict[str, Any]] = []
+        self._rows: list[Row] = []
         self._bytes = io.BytesIO()
         self._writer = pq.ParquetWriter(self._bytes, self._schema, compression="zstd")
 
-    def add(self, environments: list[dict[str, Any]]) -> None:
+    def add(self, environments: list[DifferenceRow]) -> None:
         """Take more."""
         self._rows.extend({"environment": environment} for environment in environments)
         if len(self._rows) >= self._FULL:

@@ -6,10 +6,10 @@ import traceback
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Any
 
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.rows import Row
 
 INTERNAL_ERROR = str(Code.INTERNAL_ERROR)
 """The code of a record that made a stage's own code fail: a fault of ours, not of the record."""
@@ -63,7 +63,7 @@ class Reject:
         """What it counts under."""
         return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
 
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[Row]:
         """For each fault, what the rejects table says of it."""
         return [
             {

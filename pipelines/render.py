@@ -11,17 +11,17 @@ from hearth.pipelines.cases import rerun
 from hearth.pipelines.files import value_digest, write_bytes
 from hearth.pipelines.library import Homes
 from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import READ_BATCH, Row, read_rows
+from hearth.pipelines.parts import READ_BATCH, read_rows
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Partition, Record, Stage
+from hearth.pipelines.stage import Job, Partition, Plan, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
+from hearth.schemas.rows import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
 from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:
     from hearth.rendering.camera import Camera
     from hearth.rendering.laid import Laid
     from hearth.rendering.snapshots import Snapshot
-    from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
 
 AUTO = "auto"
@@ -53,7 +53,7 @@ class Context(NamedTuple):
         return self.laid[name]
 
 
-def process(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
+def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow]]:
     """One row for each picture of a case, and one for its film, if it is filmed."""
     from hearth.rendering.png import encode
     from hearth.rendering.snapshots import snapshots
@@ -63,27 +63,27 @@ def process(case: Record, context: Context) -> Iterator[tuple[str, Row]]:
     execution = rerun(case, context.homes)
     folder = _folder(case["execution_id"])
     if case["execution_id"] in job.plan["films"]:
-        yield "videos", {**_film(case, execution, home, context), "layout_made": place.made}
+        yield "videos", _film(case, execution, place, context)
     for shot in snapshots(execution, home, knowledge=context.homes.knowledge):
         for modality, picture in shot.pictures.items():
             name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
             path = job.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             write_bytes(path, encode(picture))
-            yield "", {**_camera(shot.camera), **_told(case, shot, modality), "layout_made": place.made, "file": name}
+            yield "", _picture(case, shot, modality, place.made, name)
 
 
 FILM_SIZE, FILM_RATE = (320, 240), 15.0
 """Width and height of a film, and its pictures a second."""
 
 
-def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: Context) -> Row:
+def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) -> FilmedRow:
     """Write a film, as webm: browsers play that, and not the mp4 that OpenCV writes."""
     from hearth.rendering.snapshots import play
     from hearth.rendering.variation import drawn
     from hearth.rendering.video import record
 
-    name, job = case["execution_id"], context.job
+    name, job, home = case["execution_id"], context.job, place.graph
     folder = f"{FILMS}/{_folder(name)}"
     (job.folder / folder).mkdir(parents=True, exist_ok=True)
     variation = drawn(job.settings.seed, name)
@@ -100,17 +100,23 @@ def _film(case: Record, execution: Execution, home: EnvironmentGraph, context: C
         "steps": done.steps,
         "track": list(_track(done.track)),
         "variation": variation.told(),
+        "layout_made": place.made,
         "file": f"{folder}/{done.files[0].name}",
     }
 
 
-def _track(track: list[tuple[int, Camera]]) -> Iterator[Row]:
+def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
     """The pictures at which the tick or the camera changes."""
     before: tuple[int, Camera] | None = None
     for number, (tick, camera) in enumerate(track):
         if before != (tick, camera):
-            told = _camera(camera)
-            yield {"frame": number, "tick": tick, **{key: told[key] for key in ("camera", "intrinsics", "pose")}}
+            yield {
+                "frame": number,
+                "tick": tick,
+                "camera": camera.name,
+                "intrinsics": _intrinsics(camera),
+                "pose": _pose(camera),
+            }
         before = (tick, camera)
 
 
@@ -125,27 +131,39 @@ def _view(camera: Camera) -> str:
     return TOP if camera.name == TOP else AUTO
 
 
-def _camera(camera: Camera) -> Row:
-    matrix = camera.intrinsics
+def _picture(case: CaseRow, shot: Snapshot, modality: str, made: bool, file: str) -> RenderedRow:
     return {
-        "camera": camera.name,
-        "width": camera.width,
-        "height": camera.height,
-        "intrinsics": {
-            "fx": float(matrix[0, 0]),
-            "fy": float(matrix[1, 1]),
-            "cx": float(matrix[0, 2]),
-            "cy": float(matrix[1, 2]),
-        },
-        "pose": [float(number) for number in camera.pose.flatten()],
+        "execution_id": case["execution_id"],
+        "tick": shot.tick,
+        "camera": shot.camera.name,
+        "modality": modality,
+        "width": shot.camera.width,
+        "height": shot.camera.height,
+        "intrinsics": _intrinsics(shot.camera),
+        "pose": _pose(shot.camera),
+        "start_time": None,
+        "end_time": None,
+        "layout_made": made,
+        "file": file,
     }
 
 
-def _told(case: Record, shot: Snapshot, modality: str) -> Row:
-    return {"execution_id": case["execution_id"], "tick": shot.tick, "modality": modality}
+def _intrinsics(camera: Camera) -> PinholeRow:
+    matrix = camera.intrinsics
+    return {
+        "fx": float(matrix[0, 0]),
+        "fy": float(matrix[1, 1]),
+        "cx": float(matrix[0, 2]),
+        "cy": float(matrix[1, 2]),
+    }
 
 
-def prepare(settings: Settings) -> dict[str, Any]:
+def _pose(camera: Camera) -> list[float]:
+    """Camera to world, row by row."""
+    return [float(number) for number in camera.pose.flatten()]
+
+
+def prepare(settings: Settings) -> Plan:
     """Choose the executions: the first ones of different programs, in homes of the catalog."""
     homes = Homes(settings)
     found: dict[str, tuple[str, str]] = {}
@@ -158,7 +176,7 @@ def prepare(settings: Settings) -> dict[str, Any]:
     return {**overlays(settings), "executions": dict(sorted(found.values())), "films": films}
 
 
-def _sampled(settings: Settings) -> Iterator[tuple[str, Row]]:
+def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
     """Every case with the file it stands in, without what only running it needs."""
     manifest = read_manifest(settings.folder("sample"))
     if manifest is None:
@@ -186,7 +204,7 @@ def partitions(job: Job) -> Iterator[Partition]:
         yield Partition(number, value_digest([digests, share]), share, len(share))
 
 
-def records(job: Job, partition: Partition) -> Iterator[Record]:
+def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
     """The cases of a partition; the others, nearly all, are never turned into rows."""
     import pyarrow as pa
     import pyarrow.compute as pc

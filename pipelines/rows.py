@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 from hearth.grounding.conditions import Condition, Preconditions
 from hearth.schemas.change import Change
@@ -14,23 +14,37 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import (
+    BindingRow,
+    BoxRow,
+    ChangeRow,
+    ConditionRow,
+    DifferenceRow,
+    EdgeRow,
+    FailureRow,
+    GraphRow,
+    InstructionRow,
+    NamedRow,
+    NodeRow,
+    PointRow,
+    ScriptRow,
+    StepRow,
+    TickRow,
+    WarningRow,
+)
 
 if TYPE_CHECKING:
     from hearth.simulation.engine import Execution
 
-Row = dict[str, Any]
 Bindings = dict[tuple[str, int], int]
 
 _EDGE = itemgetter("source", "relation", "target")
 _STATE = itemgetter("node", "state")
 
 
-def node_row(node: Node) -> Row:
-    """A node as `tables.NODE`."""
-    box = node.box and {
-        "center": dict(zip("xyz", node.box.center, strict=True)),
-        "size": dict(zip("xyz", node.box.size, strict=True)),
-    }
+def node_row(node: Node) -> NodeRow:
+    """A node, as a row."""
+    box: BoxRow | None = node.box and {"center": _point_row(node.box.center), "size": _point_row(node.box.size)}
     return {
         "id": node.id,
         "class_name": node.class_name,
@@ -43,7 +57,11 @@ def node_row(node: Node) -> Row:
     }
 
 
-def node_of(row: Mapping[str, Any]) -> Node:
+def _point_row(point: tuple[float, float, float]) -> PointRow:
+    return {"x": point[0], "y": point[1], "z": point[2]}
+
+
+def node_of(row: NodeRow) -> Node:
     """The inverse of `node_row`."""
     box = row["box"]
     return Node(
@@ -53,13 +71,17 @@ def node_of(row: Mapping[str, Any]) -> Node:
         tuple(row["properties"]),
         tuple(row["states"]),
         row["prefab"],
-        box and Box(tuple(box["center"][axis] for axis in "xyz"), tuple(box["size"][axis] for axis in "xyz")),
+        box and Box(_point(box["center"]), _point(box["size"])),
         row["yaw"],
     )
 
 
-def graph_row(graph: EnvironmentGraph) -> Row:
-    """A graph as `tables.GRAPH`, edges sorted, each once."""
+def _point(row: PointRow) -> tuple[float, float, float]:
+    return row["x"], row["y"], row["z"]
+
+
+def graph_row(graph: EnvironmentGraph) -> GraphRow:
+    """A graph, edges sorted, each once."""
     edges = sorted(edge_set(graph.edges))
     return {
         "nodes": [node_row(node) for node in graph.nodes],
@@ -69,23 +91,20 @@ def graph_row(graph: EnvironmentGraph) -> Row:
     }
 
 
-def graph_of(row: Mapping[str, Any]) -> EnvironmentGraph:
+def graph_of(row: GraphRow) -> EnvironmentGraph:
     """The inverse of `graph_row`."""
     edges = map(Edge, row["sources"], row["relations"], row["targets"])
     return EnvironmentGraph(tuple(map(node_of, row["nodes"])), tuple(edges))
 
 
-def change_row(change: Change) -> Row:
-    """A change as `tables.CHANGE`."""
-    return {
-        "added": list(change.added),
-        "removed": list(change.removed),
-        "set_states": list(change.set_states),
-        "cleared_states": list(change.cleared_states),
-    }
+def change_row(change: Change) -> ChangeRow:
+    """A change, as a row."""
+    names = ("added", "removed", "set_states", "cleared_states")
+    # Arrow takes named tuples and pairs for structs, and much faster than dicts.
+    return cast(ChangeRow, {name: list(getattr(change, name)) for name in names})
 
 
-def change_of(row: Mapping[str, Any]) -> Change:
+def change_of(row: ChangeRow) -> Change:
     """The inverse of `change_row`."""
     return Change(
         tuple(edges_of(row["added"])),
@@ -95,25 +114,43 @@ def change_of(row: Mapping[str, Any]) -> Change:
     )
 
 
-def environment_row(change: Change) -> Row:
-    """What differs from a home, as `tables.ENVIRONMENT`."""
-    nodes = {"added_nodes": list(map(node_row, change.added_nodes)), "removed_nodes": list(change.removed_nodes)}
-    return {**nodes, **change_row(change)}
+def environment_row(change: Change) -> DifferenceRow:
+    """What differs from a home, as a row."""
+    came, went = list(map(node_row, change.added_nodes)), list(change.removed_nodes)
+    return {"added_nodes": came, "removed_nodes": went, **change_row(change)}
 
 
-def environment_change(row: Mapping[str, Any]) -> Change:
+def environment_change(row: DifferenceRow) -> Change:
     """The inverse of `environment_row`."""
-    nodes = (tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"]))
-    return replace(change_of(row), added_nodes=nodes[0], removed_nodes=nodes[1])
+    came, went = tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"])
+    return replace(change_of(row), added_nodes=came, removed_nodes=went)
 
 
-def edges_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Edge]:
+def edges_of(rows: Iterable[EdgeRow]) -> Iterator[Edge]:
     """The edges of rows read back."""
     return map(Edge._make, map(_EDGE, rows))
 
 
-def step_rows(program: Program) -> list[Row]:
-    """A program's steps as `tables.STEP`, node ids left out."""
+def named(row: NamedRow) -> NamedRow:
+    """Of a row, the columns that a program keeps from stage to stage."""
+    return {
+        "program_id": row["program_id"],
+        "origin": row["origin"],
+        "source": row["source"],
+        "place": row["place"],
+        "description_id": row["description_id"],
+        "title": row["title"],
+        "description": row["description"],
+        "scene": row["scene"],
+        "worker": row["worker"],
+        "platform": row["platform"],
+        "rooms": row["rooms"],
+        "props": row["props"],
+    }
+
+
+def step_rows(program: Program) -> list[StepRow]:
+    """A program's steps as rows, node ids left out."""
     return [
         {
             "agent": step.agent,
@@ -127,7 +164,7 @@ def step_rows(program: Program) -> list[Row]:
     ]
 
 
-def steps_of(rows: Iterable[Mapping[str, Any]], bindings: Bindings | None = None) -> tuple[Step, ...]:
+def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
     """The inverse of `step_rows`, bound where `bindings` says to what."""
     bound: Bindings = bindings or {}
     return tuple(
@@ -145,14 +182,14 @@ def steps_of(rows: Iterable[Mapping[str, Any]], bindings: Bindings | None = None
     )
 
 
-def program_of(row: Mapping[str, Any], bindings: Bindings | None = None) -> Program:
-    """The program of a row with `title`, `description` and `steps`."""
+def program_of(row: ScriptRow, bindings: Bindings | None = None) -> Program:
+    """The program of a row that has one."""
     lines = tuple(step["line"] for step in row["steps"])
     return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
 
 
-def binding_rows(program: Program) -> list[Row]:
-    """Which node each object of a bound program is, as `tables.BINDING`."""
+def binding_rows(program: Program) -> list[BindingRow]:
+    """Which node each object of a bound program is."""
     return [
         {"name": ref.name, "instance": ref.instance, "node": ref.node}
         for ref in program.objects()
@@ -160,15 +197,13 @@ def binding_rows(program: Program) -> list[Row]:
     ]
 
 
-def bindings_of(rows: Iterable[Mapping[str, Any]]) -> Bindings:
+def bindings_of(rows: Iterable[BindingRow]) -> Bindings:
     """The inverse of `binding_rows`."""
     return {(row["name"], row["instance"]): row["node"] for row in rows}
 
 
-def failure_row(failure: Failure | None) -> Row | None:
-    """A failure as `tables.FAILURE`."""
-    if failure is None:
-        return None
+def failure_row(failure: Failure) -> FailureRow:
+    """A failure, as a row."""
     return {
         "code": str(failure.code),
         "tick": failure.tick,
@@ -181,7 +216,7 @@ def failure_row(failure: Failure | None) -> Row | None:
     }
 
 
-def failure_of(row: Mapping[str, Any] | None) -> Failure | None:
+def failure_of(row: FailureRow | None) -> Failure | None:
     """The inverse of `failure_row`."""
     if row is None:
         return None
@@ -189,19 +224,21 @@ def failure_of(row: Mapping[str, Any] | None) -> Failure | None:
     return Failure(Code[row["code"]], row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
 
 
-def tick_rows(execution: Execution) -> list[Row]:
-    """What was done and changed, tick by tick, as `tables.TICK`; only the ticks that were done."""
-    rows: list[Row] = []
+def tick_rows(execution: Execution) -> list[TickRow]:
+    """What was done and changed, tick by tick; only the ticks that were done."""
+    rows: list[TickRow] = []
     number = 0
     for steps, change in zip(execution.program.ticks(), execution.changes(), strict=False):
-        instructions = [{"agent": step.agent, "step": number + place} for place, step in enumerate(steps)]
+        instructions: list[InstructionRow] = [
+            {"agent": step.agent, "step": number + place} for place, step in enumerate(steps)
+        ]
         rows.append({"instructions": instructions, **change_row(change)})
         number += len(steps)
     return rows
 
 
-def condition_rows(conditions: Iterable[Condition]) -> list[Row]:
-    """Preconditions as `tables.CONDITION`."""
+def condition_rows(conditions: Iterable[Condition]) -> list[ConditionRow]:
+    """Preconditions, as rows."""
     return [
         {
             "name": condition.name,
@@ -213,7 +250,7 @@ def condition_rows(conditions: Iterable[Condition]) -> list[Row]:
     ]
 
 
-def conditions_of(rows: Iterable[Mapping[str, Any]]) -> Preconditions:
+def conditions_of(rows: Iterable[ConditionRow]) -> Preconditions:
     """The inverse of `condition_rows`; conditions that came with a program are soft."""
     return Preconditions(
         tuple(
@@ -227,8 +264,8 @@ def conditions_of(rows: Iterable[Mapping[str, Any]]) -> Preconditions:
     )
 
 
-def warning_row(fault: Diagnostic) -> Row:
-    """A diagnostic that does not stop a program, as `tables.WARNING`."""
+def warning_row(fault: Diagnostic) -> WarningRow:
+    """A diagnostic that does not stop a program."""
     return {
         "code": str(fault.code),
         "line": fault.line,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pyarrow.parquet as pq
 
@@ -17,16 +17,17 @@ from hearth.pipelines.cases import difference_of, environment_of, run_row
 from hearth.pipelines.derived import common, write_home
 from hearth.pipelines.library import DERIVED, Homes
 from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import Row, read_rows
+from hearth.pipelines.parts import read_rows
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, program_of
+from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, named, program_of
 from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.stage import Job, Plan, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
-from hearth.schemas.tables import CASE, VALIDATED
+from hearth.schemas.rows import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
+from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home
 from hearth.simulation.rules import REPLAY, RULES, Rules
@@ -34,8 +35,6 @@ from hearth.simulation.world import World
 
 SHARED_BY = 32
 """Start graphs that are compared to find out what a home is where only environments of it are known."""
-
-_KEPT = tuple(name for name in CASE.names if name in VALIDATED.names)
 
 
 class Context(NamedTuple):
@@ -47,17 +46,17 @@ class Context(NamedTuple):
     each: int = 0
 
 
-def process(record: Record, context: Context) -> Iterator[Row | Reject]:
+def process(record: ValidatedRow, context: Context) -> Iterator[CaseRow | Reject]:
     """One case for each stored start graph of a program, or else for each home."""
-    stored = [grounding for grounding in record["groundings"] if grounding["start"]]
+    stored = [(grounding, grounding["start"]) for grounding in record["groundings"] if grounding["start"]]
     if stored:
-        return (_stored(record, grounding, context) for grounding in stored)
+        return (_stored(record, grounding, start, context) for grounding, start in stored)
     program = program_of(record)
     conditions = infer(program, context.homes.knowledge)
     if isinstance(conditions, Failure):
         return iter([failed(conditions, program, record["place"], f"in {name}") for name in context.names[:1]])
     names = _chosen(record["program_id"], context)
-    return _once([_sampled(record, program, conditions, name=name, context=context) for name in names])
+    return _once([_sampled(record, program, conditions, name, context) for name in names])
 
 
 def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
@@ -68,7 +67,7 @@ def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
     return tuple(name for name in context.names if name in drawn)
 
 
-def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
+def _once(outputs: list[CaseRow | Reject]) -> Iterator[CaseRow | Reject]:
     """The outputs; what fails in every home for one reason is said once."""
     said: set[tuple[str, int]] = set()
     fails = all(isinstance(output, Reject) for output in outputs)
@@ -82,19 +81,15 @@ def _once(outputs: list[Row | Reject]) -> Iterator[Row | Reject]:
 
 
 def _sampled(
-    record: Record, program: Program, conditions: Preconditions, *, name: str, context: Context
-) -> Row | Reject:
+    record: ValidatedRow, program: Program, conditions: Preconditions, name: str, context: Context
+) -> CaseRow | Reject:
     drawn = sample(program, context.homes.home(name), context.seed, record["program_id"], conditions)
     if isinstance(drawn, Failure):
         return failed(drawn, program, record["place"], f"in {name}")
     environment, execution = drawn
-    return {
-        **_row(record, name),
-        "seed": context.seed,
-        "environment": environment_of(environment, context.homes.edges(name)),
-        "conditions": condition_rows(environment.conditions),
-        **run_row(execution, "default"),
-    }
+    differs = environment_of(environment, context.homes.edges(name))
+    conditions = environment.conditions
+    return _case(record, name, differs, condition_rows(conditions), run_row(execution, "default"), seed=context.seed)
 
 
 def failed(failure: Failure, program: Program, place: str, where: str = "") -> Reject:
@@ -104,44 +99,56 @@ def failed(failure: Failure, program: Program, place: str, where: str = "") -> R
     return Reject.failed(failure, place, program.line(step), where)
 
 
-def _stored(record: Record, grounding: Row, context: Context) -> Row:
+def _stored(record: ValidatedRow, grounding: GroundingRow, start: GraphRow, context: Context) -> CaseRow:
     """A case in the environment that a program came with, run as the release's programs were."""
     name = grounding["home"]
-    bound = {"title": record["title"], "description": record["description"], "steps": grounding["steps"]}
+    bound: ValidatedRow = {**record, "steps": grounding["steps"]}
     program = program_of(bound, bindings_of(grounding["bindings"]))
-    world = World.start(Home.from_graph(graph_of(grounding["start"]), name, context.homes.knowledge))
+    world = World.start(Home.from_graph(graph_of(start), name, context.homes.knowledge))
     execution = run(world, program, RULES["replay"])
     reproduces = None
     if grounding["final"]:
         reproduces = execution.executable and execution.final.changes(world) == change_of(grounding["final"])
-    return {
-        **_row(record, name),
-        "steps": grounding["steps"],
-        "environment": difference_of(world, context.homes.home(name), context.homes.edges(name)),
-        "conditions": record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY),
-        **run_row(execution, "replay"),
-        "reproduces": reproduces,
-    }
+    differs = difference_of(world, context.homes.home(name), context.homes.edges(name))
+    conditions = record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY)
+    return _case(bound, name, differs, conditions, run_row(execution, "replay"), reproduces=reproduces)
 
 
-def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> list[Row]:
+def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> list[ConditionRow]:
     found = infer(program.unbound(), knowledge, rules)
     return [] if isinstance(found, Failure) else condition_rows(found)
 
 
-def _row(record: Record, home: str) -> Row:
+def _case(
+    record: ValidatedRow,
+    home: str,
+    environment: DifferenceRow,
+    conditions: list[ConditionRow],
+    execution: RunRow,
+    *,
+    seed: int | None = None,
+    reproduces: bool | None = None,
+) -> CaseRow:
     environment_id = f"{record['program_id']}@{home}"
     return {
-        **{name: record[name] for name in _KEPT},
+        **named(record),
+        "parent_id": None,
+        "steps": record["steps"],
+        "warnings": record["warnings"],
         "environment_id": environment_id,
-        "execution_id": f"{environment_id}/0",
         "home": home,
+        "seed": seed,
+        "environment": environment,
+        "conditions": conditions,
+        "execution_id": f"{environment_id}/0",
+        **execution,
+        "reproduces": reproduces,
         "perturbations": [],
         "repairs": [],
     }
 
 
-def prepare(settings: Settings) -> dict[str, Any]:
+def prepare(settings: Settings) -> Plan:
     """The homes to sample in, and the parts from which homes are derived that only stored graphs tell of."""
     homes = Homes(settings)
     parts = {name: [digest for digest, _ in found] for name, found in _told_of(settings, homes).items()}
@@ -178,7 +185,7 @@ def derive_homes(job: Job) -> None:
         write_home(folder / f"{name}.json", common(_starts(name, (path for _, path in parts))))
 
 
-def _starts(name: str, parts: Iterable[Path]) -> Iterator[Row]:
+def _starts(name: str, parts: Iterable[Path]) -> Iterator[GraphRow]:
     count = 0
     for path in parts:
         for row in read_rows(path, ["groundings"]):

@@ -14,6 +14,7 @@ from hearth.pipelines.rehearsal import Script
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.sketching import Keep, sketch
 from hearth.schemas.program import Program
+from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import print_step
 from hearth.simulation.home import Home
 
@@ -150,7 +151,7 @@ def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Kno
         row = reader.read(item) if item.reader == reader.NAME else None
         if row is None or isinstance(row, Reject):
             continue
-        keep = tuple(row["keep"])
+        keep = tuple(row["keep"] or ())
         match = by_id.get(row["description_id"])
         if match is None or len(match.program.steps) != len(keep):
             alike = by_form.get((row["title"].lower(), len(keep)), [])
@@ -160,7 +161,7 @@ def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Kno
         yield Annotated(_described(match, row), keep) if match else None
 
 
-def _described(script: Script, row: dict[str, Any]) -> Script:
+def _described(script: Script, row: IngestedRow) -> Script:
     """The script with the description of the annotation where it has none of its own."""
     if script.program.description:
         return script
@@ -172,9 +173,9 @@ def _kept(script: Script, keep: Keep) -> list[tuple[str, ...]]:
     return [(step.action, *(ref.name for ref in step.objects)) for step, kept in steps if kept]
 
 
-def _said(row: dict[str, Any], knowledge: Knowledge) -> list[tuple[str, ...]]:
+def _said(row: IngestedRow, knowledge: Knowledge) -> list[tuple[str, ...]]:
     found = []
-    for line in row["text"].splitlines():
+    for line in (row["text"] or "").splitlines():
         word, *names = line.split()
         action = knowledge.action(word)
         things = [knowledge.object_class(name) for name in names]

@@ -15,6 +15,7 @@ from typing import Any
 
 from hearth.pipelines.alike import near_sequences, near_texts
 from hearth.schemas.rng import derive
+from hearth.schemas.rows import SplitRow
 
 NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""
@@ -22,7 +23,6 @@ NEAR = 0.9
 SHORTEST_TEXT = 20
 """Characters a description needs to count as a text of its own: `Watch TV.` says nothing about who wrote it."""
 
-Row = dict[str, Any]
 
 RULES = {
     "activities": "activities 7:3, one home held out (thesis 5.6): train in the other homes; test_seen_home and"
@@ -119,7 +119,7 @@ def groups(programs: Sequence[Told], likeness: Likeness) -> dict[str, str]:
 
 def parts(
     programs: Sequence[Told], runs: Iterable[tuple[str, str, str]], seed: int, likeness: Likeness
-) -> Iterator[Row]:
+) -> Iterator[SplitRow]:
     """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
 
     Args:
@@ -166,7 +166,7 @@ def _by_home_5(dealt: int, home: int) -> str:
     return "test" if 6 <= home <= 7 else "none"
 
 
-def summary(programs: Sequence[Told], rows: Sequence[Row], seed: int, likeness: Likeness) -> Row:
+def summary(programs: Sequence[Told], rows: Sequence[SplitRow], seed: int, likeness: Likeness) -> dict[str, Any]:
     """What each split means, how many runs and programs its parts have, and how much leaks, as JSON.
 
     `leakage` counts test programs that have in train a program made of the same original (`siblings`), one with
@@ -174,7 +174,7 @@ def summary(programs: Sequence[Told], rows: Sequence[Row], seed: int, likeness: 
     programs are dealt one by one.
     """
     by_id = {each.program_id: each for each in programs}
-    told: Row = {"seed": seed, "near": NEAR, "splits": {}}
+    told: dict[str, Any] = {"seed": seed, "near": NEAR, "splits": {}}
     for split, rule in RULES.items():
         mine = [row for row in rows if row["split"] == split]
         members: dict[str, dict[str, None]] = {}
@@ -198,7 +198,7 @@ def _at_random(programs: list[Told], tested: int, seed: int) -> tuple[list[Told]
     return dealt[tested:], dealt[:tested]
 
 
-def leakage(train: Sequence[Told], test: Sequence[Told], likeness: Likeness) -> Row:
+def leakage(train: Sequence[Told], test: Sequence[Told], likeness: Likeness) -> dict[str, int]:
     """How many of the test programs have something of theirs in train, by `siblings`, `steps` and `texts`."""
     known = {each.root for each in train}
     steps = {like for each in train for like in likeness.by_steps(each)}

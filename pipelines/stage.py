@@ -20,12 +20,12 @@ import pyarrow as pa
 from hearth.pipelines.deadline import Deadline, OverTime
 from hearth.pipelines.dependencies import code_digest
 from hearth.pipelines.files import value_digest
-from hearth.pipelines.parts import Counts, PartWriter, Row, read_rows
+from hearth.pipelines.parts import Counts, PartWriter, read_rows
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.settings import Settings
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import Row
 
-Record = dict[str, Any]
 Plan = dict[str, Any]
 Output = Row | Reject | tuple[str, Row]
 
@@ -87,7 +87,7 @@ class Stage:
 
     name: str
     tables: Mapping[str, pa.Schema]
-    process: Callable[[Record, Any], Iterable[Output] | Reject]
+    process: Callable[[Any, Any], Iterable[Output] | Reject]
     reads: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
@@ -95,12 +95,12 @@ class Stage:
     prepare: Callable[[Settings], Plan] = lambda settings: {}
     begin: Callable[[Job], None] | None = None
     partitions: Callable[[Job], Iterator[Partition]] | None = None
-    records: Callable[[Job, Partition], Iterable[Record]] | None = None
-    select: Callable[[Record, Plan], bool] = lambda record, plan: True
-    identify: Callable[[Record], str] = lambda record: str(record["program_id"])
+    records: Callable[[Job, Partition], Iterable[Any]] | None = None
+    select: Callable[[Any, Plan], bool] = lambda record, plan: True
+    identify: Callable[[Any], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
     batch: Callable[[Partition], int] = lambda partition: BATCH
-    tally: Callable[[Row], str | None] = lambda row: None
+    tally: Callable[[Any], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
     facts: Callable[[Job], dict[str, Any]] = lambda job: {}
     patience: int = 1
@@ -183,18 +183,18 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     return sink.counts
 
 
-def _records(job: Job, partition: Partition) -> Iterable[Record]:
+def _records(job: Job, partition: Partition) -> Iterable[Any]:
     stage = job.stage
     if stage.records is not None:
         return stage.records(job, partition)
     columns = list(stage.columns) if stage.columns is not None else None
-    rows: Iterable[Record] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
+    rows: Iterable[Any] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
     if partition.rows is not None:
         rows = islice(rows, *partition.rows)
     return (row for row in rows if stage.select(row, job.plan))
 
 
-def _attempt(stage: Stage, record: Record, context: Any, deadline: Deadline) -> list[Output]:
+def _attempt(stage: Stage, record: Row, context: Any, deadline: Deadline) -> list[Output]:
     """All that a record gives; an exception or too long a time gives a reject and none of its rows."""
     try:
         with deadline:

@@ -2,55 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines import lint, special
-from hearth.pipelines.parts import Row
 from hearth.pipelines.readers import spoken
 from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import binding_rows, step_rows, warning_row
+from hearth.pipelines.rows import binding_rows, named, step_rows, warning_row
 from hearth.pipelines.spoken import parse_spoken
-from hearth.pipelines.stage import Job, Record, Stage
+from hearth.pipelines.stage import Job, Plan, Stage
 from hearth.pipelines.surroundings import keep_knowledge, knowledge, knowledge_used, overlays
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program
+from hearth.schemas.rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
 
-_KEPT = tuple(name for name in VALIDATED.names if name not in ("steps", "groundings", "warnings"))
 
-
-def process(record: Record, known: Knowledge) -> Iterable[Row | Reject] | Reject:
+def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
     """Check one program, and each of its groundings; a grounding at fault is refused alone."""
     check = checked_words if record["origin"] == spoken.NAME else checked
-    program, faults, warnings = check(record["text"], record["line"], record["place"], known)
+    program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
     if faults:
-        return Reject(faults)
-    rejects: list[Reject] = []
-    groundings: list[Row] = []
-    for grounding in record["groundings"] or ():
-        outcome = _grounding(grounding, record["place"], known)
-        (rejects if isinstance(outcome, Reject) else groundings).append(outcome)  # type: ignore[arg-type]
+        return [Reject(faults)]
+    outcomes = [_grounding(grounding, record["place"], known) for grounding in record["groundings"] or ()]
+    groundings = [outcome for outcome in outcomes if not isinstance(outcome, Reject)]
     told = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
     start = lint.already(program, groundings, record["conditions"] or (), known)
     found = [*lint.findings(told, known), *lint.undeclared(told, record, known), *start]
     warnings = (*warnings, *(lint.diagnostic(each, told, record["place"]) for each in found))
-    row = {
-        **{name: record[name] for name in _KEPT},
+    row: ValidatedRow = {
+        **named(record),
         "title": told.title,
         "description": told.description,
         "steps": step_rows(program),
         "groundings": groundings,
+        "conditions": record["conditions"],
         "warnings": [warning_row(fault) for fault in warnings],
     }
-    return [row, *rejects]
+    return [row, *(outcome for outcome in outcomes if isinstance(outcome, Reject))]
 
 
 def checked(
@@ -126,7 +121,7 @@ def _numbered(program: Program) -> Program:
     return replace(program, steps=steps)
 
 
-def _grounding(grounding: Row, place: str, known: Knowledge) -> Row | Reject:
+def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge) -> GroundingRow | Reject:
     program, faults, _ = checked(grounding["text"], 0, f"{place} in {grounding['home']}", known)
     unbound = [ref for ref in program.objects() if ref.node is None]
     if not faults and unbound:
@@ -148,9 +143,9 @@ def open_knowledge(job: Job) -> Knowledge:
     return knowledge(job.settings)
 
 
-def is_program(record: Record, plan: dict[str, Any]) -> bool:
+def is_program(record: IngestedRow, plan: Plan) -> bool:
     """Descriptions without a program go on to `publish` as they are."""
-    return bool(record["kind"] == "program")
+    return record["kind"] == "program"
 
 
 STAGE = Stage(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
-from typing import Any
+
+from hearth.schemas.rows import FilmedStepRow
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; margin: 2rem; color: #23262c; background: #fafaf8; }
@@ -35,7 +36,7 @@ show();
 """
 
 
-def page(title: str, files: Sequence[str], steps: Sequence[dict[str, Any]]) -> str:
+def page(title: str, files: Sequence[str], steps: Sequence[FilmedStepRow]) -> str:
     """One HTML document that needs nothing but the video beside it.
 
     Args:
@@ -67,7 +68,7 @@ def page(title: str, files: Sequence[str], steps: Sequence[dict[str, Any]]) -> s
 """
 
 
-def _row(step: dict[str, Any]) -> str:
+def _row(step: FilmedStepRow) -> str:
     text = escape(" | ".join(step["steps"]) or "start")
     times = f'data-start="{step["start"]}" data-end="{step["end"]}"'
     return f'<li tabindex="0" {times}>{text} <small>{step["start"]:.1f} s</small></li>'

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import random
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import cast
 
 from hearth.rendering.camera import Camera
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.rng import derive
+from hearth.schemas.rows import VariationRow
 
 HOURS = (7.5, 18.5)
 """Hours of the day between which light is drawn."""
@@ -50,9 +51,9 @@ class Variation:
         x, y, z = (value + numbers.uniform(-self.jitter, self.jitter) for value in camera.eye)
         return replace(camera, eye=(x, y, z), fov=camera.fov * numbers.uniform(0.95, 1.05))
 
-    def told(self) -> dict[str, Any]:
+    def told(self) -> VariationRow:
         """All of it as plain values, to be recorded."""
-        return asdict(self)
+        return cast(VariationRow, asdict(self))
 
 
 def scattered(home: EnvironmentGraph, variation: Variation) -> EnvironmentGraph:

@@ -23,6 +23,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.program import Step
+from hearth.schemas.rows import FilmedStepRow
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 FIRST, THIRD = "first", "third"
@@ -240,7 +241,7 @@ def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Ca
     return look_at(FIRST, near, far, *size, fov=82.0)
 
 
-def times(found: Sequence[Span]) -> list[dict[str, Any]]:
+def times(found: Sequence[Span]) -> list[FilmedStepRow]:
     """Spans as plain values: tick, step texts, start and end in seconds."""
     from hearth.schemas.syntax import print_step
 
@@ -250,6 +251,8 @@ def times(found: Sequence[Span]) -> list[dict[str, Any]]:
             "steps": [print_step(step) for step in span.steps],
             "start": round(span.start, 4),
             "end": round(span.end, 4),
+            "cameras": [],
+            "visible": 0.0,
         }
         for span in found
     ]
@@ -269,7 +272,7 @@ class Recorded(NamedTuple):
 
     files: tuple[Path, ...]
     frames: int
-    steps: list[dict[str, Any]]
+    steps: list[FilmedStepRow]
     track: list[tuple[int, Camera]]
     moments: list[tuple[Image, Span]]
 
@@ -295,7 +298,7 @@ def record(
         HearthError: no such camera, or a file can't be written; what was complete stays.
     """
     known = {span.tick: span for span in spans(staged, staged.variation.speed)}
-    steps = [{**told, "cameras": [], "visible": 0.0} for told in times(list(known.values()))]
+    steps = times(list(known.values()))
     wanted = {tick: named_in(staged, span.steps) for tick, span in known.items()}
     seen: dict[int, set[int]] = {tick: set() for tick in known}
     writers = [Writer(out / f"{view}{suffix}", *size, fps) for suffix in suffixes]

@@ -13,9 +13,8 @@ from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import change_of, edges_of, program_of
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.rows import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
 from hearth.schemas.syntax import print_step
-
-Row = dict[str, Any]
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})
 """Relations that are drawn; CLOSE and BETWEEN would hide them."""
@@ -46,7 +45,7 @@ class Stories:
         query = "SELECT execution_id, file, list_transform(steps, lambda s: s.end) FROM videos ORDER BY 1, 2"
         return {name: {"file": file, "ends": ends} for name, file, ends in self.dataset.rows(query)[1]}
 
-    def story(self, program: Row, runs: Iterable[Row], repairs: Iterable[Row]) -> Row:
+    def story(self, program: ProgramRow, runs: Iterable[Any], repairs: Iterable[RepairedRow]) -> Row:
         """One program as JSON.
 
         Args:
@@ -108,7 +107,7 @@ class _Home:
                 self.edges[edge.source].add(edge)
                 self.edges[edge.target].add(edge)
 
-    def around(self, shown: set[int], environment: Row) -> WorkingGraph:
+    def around(self, shown: set[int], environment: DifferenceRow) -> WorkingGraph:
         """These nodes at the start, and the edges that touch them."""
         edges = (edge for node in shown for edge in self.edges.get(node, ()))
         graph = WorkingGraph((self.nodes[node] for node in shown & self.nodes.keys()), edges)
@@ -156,16 +155,16 @@ def _changes(tick: Row, names: dict[int, str]) -> Iterator[str]:
         yield f"{more} more edges, {fewer} fewer"
 
 
-def _condition(row: Row) -> str:
+def _condition(row: ConditionRow) -> str:
     objects = ", ".join(f"{each['name']} {each['instance']}" for each in row["objects"])
     return f"{row['name']}({objects})"
 
 
-def _failure(row: Row) -> Row:
+def _failure(row: FailureRow) -> Row:
     return {name: row[name] for name in ("code", "tick", "action", "expected", "actual", "names")}
 
 
-def _repair(row: Row) -> Row:
+def _repair(row: RepairRow) -> Row:
     removed, added = _differing(row["before"], row["after"])
     told = {"handler": row["handler"], "removed": removed, "added": added}
     return {**told, "attempt": row["attempt"], "step": row["step"], "failure": _failure(row["failure"])}

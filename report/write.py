@@ -19,11 +19,11 @@ from hearth.report.plans import plans
 from hearth.report.stories import DRAWN, Stories
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import Row
 
 SHARD = 200
 """Programs whose stories are in one file: what a reader waits for when a page is opened."""
 
-Row = dict[str, Any]
 
 _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
 
@@ -154,8 +154,8 @@ def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[R
         yield stories.story(program, runs[name], repairs[name])
 
 
-def _ask(cursor: Any, query: str, asked: dict[str, str]) -> list[Row]:
-    rows: list[Row] = cursor.sql(query, params=asked).to_arrow_table().to_pylist()
+def _ask(cursor: Any, query: str, asked: dict[str, str]) -> list[Any]:
+    rows: list[Any] = cursor.sql(query, params=asked).to_arrow_table().to_pylist()
     return rows
 
 

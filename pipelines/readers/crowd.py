@@ -9,13 +9,13 @@ import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
-from hearth.pipelines.readers.item import LARGEST_FILE, Item, Place, fault_of, lines, refused
+from hearth.pipelines.readers.item import LARGEST_FILE, Item, Place, fault_of, lines, record, refused
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.topics import no_activity
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow, QuantityRow
 from hearth.schemas.syntax import normal_name
 
 NAME = "crowd"
@@ -172,7 +172,7 @@ def _cells(text: str, header: Header, strict: bool = False) -> list[str]:
     return next(csv.reader(io.StringIO(text, newline=""), delimiter=header.delimiter, strict=strict), [])
 
 
-def read(item: Item, salt: str) -> dict[str, Any] | Reject:
+def read(item: Item, salt: str) -> IngestedRow | Reject:
     """The record of an answer, or why it is not used."""
     cells = item.value["cells"]
     status = cells["AssignmentStatus"].strip()
@@ -182,7 +182,7 @@ def read(item: Item, salt: str) -> dict[str, Any] | Reject:
     return _description(item, cells, salt) if item.value["stage"] == 1 else _program(item, cells, salt)
 
 
-def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | Reject:
+def _description(item: Item, cells: dict[str, str], salt: str) -> IngestedRow | Reject:
     empty = [name for name in ("Answer.title", "Answer.description") if not cells[name].strip()]
     if empty:
         return _empty(item, empty)
@@ -196,15 +196,9 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]
         kind, phrases = other
         message = f"{kind}, not an activity: {', '.join(f'`{phrase}`' for phrase in phrases[:3])}"
         return Reject.of(Code.OFF_TOPIC, message, file=item.place, line=item.line, found=phrases[0])
-    return {
-        **_common(item, cells, salt),
-        "kind": "description",
-        "program_id": item.record_id,
-        "description_id": item.record_id,
-        "title": cells["Answer.title"].strip(),
-        "description": cells["Answer.description"].strip(),
-        "scene": normal_name(cells["Input.scene"]),
-    }
+    title, description, scene = (cells[name].strip() for name in ("Answer.title", "Answer.description", "Input.scene"))
+    worker, platform = _who(cells, salt)
+    return record(item, "description", title, description, scene=normal_name(scene), worker=worker, platform=platform)
 
 
 _GARBLED = re.compile("(?:\u00c3[\u0080-\u00bf\u0152-\u2122]|\u00e2\u20ac[\u0080-\u2122]|\u00c2[\u00a0-\u00bf])[^ ]*")
@@ -222,41 +216,40 @@ def _garbled(text: str) -> str:
     return match[0][:40]
 
 
-def _program(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any] | Reject:
+def _program(item: Item, cells: dict[str, str], salt: str) -> IngestedRow | Reject:
     if not cells["Answer.program"].strip():
         return _empty(item, ["Answer.program"])
     text = cells["Answer.program"]
     described = cells["Input.description_id"].strip()
-    return {
-        **_common(item, cells, salt),
-        "kind": "program",
-        "program_id": item.record_id,
-        "description_id": f"{NAME}:{described}" if described else item.record_id,
-        "title": cells["Input.title"].strip(),
-        "description": cells["Input.description"].strip(),
-        "rooms": _quantities(cells["Answer.rooms"]),
-        "props": _quantities(cells["Answer.props"]),
-        "text": text if text.endswith("\n") else text + "\n",
-        "line": item.line - 1,
-    }
+    worker, platform = _who(cells, salt)
+    return record(
+        item,
+        "program",
+        cells["Input.title"].strip(),
+        cells["Input.description"].strip(),
+        description_id=f"{NAME}:{described}" if described else "",
+        worker=worker,
+        platform=platform,
+        rooms=_quantities(cells["Answer.rooms"]),
+        props=_quantities(cells["Answer.props"]),
+        text=text if text.endswith("\n") else text + "\n",
+        line=item.line - 1,
+    )
 
 
-def _common(item: Item, cells: dict[str, str], salt: str) -> dict[str, Any]:
+def _who(cells: dict[str, str], salt: str) -> tuple[str | None, str | None]:
+    """The worker, as a salted hash, and the platform."""
     worker = cells["WorkerId"].strip()
-    return {
-        "origin": NAME,
-        "place": item.place,
-        "worker": hashlib.blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest() if worker else None,
-        "platform": next((cells[name].strip() for name in ("Platform", "platform") if cells.get(name)), None),
-    }
+    hashed = hashlib.blake2b(f"{salt}\0{worker}".encode(), digest_size=8).hexdigest() if worker else None
+    return hashed, next((cells[name].strip() for name in ("Platform", "platform") if cells.get(name)), None)
 
 
 def _empty(item: Item, columns: list[str]) -> Reject:
     return Reject.of(Code.EMPTY, f"an empty answer: {', '.join(columns)}", file=item.place, line=item.line)
 
 
-def _quantities(text: str) -> list[dict[str, Any]]:
-    found = []
+def _quantities(text: str) -> list[QuantityRow]:
+    found: list[QuantityRow] = []
     for piece in re.split(r"[,;\n]", text):
         match = _QUANTITY.fullmatch(piece)
         if match:

@@ -13,6 +13,7 @@ from hearth.pipelines.readers.packed import DamagedError, Place, raw, size_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
 
 LONGEST_LINE = 1_000_000
 """Characters kept of a line while reading; what is longer is refused, and its length still told."""
@@ -35,6 +36,7 @@ __all__ = [
     "opened",
     "pieces",
     "read_refused",
+    "record",
     "refused",
     "size_of",
     "suffixless",
@@ -78,6 +80,49 @@ def refused(place: str, reject: Reject, record_id: str = "", line: int = 0) -> I
         [str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics
     ]
     return Item(record_id or (f"{place}:{line}" if line else place), "refused", place, faults, line=line)
+
+
+def record(
+    item: Item,
+    kind: str,
+    title: str,
+    description: str,
+    *,
+    origin: str = "",
+    place: str = "",
+    description_id: str = "",
+    scene: str | None = None,
+    worker: str | None = None,
+    platform: str | None = None,
+    rooms: list[QuantityRow] | None = None,
+    props: list[QuantityRow] | None = None,
+    text: str | None = None,
+    line: int | None = None,
+    groundings: list[WrittenGroundingRow] | None = None,
+    conditions: list[ConditionRow] | None = None,
+    keep: list[bool] | None = None,
+) -> IngestedRow:
+    """The row of an item, of which it has the id and, where nothing else is said, origin, place and description."""
+    return {
+        "kind": kind,
+        "program_id": item.record_id,
+        "origin": origin or item.reader,
+        "source": "",
+        "place": place or item.place,
+        "description_id": description_id or item.record_id,
+        "title": title,
+        "description": description,
+        "scene": scene,
+        "worker": worker,
+        "platform": platform,
+        "rooms": rooms,
+        "props": props,
+        "text": text,
+        "line": line,
+        "groundings": groundings,
+        "conditions": conditions,
+        "keep": keep,
+    }
 
 
 def read_refused(item: Item) -> Reject:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from hearth.pipelines.readers import spoken
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
+from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
 from hearth.pipelines.readers.packed import leaves
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import IngestedRow, QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
 
 NAME = "records"
@@ -63,18 +65,18 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
     return Item(own or f"{NAME}:{name}", NAME, place, value, line=line)
 
 
-def read(item: Item) -> dict[str, Any] | Reject | list[dict[str, Any]]:
-    """The record of an item, in the columns of `tables.INGESTED`; with further descriptions, one record for each."""
+def read(item: Item) -> list[IngestedRow | Reject]:
+    """The record of an item; with further descriptions, one record for each."""
     value: Mapping[str, Any] = item.value
     try:
         row = _row(item, value)
-        return row if isinstance(row, Reject) else [row, *_others(row, value)] if value.get("descriptions") else row
+        return [row] if isinstance(row, Reject) else [row, *_others(item, row, value)]
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         message = f"not a record of ours: {error}"
-        return Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)
+        return [Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)]
 
 
-def _row(item: Item, value: Mapping[str, Any]) -> dict[str, Any] | Reject:
+def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
     words = {name: _word(value, name) for name in _WORDS}
     text, is_spoken = _text(value, words)
     kind = "program" if text else "description"
@@ -83,29 +85,29 @@ def _row(item: Item, value: Mapping[str, Any]) -> dict[str, Any] | Reject:
         return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
     title, description = header(text) if text and not is_spoken and "steps" not in value else ("", "")
     origin = _word(value, "origin") or NAME
-    return {
-        "kind": kind,
-        "program_id": item.record_id,
-        "origin": spoken.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
-        "place": item.place,
-        **words,
-        "title": words["title"] or title,
-        "description": words["description"] or description,
-        "description_id": words["description_id"] or item.record_id,
-        "rooms": _quantities(value.get("rooms")),
-        "props": _quantities(value.get("props")),
-        "text": text or None,
-        "line": max(item.line - 1, 0),
-    }
+    return record(
+        item,
+        kind,
+        words["title"] or title,
+        words["description"] or description,
+        origin=spoken.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
+        description_id=words["description_id"] or "",
+        scene=words["scene"],
+        worker=words["worker"],
+        platform=words["platform"],
+        rooms=_quantities(value.get("rooms")),
+        props=_quantities(value.get("props")),
+        text=text or None,
+        line=max(item.line - 1, 0),
+    )
 
 
-def _others(row: Mapping[str, Any], value: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def _others(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow]:
     """Other ways to tell the same program."""
-    for number, text in enumerate(value["descriptions"], 2):
-        name = f"{row['program_id']}~{number}"
-        kept = {key: row[key] for key in ("origin", "place", "title", "scene", "worker", "platform", "line")}
-        told = {"kind": "description", "program_id": name, "description_id": name, "description": str(text)}
-        yield {**kept, **told}
+    kept: Any = {key: row[key] for key in ("origin", "scene", "worker", "platform", "line")}
+    for number, text in enumerate(value.get("descriptions") or (), 2):
+        other = replace(item, record_id=f"{row['program_id']}~{number}")
+        yield record(other, "description", row["title"], str(text), **kept)
 
 
 def _word(value: Mapping[str, Any], name: str) -> str | None:
@@ -135,7 +137,7 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
 
 
 def _step(value: Mapping[str, Any]) -> Step:
-    """A step as `tables.STEP` has it."""
+    """A step of a published row."""
     objects = tuple(
         ObjectRef(normal_name(str(ref["name"])), int(ref.get("instance") or 1), None)
         for ref in value.get("objects") or ()
@@ -144,5 +146,5 @@ def _step(value: Mapping[str, Any]) -> Step:
     return Step(str(value["action"]), objects, int(value.get("agent") or 0), bool(value.get("joins")), modifiers)
 
 
-def _quantities(found: Any) -> list[dict[str, Any]]:
+def _quantities(found: Any) -> list[QuantityRow]:
     return [{"name": normal_name(str(one["name"])), "quantity": int(one.get("quantity") or 1)} for one in found or ()]

@@ -15,6 +15,7 @@ from hearth.pipelines.readers.item import DamagedError, Item, refused
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import program_of
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import print_lines
 
 NAME = "published"
@@ -50,7 +51,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         yield refused(place, Reject.of(Code.EMPTY, "a dataset without programs or descriptions", file=place))
 
 
-def _rows(path: Path, table: str, columns: list[str]) -> Iterator[dict[str, Any]]:
+def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -81,7 +82,7 @@ def _check_text(schema: Any, columns: list[str]) -> None:
             raise ValueError(f"{name} is {found}, not text")
 
 
-def read(item: Item) -> dict[str, Any] | Reject:
+def read(item: Item) -> list[IngestedRow | Reject]:
     """The record of a row."""
     value = item.value
     try:
@@ -90,8 +91,9 @@ def read(item: Item) -> dict[str, Any] | Reject:
             program = program_of(value)
             value = {**value, "text": "".join(f"{line}\n" for line in print_lines(program))}
             del value["steps"]
-        row = ours.read(Item(item.record_id, ours.NAME, item.place, value))
+        rows = ours.read(Item(item.record_id, ours.NAME, item.place, value))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         message = f"no row of a dataset: {type(error).__name__} {error}"
-        return Reject.of(Code.DAMAGED_FILE, message, file=item.place, found=item.record_id, suggestion="copy it again")
-    return {**row, "origin": origin} if isinstance(row, dict) else row  # type: ignore[return-value]
+        suggestion = "copy it again"
+        return [Reject.of(Code.DAMAGED_FILE, message, file=item.place, found=item.record_id, suggestion=suggestion)]
+    return [row if isinstance(row, Reject) else {**row, "origin": origin} for row in rows]

@@ -11,7 +11,7 @@ from typing import Any
 import orjson
 
 from hearth.pipelines.files import file_digest, walk
-from hearth.pipelines.readers.item import LARGEST_FILE, Item, refused
+from hearth.pipelines.readers.item import LARGEST_FILE, Item, record, refused
 from hearth.pipelines.readers.packed import archive, leaves, members, refusal_of
 from hearth.pipelines.readers.text import header
 from hearth.pipelines.rejects import Reject
@@ -20,6 +20,7 @@ from hearth.schemas.change import Parts, difference
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, read_node
+from hearth.schemas.rows import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
 from hearth.schemas.text import decode
 from hearth.schemas.vocabulary import STATE_ID
 
@@ -36,10 +37,11 @@ FOLDERS: dict[str, str] = {
 """The release's folders, and what they hold."""
 
 _IN_HOMES = frozenset({"grounded", "graphs", "states"})
+Members = dict[str, Any]
+"""What is known of a program: its files by folder and home, or what one of them holds as JSON."""
+
 _HOME = re.compile(r"(.*?)(_graph)?")
 _EDGE = itemgetter("from_id", "relation_type", "to_id")
-
-Row = dict[str, Any]
 
 
 def names_it(path: str) -> bool:
@@ -69,7 +71,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
     Raises:
         HearthError: the archive is damaged, or holds none of the folders.
     """
-    programs: dict[str, dict[str, Any]] = {}
+    programs: dict[str, Members] = {}
     versions: dict[str, str] = {}
     for name, version in _listing(path):
         located = _located(name)
@@ -93,7 +95,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         yield _item(path, place, key, programs[key], versions[key])
 
 
-def _item(path: Path, place: str, key: str, members: dict[str, Any], version: str) -> Item:
+def _item(path: Path, place: str, key: str, members: Members, version: str) -> Item:
     where = f"{place}/{key}"
     if "collected" not in members and "grounded" not in members:
         have = " and ".join(sorted(members))
@@ -112,7 +114,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
             yield info.filename, f"{info.CRC:08x}"
 
 
-def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
+def _bytes(value: Members, name: str) -> bytes | Diagnostic:
     """A member's bytes, or why they can't be had."""
     path = Path(value["path"])
     place = f"{value['label']}/{name}"
@@ -131,13 +133,13 @@ def _bytes(value: dict[str, Any], name: str) -> bytes | Diagnostic:
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 
 
-def text_of(value: dict[str, Any], name: str) -> str | Diagnostic:
+def text_of(value: Members, name: str) -> str | Diagnostic:
     """A member of the release as text, or why it can't be had; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
-def json_of(value: dict[str, Any], name: str) -> Any:
+def json_of(value: Members, name: str) -> Any:
     """A member of the release as the JSON it holds, or a Diagnostic."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
@@ -148,10 +150,10 @@ def json_of(value: dict[str, Any], name: str) -> Any:
         return Diagnostic(Code.BAD_JSON, f"not JSON: {error}", f"{value['label']}/{name}", error.lineno, error.colno)
 
 
-def read(item: Item) -> Iterator[dict[str, Any] | Reject]:
+def read(item: Item) -> Iterator[IngestedRow | Reject]:
     """The record of a program with all its groundings. A grounding that can't be read is refused alone."""
     value = {**item.value, "path": item.path}
-    groundings: list[dict[str, Any]] = []
+    groundings: list[WrittenGroundingRow] = []
     faults: list[Diagnostic] = []
     for home in sorted({*value.get("grounded", {}), *value.get("graphs", {})}):
         grounding = _grounding(value, home)
@@ -167,26 +169,25 @@ def read(item: Item) -> Iterator[dict[str, Any] | Reject]:
     yield from (Reject((fault,)) for fault in faults)
 
 
-def _row(item: Item, text: str, groundings: list[dict[str, Any]], conditions: list[Any]) -> dict[str, Any]:
+def _row(item: Item, text: str, groundings: list[WrittenGroundingRow], conditions: list[ConditionRow]) -> IngestedRow:
     title, description = header(text)
     value = item.value
     place = value.get("collected") or value["grounded"][min(value["grounded"])]
-    return {
-        "kind": "program",
-        "program_id": item.record_id,
-        "origin": NAME,
-        "place": f"{value['label']}/{place}",
-        "description_id": f"{NAME}:{value['key'].rpartition('_')[0] or value['key']}",
-        "title": title,
-        "description": description,
-        "text": text,
-        "line": 0,
-        "groundings": groundings,
-        "conditions": conditions,
-    }
+    return record(
+        item,
+        "program",
+        title,
+        description,
+        place=f"{value['label']}/{place}",
+        description_id=f"{NAME}:{value['key'].rpartition('_')[0] or value['key']}",
+        text=text,
+        line=0,
+        groundings=groundings,
+        conditions=conditions,
+    )
 
 
-def _collected(value: dict[str, Any], groundings: list[dict[str, Any]]) -> str | Diagnostic:
+def _collected(value: Members, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
     """The text as collected, or failing that the first grounded one with its node ids left out."""
     if "collected" in value:
         return text_of(value, value["collected"])
@@ -195,7 +196,7 @@ def _collected(value: dict[str, Any], groundings: list[dict[str, Any]]) -> str |
     return Diagnostic(Code.MISSING_FILE, "no text of it can be read", f"{value['label']}/{value['key']}")
 
 
-def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic | None:
+def _grounding(value: Members, home: str) -> WrittenGroundingRow | Diagnostic | None:
     name = value.get("grounded", {}).get(home)
     if name is None:
         place = f"{value['label']}/{value['graphs'][home]}"
@@ -212,7 +213,7 @@ def _grounding(value: dict[str, Any], home: str) -> dict[str, Any] | Diagnostic 
     return {"home": home, "text": text, "start": start, "final": final}
 
 
-def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagnostic:
+def _graphs(value: Members, name: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
     """The start graph, and what the final graph changes of it."""
     data = json_of(value, name)
     place = f"{value['label']}/{name}"
@@ -224,7 +225,7 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
         ordered = sorted(edges)
         sources, relations, targets = _columns(ordered)
         nodes = [node_row(read_node(node)) for node in start["nodes"]]
-        row = {"nodes": nodes, "sources": sources, "relations": relations, "targets": targets}
+        row: GraphRow = {"nodes": nodes, "sources": sources, "relations": relations, "targets": targets}
         return row, final and _changed(edges, start, final)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         message = f"not a pair of environment graphs: {type(error).__name__} {error}"
@@ -232,7 +233,7 @@ def _graphs(value: dict[str, Any], name: str) -> tuple[Row, Row | None] | Diagno
         return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
 
 
-def _edges(graph: dict[str, Any]) -> set[Edge]:
+def _edges(graph: Members) -> set[Edge]:
     """Plain tuples, which equal edges and are made faster."""
     return set(map(_EDGE, graph["edges"]))
 
@@ -249,18 +250,18 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
     return sources, relations, targets
 
 
-def _changed(edges: set[Edge], start: dict[str, Any], final: dict[str, Any]) -> Row:
-    """What a final graph changes, as `tables.CHANGE`: edges, and states that are simulated."""
+def _changed(edges: set[Edge], start: Members, final: Members) -> ChangeRow:
+    """What a final graph changes: edges, and states that are simulated."""
     new = _edges(final)
     _columns(sorted(new - edges))
     return change_row(difference(Parts(edges, _states(start)), Parts(new, _states(final))))
 
 
-def _states(graph: dict[str, Any]) -> set[tuple[int, str]]:
+def _states(graph: Members) -> set[tuple[int, str]]:
     return {(int(node["id"]), name) for node in graph["nodes"] for name in node.get("states") or () if name in STATE_ID}
 
 
-def _conditions(value: dict[str, Any]) -> list[dict[str, Any]] | Diagnostic:
+def _conditions(value: Members) -> list[ConditionRow] | Diagnostic:
     if "conditions" not in value:
         return []
     data = json_of(value, value["conditions"])
@@ -273,6 +274,11 @@ def _conditions(value: dict[str, Any]) -> list[dict[str, Any]] | Diagnostic:
         return Diagnostic(Code.BAD_JSON, message, f"{value['label']}/{value['conditions']}")
 
 
-def _condition(name: str, objects: list[Any]) -> dict[str, Any]:
+def _condition(name: str, objects: list[Any]) -> ConditionRow:
     pairs = objects if objects and isinstance(objects[0], list) else [objects]
-    return {"name": name, "objects": [{"name": str(o[0]).lower(), "instance": int(o[1])} for o in pairs]}
+    return {
+        "name": name,
+        "objects": [{"name": str(o[0]).lower(), "instance": int(o[1])} for o in pairs],
+        "step": None,
+        "hard": None,
+    }

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import Any
 
 from hearth.pipelines.readers.document import document
-from hearth.pipelines.readers.item import Item, Place, refused, suffixless
+from hearth.pipelines.readers.item import Item, Place, record, refused, suffixless
 from hearth.pipelines.rejects import Reject
 from hearth.pipelines.rows import graph_row
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
+from hearth.schemas.rows import IngestedRow, NodeRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import OPPOSITE
 
 NAME = "scenes"
@@ -28,7 +28,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
     yield Item(f"{NAME}:{place}", NAME, place, graph)
 
 
-def read(item: Item) -> dict[str, Any] | Reject:
+def read(item: Item) -> IngestedRow | Reject:
     """The record of a scene: the graph, under the file's name as that of a home."""
     try:
         graph = graph_row(from_release(item.value, item.place))
@@ -38,20 +38,11 @@ def read(item: Item) -> dict[str, Any] | Reject:
     if faults:
         return Reject(faults)
     name = suffixless(PurePath(item.place).name)
-    return {
-        "kind": "scene",
-        "program_id": item.record_id,
-        "origin": NAME,
-        "place": item.place,
-        "description_id": item.record_id,
-        "title": name,
-        "description": "",
-        "groundings": [{"home": name, "text": "", "start": graph, "final": None}],
-        "line": 0,
-    }
+    grounding: WrittenGroundingRow = {"home": name, "text": "", "start": graph, "final": None}
+    return record(item, "scene", name, "", line=0, groundings=[grounding])
 
 
-def _state_faults(nodes: list[dict[str, Any]], place: str) -> Iterator[Diagnostic]:
+def _state_faults(nodes: list[NodeRow], place: str) -> Iterator[Diagnostic]:
     """Nodes that have a state twice, or two that exclude each other."""
     for node in nodes:
         states = node["states"]

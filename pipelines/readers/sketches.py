@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import zip_longest
-from typing import Any
 
 from hearth.pipelines.readers import release
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, Place, refused
+from hearth.pipelines.readers.item import Item, Place, record, refused
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow
 
 NAME = "sketches"
 
@@ -37,7 +37,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 _ABSENT = (0, None)
 
 
-def read(item: Item) -> dict[str, Any] | Reject:
+def read(item: Item) -> IngestedRow | Reject:
     """The record of a sketch: the program it is of, which of its steps it keeps, and these steps."""
     keep, given = item.value["keep"], item.value["input"]
     try:
@@ -49,15 +49,5 @@ def read(item: Item) -> dict[str, Any] | Reject:
         return Reject.of(Code.BAD_JSON, message, file=item.place, suggestion="it needs title, descr, prog and prefix")
     if not flags:
         return Reject.of(Code.EMPTY, "a sketch of no steps", file=item.place)
-    return {
-        "kind": "sketch",
-        "program_id": item.record_id,
-        "origin": NAME,
-        "place": item.place,
-        "description_id": f"{release.NAME}:{program_id}",
-        "title": title,
-        "description": description,
-        "text": text,
-        "keep": flags,
-        "line": 0,
-    }
+    described = f"{release.NAME}:{program_id}"
+    return record(item, "sketch", title, description, description_id=described, text=text, line=0, keep=flags)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, Place, fault_of, lines, refused
+from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow
 
 NAME = "spoken"
 
@@ -78,20 +79,10 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
     return Item(record_id, NAME, place, {"text": text.rstrip("\n") + "\n", "line": first - 1}, line=first)
 
 
-def read(item: Item) -> dict[str, Any]:
+def read(item: Item) -> IngestedRow:
     """The record of an item: the words as they are; `validate` maps them to steps."""
     top = header(item.value["text"])
-    return {
-        "kind": "program",
-        "program_id": item.record_id,
-        "origin": NAME,
-        "place": item.place,
-        "description_id": item.record_id,
-        "title": top.title,
-        "description": top.description,
-        "text": item.value["text"],
-        "line": item.value["line"],
-    }
+    return record(item, "program", top.title, top.description, text=item.value["text"], line=item.value["line"])
 
 
 def looks_spoken(lines: list[str]) -> bool:

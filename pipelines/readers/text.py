@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
 
 from hearth.pipelines.readers.blocks import LONGEST_PROGRAM, Block, blocks
-from hearth.pipelines.readers.item import Item, Place, fault_of, pieces, refused, size_of
+from hearth.pipelines.readers.item import Item, Place, fault_of, pieces, record, refused, size_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import MAX_LINE
 
 NAME = "text"
@@ -65,17 +65,7 @@ def header(text: str) -> tuple[str, str]:
     return (found[0] if found else "", "\n".join(found[1:]))
 
 
-def read(item: Item) -> dict[str, Any]:
+def read(item: Item) -> IngestedRow:
     """The record of an item."""
     title, description = header(item.value["text"])
-    return {
-        "kind": "program",
-        "program_id": item.record_id,
-        "origin": NAME,
-        "place": item.place,
-        "description_id": item.record_id,
-        "title": title,
-        "description": description,
-        "text": item.value["text"],
-        "line": item.value["line"],
-    }
+    return record(item, "program", title, description, text=item.value["text"], line=item.value["line"])
