@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.reasons import Reasons
+from hearth.schemas.rows import Row
 
 if TYPE_CHECKING:
     import duckdb
     import networkx
-
-Row = dict[str, Any]
 
 Edge = tuple[str, str, str, dict[str, Any]]
 """Source, target, relation and attributes."""

@@ -21,7 +21,8 @@ from hearth.pipelines.rows import (
 )
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
-from hearth.schemas.rows import CaseRow, DifferenceRow, RunRow
+from hearth.schemas.rows import CaseRow, RunRow
+from hearth.schemas.structs import DifferenceRow
 from hearth.simulation.change import encode_whole
 from hearth.simulation.derived import changed
 from hearth.simulation.engine import Execution, run

@@ -15,7 +15,8 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
-from hearth.schemas.rows import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.rows import ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.structs import ConditionRow
 
 if TYPE_CHECKING:
     import networkx

@@ -10,7 +10,7 @@ from pathlib import Path
 from hearth.pipelines.files import write_json
 from hearth.pipelines.rows import graph_of
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release
-from hearth.schemas.rows import GraphRow
+from hearth.schemas.structs import GraphRow
 
 
 def common(rows: Iterable[GraphRow]) -> EnvironmentGraph:

@@ -22,7 +22,8 @@ from hearth.pipelines.rejects import Reject
 from hearth.pipelines.sources import labelled
 from hearth.schemas.errors import HearthError
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import IngestedRow, Row
+from hearth.schemas.rows import IngestedRow, ProgramRow, Row
+from hearth.schemas.structs import StepRow
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"
 _GOOD = "Sleep\nGo to bed, it is late.\n\n\n[Walk] <bedroom> (1)\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n[Sleep]\n"
@@ -80,17 +81,27 @@ def _programs() -> bytes:
 
     from hearth.pipelines.readers.published import COLUMNS
 
-    steps = [{"agent": 0, "action": "Sleep", "objects": [], "joins": False, "modifiers": [], "line": 1}]
-    told = {
+    step: StepRow = {"agent": 0, "action": "Sleep", "objects": [], "joins": False, "modifiers": [], "line": 1}
+    program: ProgramRow = {
         "program_id": "p",
-        "origin": "text",
+        "activity_id": "t",
         "description_id": "d",
+        "parent_id": None,
+        "origin": "text",
+        "source": "s",
+        "place": "p",
         "title": "T",
         "description": "D",
-        "steps": steps,
+        "split": "train",
+        "steps": [step],
+        "rooms": None,
+        "props": None,
+        "worker": None,
+        "platform": None,
+        "warnings": [],
     }
     out = io.BytesIO()
-    pq.write_table(pa.Table.from_pylist([dict.fromkeys(COLUMNS) | told]), out)
+    pq.write_table(pa.Table.from_pylist([{**program}]).select(COLUMNS), out)
     return out.getvalue()
 
 

@@ -27,7 +27,8 @@ from hearth.pipelines.sources import labelled
 from hearth.pipelines.workers import Workers
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
-from hearth.schemas.rows import DifferenceRow, IngestedRow, Row
+from hearth.schemas.rows import IngestedRow, Row
+from hearth.schemas.structs import DifferenceRow
 
 ANY_HOME = "any home"
 """Where a program is impossible that contradicts itself."""

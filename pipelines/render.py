@@ -15,7 +15,8 @@ from hearth.pipelines.parts import READ_BATCH, read_rows
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.stage import Job, Partition, Plan, Stage
 from hearth.pipelines.surroundings import knowledge_used, overlays
-from hearth.schemas.rows import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
+from hearth.schemas.rows import CaseRow, FilmedRow, RenderedRow
+from hearth.schemas.structs import PinholeRow, TrackRow
 from hearth.schemas.tables import FILMED, RENDERED
 
 if TYPE_CHECKING:

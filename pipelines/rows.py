@@ -14,7 +14,8 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import (
+from hearth.schemas.rows import NamedRow, ScriptRow
+from hearth.schemas.structs import (
     BindingRow,
     BoxRow,
     ChangeRow,
@@ -24,10 +25,8 @@ from hearth.schemas.rows import (
     FailureRow,
     GraphRow,
     InstructionRow,
-    NamedRow,
     NodeRow,
     PointRow,
-    ScriptRow,
     StepRow,
     TickRow,
     WarningRow,

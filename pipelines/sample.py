@@ -26,7 +26,8 @@ from hearth.pipelines.surroundings import knowledge_used, overlays
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
+from hearth.schemas.rows import CaseRow, GroundingRow, RunRow, ValidatedRow
+from hearth.schemas.structs import ConditionRow, DifferenceRow, GraphRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
 from hearth.simulation.home import Home

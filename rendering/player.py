@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from hearth.schemas.rows import FilmedStepRow
+from hearth.schemas.structs import FilmedStepRow
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; margin: 2rem; color: #23262c; background: #fafaf8; }

@@ -9,7 +9,7 @@ from typing import cast
 from hearth.rendering.camera import Camera
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.rng import derive
-from hearth.schemas.rows import VariationRow
+from hearth.schemas.structs import VariationRow
 
 HOURS = (7.5, 18.5)
 """Hours of the day between which light is drawn."""

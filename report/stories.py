@@ -13,7 +13,8 @@ from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import change_of, edges_of, program_of
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.rows import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
+from hearth.schemas.rows import ProgramRow, RepairedRow, Row
+from hearth.schemas.structs import ConditionRow, DifferenceRow, FailureRow, RepairRow
 from hearth.schemas.syntax import print_step
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})

@@ -12,6 +12,7 @@ from typing import Any, Final, Union, get_args, get_origin, get_type_hints, is_t
 import pyarrow as pa
 
 from hearth.schemas import rows
+from hearth.schemas.structs import Arrow
 
 _PLAIN = {str: pa.string(), bool: pa.bool_(), int: pa.int32(), float: pa.float64()}
 
@@ -23,7 +24,7 @@ def struct(row: type) -> pa.DataType:
 
 def _type(hint: Any) -> pa.DataType:
     """The Arrow type of an annotation: `X | None` is as X, since Arrow's columns may all be null."""
-    wide = next((each for each in getattr(hint, "__metadata__", ()) if isinstance(each, rows.Arrow)), None)
+    wide = next((each for each in getattr(hint, "__metadata__", ()) if isinstance(each, Arrow)), None)
     if wide:
         return pa.type_for_alias(wide)
     if hasattr(hint, "__metadata__"):
@@ -46,7 +47,7 @@ def _schema(row: type, known: Iterable[pa.Field] = (), otherwise: str = "") -> p
     comments = {field.name: field.metadata[b"comment"] for field in known}
     fields = []
     for name, hint in get_type_hints(row, include_extras=True).items():
-        own = (each for each in getattr(hint, "__metadata__", ()) if not isinstance(each, rows.Arrow))
+        own = (each for each in getattr(hint, "__metadata__", ()) if not isinstance(each, Arrow))
         comment = next(own, None) or comments.get(name) or otherwise.format(name)
         fields.append(pa.field(name, _type(hint), metadata={"comment": comment}))
     return pa.schema(fields)

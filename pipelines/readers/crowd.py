@@ -15,7 +15,8 @@ from hearth.pipelines.rejects import Reject
 from hearth.pipelines.topics import no_activity
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow, QuantityRow
+from hearth.schemas.rows import IngestedRow
+from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name
 
 NAME = "crowd"

@@ -13,7 +13,8 @@ from hearth.pipelines.readers.packed import DamagedError, Place, raw, size_of
 from hearth.pipelines.rejects import Reject
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
+from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
+from hearth.schemas.structs import ConditionRow, QuantityRow
 
 LONGEST_LINE = 1_000_000
 """Characters kept of a line while reading; what is longer is refused, and its length still told."""

@@ -16,7 +16,8 @@ from hearth.pipelines.rejects import Reject
 from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import IngestedRow, QuantityRow
+from hearth.schemas.rows import IngestedRow
+from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
 
 NAME = "records"

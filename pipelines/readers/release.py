@@ -20,7 +20,8 @@ from hearth.schemas.change import Parts, difference
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, read_node
-from hearth.schemas.rows import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
+from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
+from hearth.schemas.structs import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.text import decode
 from hearth.schemas.vocabulary import STATE_ID
 

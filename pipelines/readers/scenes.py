@@ -12,7 +12,8 @@ from hearth.pipelines.rows import graph_row
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
-from hearth.schemas.rows import IngestedRow, NodeRow, WrittenGroundingRow
+from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
+from hearth.schemas.structs import NodeRow
 from hearth.schemas.vocabulary import OPPOSITE
 
 NAME = "scenes"
