@@ -38,7 +38,7 @@ FOLDERS: dict[str, str] = {
 """The release's folders, and what they hold."""
 
 _IN_HOMES = frozenset({"grounded", "graphs", "states"})
-Members = dict[str, Any]
+JsonObject = dict[str, Any]
 """What is known of a program: its files by folder and home, or what one of them holds as JSON."""
 
 _HOME = re.compile(r"(.*?)(_graph)?")
@@ -72,7 +72,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
     Raises:
         HearthError: the archive is damaged, or holds none of the folders.
     """
-    programs: dict[str, Members] = {}
+    programs: dict[str, JsonObject] = {}
     versions: dict[str, str] = {}
     for name, version in _listing(path):
         located = _located(name)
@@ -96,7 +96,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         yield _item(path, place, key, programs[key], versions[key])
 
 
-def _item(path: Path, place: str, key: str, members: Members, version: str) -> Item:
+def _item(path: Path, place: str, key: str, members: JsonObject, version: str) -> Item:
     where = f"{place}/{key}"
     if "collected" not in members and "grounded" not in members:
         have = " and ".join(sorted(members))
@@ -115,7 +115,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
             yield info.filename, f"{info.CRC:08x}"
 
 
-def _bytes(value: Members, name: str) -> bytes | Diagnostic:
+def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
     """A member's bytes, or why they can't be had."""
     path = Path(value["path"])
     place = f"{value['label']}/{name}"
@@ -134,13 +134,13 @@ def _bytes(value: Members, name: str) -> bytes | Diagnostic:
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 
 
-def text_of(value: Members, name: str) -> str | Diagnostic:
+def text_of(value: JsonObject, name: str) -> str | Diagnostic:
     """A member of the release as text, or why it can't be had; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
-def json_of(value: Members, name: str) -> Any:
+def json_of(value: JsonObject, name: str) -> Any:
     """A member of the release as the JSON it holds, or a Diagnostic."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
@@ -188,7 +188,7 @@ def _row(item: Item, text: str, groundings: list[WrittenGroundingRow], condition
     )
 
 
-def _collected(value: Members, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
+def _collected(value: JsonObject, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
     """The text as collected, or failing that the first grounded one with its node ids left out."""
     if "collected" in value:
         return text_of(value, value["collected"])
@@ -197,7 +197,7 @@ def _collected(value: Members, groundings: list[WrittenGroundingRow]) -> str | D
     return Diagnostic(Code.MISSING_FILE, "no text of it can be read", f"{value['label']}/{value['key']}")
 
 
-def _grounding(value: Members, home: str) -> WrittenGroundingRow | Diagnostic | None:
+def _grounding(value: JsonObject, home: str) -> WrittenGroundingRow | Diagnostic | None:
     name = value.get("grounded", {}).get(home)
     if name is None:
         place = f"{value['label']}/{value['graphs'][home]}"
@@ -214,7 +214,7 @@ def _grounding(value: Members, home: str) -> WrittenGroundingRow | Diagnostic | 
     return {"home": home, "text": text, "start": start, "final": final}
 
 
-def _graphs(value: Members, name: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
+def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
     """The start graph, and what the final graph changes of it."""
     data = json_of(value, name)
     place = f"{value['label']}/{name}"
@@ -234,7 +234,7 @@ def _graphs(value: Members, name: str) -> tuple[GraphRow, ChangeRow | None] | Di
         return Diagnostic(Code.BAD_GRAPH, message, place, suggestion=suggestion)
 
 
-def _edges(graph: Members) -> set[Edge]:
+def _edges(graph: JsonObject) -> set[Edge]:
     """Plain tuples, which equal edges and are made faster."""
     return set(map(_EDGE, graph["edges"]))
 
@@ -251,18 +251,18 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
     return sources, relations, targets
 
 
-def _changed(edges: set[Edge], start: Members, final: Members) -> ChangeRow:
+def _changed(edges: set[Edge], start: JsonObject, final: JsonObject) -> ChangeRow:
     """What a final graph changes: edges, and states that are simulated."""
     new = _edges(final)
     _columns(sorted(new - edges))
     return change_row(difference(Parts(edges, _states(start)), Parts(new, _states(final))))
 
 
-def _states(graph: Members) -> set[tuple[int, str]]:
+def _states(graph: JsonObject) -> set[tuple[int, str]]:
     return {(int(node["id"]), name) for node in graph["nodes"] for name in node.get("states") or () if name in STATE_ID}
 
 
-def _conditions(value: Members) -> list[ConditionRow] | Diagnostic:
+def _conditions(value: JsonObject) -> list[ConditionRow] | Diagnostic:
     if "conditions" not in value:
         return []
     data = json_of(value, value["conditions"])

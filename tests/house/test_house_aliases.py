@@ -13,9 +13,6 @@ GENERIC = {
 }  # fmt: skip
 """What a type is made of; options of commands, which are Annotated, are no names of types."""
 
-TO_DO = {"Row"}
-"""Rows become typed, a type a table; until then each file has a short name for any of them."""
-
 
 def is_type(value):
     """Whether an expression is a type: one with parameters, a choice of types, or a plain one."""
@@ -41,7 +38,7 @@ def repeated(sources):
     for file, source in sources.items():
         for name in aliases(source):
             found[name].append(file)
-    return {name: files for name, files in found.items() if len(files) > 1 and name not in TO_DO}
+    return {name: files for name, files in found.items() if len(files) > 1}
 
 
 def test_no_name_of_a_type_is_declared_in_two_files():

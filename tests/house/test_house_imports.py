@@ -91,20 +91,6 @@ def test_every_package_is_in_the_wheel():
     assert listed == {"hearth", *(f"hearth.{'.'.join(folder.relative_to(ROOT).parts)}" for folder in folders)}
 
 
-ROWS = ("Row", "Rows", "Record", "Records")
-
-
-def test_a_row_has_one_alias():
-    """What takes rows of whichever table takes `schemas.rows.Row`; all else names the row it means."""
-    found = []
-    for path, name in zip(MODULES, NAMES, strict=True):
-        for node in ast.walk(ast.parse(path.read_text())):
-            target = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", None)
-            if isinstance(node, ast.Assign | ast.AnnAssign) and isinstance(target, ast.Name) and target.id in ROWS:
-                found += [name] if "[str, Any]" in ast.unparse(node) else []
-    assert found == ["schemas/rows.py"]
-
-
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)
 def test_no_record_is_made_of_names_alone(path):
     """`dict.fromkeys(NAMES) | row` and `{**dict.fromkeys(NAMES), **row}` are records in which columns may lack."""
