@@ -6,13 +6,13 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from typing import Protocol, TextIO
+from typing import TextIO
 
 from hearth.pipelines.parts import Counts
 
 
-class Progress(Protocol):
-    """Is told how a build goes."""
+class Progress:
+    """Is told how a build goes; this one says nothing of it."""
 
     def note(self, text: str) -> None:
         """Something that people should know before it begins."""
@@ -27,23 +27,7 @@ class Progress(Protocol):
         """A stage is complete; `fresh` is False when nothing had to be done."""
 
 
-class Quiet:
-    """Says nothing."""
-
-    def note(self, text: str) -> None:
-        """Nothing."""
-
-    def start(self, stage: str, total: int | None) -> None:
-        """Nothing."""
-
-    def seen(self, records: int, rejects: int) -> None:
-        """Nothing."""
-
-    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Nothing."""
-
-
-class Lines(Quiet):
+class Lines(Progress):
     """A line a stage."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
@@ -60,7 +44,7 @@ class Lines(Quiet):
         self._stream.flush()
 
 
-class JsonLines:
+class JsonLines(Progress):
     """A line of JSON for what happens, at most one a second while a stage runs: for logs of long builds.
 
     Each has `time` (seconds since 1970), `event` (start, progress, end, note) and `stage`.
@@ -106,7 +90,7 @@ class JsonLines:
         self._stream.flush()
 
 
-class Bars:
+class Bars(Progress):
     """A bar for the running stage on a terminal, its line when it is done."""
 
     def __init__(self) -> None:

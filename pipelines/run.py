@@ -17,7 +17,7 @@ from hearth.pipelines.files import is_temporary, value_digest, write_json
 from hearth.pipelines.lock import locked
 from hearth.pipelines.manifest import NAME, TIMING, Manifest, describe, read_manifest
 from hearth.pipelines.parts import Counts, part_path, part_state, rejects_path, write_table
-from hearth.pipelines.progress import Progress, Quiet
+from hearth.pipelines.progress import Progress
 from hearth.pipelines.settings import Settings
 from hearth.pipelines.sources import source_digests
 from hearth.pipelines.stage import Job, Partition, Stage
@@ -46,7 +46,7 @@ def run_stage(
     Raises:
         HearthError: a stage it reads is missing, someone else builds there, or the folder cannot be written.
     """
-    progress = progress or Quiet()
+    progress = progress or Progress()
     try:
         with locked(Path(settings.out)):
             return _run(stage, settings, workers or Workers(), progress)

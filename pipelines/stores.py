@@ -3,6 +3,9 @@
 A build into a store works in a local copy of it. Complete parts go to the store at once, a stage's manifest last, so
 that the store, too, only ever holds what is whole; a build on another machine takes up what it finds there. Datasets
 and sources in a store are fetched before they are read, and only what changed is fetched again.
+
+fsspec's own caching does not serve here: it keeps files under hashes of their names, or all in one folder, where a
+dataset is read by the names of its tables and parts.
 """
 
 from __future__ import annotations

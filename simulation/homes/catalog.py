@@ -16,7 +16,6 @@ from hearth.schemas.text import decode
 from hearth.simulation.homes.graph_layout import LaidOut, lay_out
 from hearth.simulation.homes.graph_measured import has_geometry, measured
 from hearth.simulation.homes.layout import Layout, read
-from hearth.simulation.homes.plan import Plan
 from hearth.simulation.homes.scene import scene
 
 IDS = ".ids.csv"
@@ -49,11 +48,6 @@ def load_layout(name: str, directory: Path | str | None = None) -> Layout:
         HearthError: UNKNOWN_HOME; every fault of its plan; or NO_ROOM: a graph without rooms.
     """
     return layout_of(_file(name, directory))
-
-
-def load_plan(name: str, directory: Path | str | None = None) -> Plan:
-    """A home's plan; errors as of `load_layout`."""
-    return load_layout(name, directory).plan
 
 
 def layout_of(path: Path | str) -> Layout:

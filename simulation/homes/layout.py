@@ -89,11 +89,6 @@ def _shown(faults: Faults, text: str) -> list[Diagnostic]:
     return found
 
 
-def walkable(layout: Layout) -> Floor:
-    """The floor that can be walked: an occupancy grid at 10 cm with each cell's room."""
-    return layout.floor
-
-
 def arrange(
     plan: Plan, knowledge: Knowledge, faults: Faults, known: dict[int, tuple[Room, tuple[Thing, ...]]] | None = None
 ) -> Layout:

@@ -1,4 +1,8 @@
-"""Shapes in a grid of cells, with numpy alone: importing scipy's would cost every process ten homes' loading."""
+"""Shapes in a grid of cells, with numpy alone.
+
+scipy.ndimage has the same three. Importing it takes as long as loading seven homes (0.7 s and 0.1 s a home), and every
+process that loads a home would pay for it.
+"""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def layout(request):
 
 
 def test_there_are_seven_homes_of_four_to_seven_rooms_that_differ():
-    plans = [catalog.load_plan(name) for name in SEVEN]
+    plans = [catalog.load_layout(name).plan for name in SEVEN]
     assert set(SEVEN) <= set(HOMES)
     assert all(4 <= len(plan.rooms) <= 7 for plan in plans)
     assert {len(plan.rooms) for plan in plans} == {4, 5, 6, 7}
