@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from hearth.rendering.meshes import catalog
 from hearth.rendering.meshes.catalog import ENTRY, FAMILIES, RECIPES
@@ -59,6 +60,19 @@ def test_every_entry_has_a_name_of_its_own_and_is_compiled():
     assert sorted(name for name, _ in found) == sorted({name for name, _ in found})
     assert [name for name, takes in found if not takes] == list(RECIPES)
     assert all(catalog._drawn(name) for name, _ in found)
+
+
+def test_no_key_is_written_twice():
+    def keys(node):
+        if isinstance(node, yaml.MappingNode):
+            names = [key.value for key, _ in node.value]
+            assert len(names) == len(set(names)), (node.start_mark.line + 1, names)
+        for part in node.value if not isinstance(node, yaml.ScalarNode) else ():
+            for each in part if isinstance(part, tuple) else (part,):
+                keys(each)
+
+    for family in FAMILIES:
+        keys(yaml.compose(catalog._text(family), yaml.BaseLoader))
 
 
 def test_a_model_that_does_not_exist_is_a_missing_key():
