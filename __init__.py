@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from hearth.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
     from hearth.pipelines.dataset import Dataset
 
-__all__ = ["__version__", "load"]
+__all__ = ["__version__", "knowledge", "load"]
 
 
 def load(path: str) -> Dataset:
@@ -21,3 +22,18 @@ def load(path: str) -> Dataset:
     from hearth.pipelines.dataset import Dataset
 
     return Dataset.open(path)
+
+
+def knowledge(overlay: str | None = None) -> Knowledge:
+    """What Hearth knows of actions, objects and places, with the files of the folder `overlay` laid over it, if given.
+
+    A dataset's own is `load(path).knowledge`.
+
+    Raises:
+        HearthError: every fault of the overlay's files.
+    """
+    from pathlib import Path
+
+    from hearth.kb.loading import laid_over
+
+    return laid_over(Path(overlay) if overlay else None)

@@ -78,7 +78,7 @@ def main() -> None:
     arguments.add_argument("--pairs", type=int, default=5)
     asked = arguments.parse_args()
     known = default()
-    homes = [Home.from_graph(catalog.load_graph(name), name, known) for name in catalog.names()]
+    homes = [Home.from_graph(catalog.load_graph(name, default()), name, known) for name in catalog.names()]
     for home in homes:
         prepared(home)
     given = {str(path): [str(path)] for path in asked.sources}

@@ -56,8 +56,8 @@ def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
     """Our homes, each with programs of 12 steps that can be done there."""
     found = []
     for name in catalog.names():
-        graph = catalog.load_graph(name)
-        start = World.start(Home.from_graph(graph, name))
+        graph = catalog.load_graph(name, default())
+        start = World.start(Home.from_graph(graph, name, default()))
         found += [(graph, _wander(start, random.Random(seed))) for seed in range(2)]
     return tuple(found)
 
@@ -66,7 +66,9 @@ def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
 def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
     """Crowd-sourced programs of that many steps, their instances counters, with each home that they can be done in."""
     rows = csv.DictReader(CROWD.read_text("utf-8").splitlines(keepends=True))
-    worlds = [World.start(Home.from_graph(catalog.load_graph(name), name)) for name in catalog.names()]
+    worlds = [
+        World.start(Home.from_graph(catalog.load_graph(name, default()), name, default())) for name in catalog.names()
+    ]
     found: list[tuple[World, Program]] = []
     for row in rows:
         with suppress(HearthError):

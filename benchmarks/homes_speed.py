@@ -18,6 +18,7 @@ from measuring import Figure, finish, parser, passes, rate, runs, seconds, stall
 
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
+from hearth.kb.loading import default
 from hearth.pipelines.library import Homes
 from hearth.pipelines.rehearsal import Script, scripts
 from hearth.pipelines.settings import Settings
@@ -38,7 +39,7 @@ def loading() -> Figure:
         catalog._layout.cache_clear()
         catalog._scene.cache_clear()
         for name in catalog.names():
-            catalog.load_graph(name)
+            catalog.load_graph(name, default())
 
     names = catalog.names()
     taken = [s / len(names) for s in runs(load, 3)]
@@ -49,15 +50,17 @@ def loading() -> Figure:
 def drawing_up(count: int = 21) -> Figure:
     """Homes of 3 to 9 rooms in turn drawn up in a second, their graphs included."""
 
-    taken = passes(lambda seed: scene(generate(3 + seed % 7, seed)), range(count))
+    taken = passes(lambda seed: scene(generate(3 + seed % 7, seed, default()), default()), range(count))
     ratio = plain.written_home().ratio(count, taken)
     return rate("procedural homes drawn up, with their graphs", count, taken, "homes/s", 20.0, ratio)
 
 
 def laying_out(homes: Path) -> Figure:
     """A graph's layout, over the graphs of a folder."""
-    graphs = [(path.stem, catalog.graph_of(path)) for path in sorted(homes.glob("*.json"))]
-    taken = [s for name, graph in graphs for s in runs(lambda name=name, graph=graph: lay_out(graph, name), 1)]
+    graphs = [(path.stem, catalog.graph_of(path, default())) for path in sorted(homes.glob("*.json"))]
+    taken = [
+        s for name, graph in graphs for s in runs(lambda name=name, graph=graph: lay_out(graph, name, default()), 1)
+    ]
     return seconds(f"a layout for one of {len(graphs)} scene graphs", taken, "s")
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
+from hearth.kb.loading import default
 from hearth.pipelines import judging
 from hearth.pipelines.dataset import Dataset
 from hearth.pipelines.rows import bindings_of, program_of
@@ -80,7 +81,7 @@ def figures(asked: Namespace) -> Iterator[Figure]:
 
 def yardsticks() -> tuple[plain.Yardstick, plain.Yardstick]:
     """Reading a graph from JSON, and counting relations in one."""
-    graphs = [plain.as_dicts(catalog.load_graph(name)) for name in catalog.names()]
+    graphs = [plain.as_dicts(catalog.load_graph(name, default())) for name in catalog.names()]
     return plain.read_graph(graphs), plain.counted_relations(graphs)
 
 

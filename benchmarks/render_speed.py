@@ -18,6 +18,7 @@ from pathlib import Path
 import plain
 from measuring import Figure, finish, parser, rate, seconds, tell
 
+from hearth.kb.loading import default
 from hearth.rendering import threads
 from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.figure import BODIES, figure_mesh
@@ -46,7 +47,7 @@ BALL = Model("toy", Look((0.12, 0.12, 0.12), kind="ball"))
 
 def scenes(graph: EnvironmentGraph, frames: int) -> Iterator[Scene]:
     """Somebody walks through the largest room; ten objects move with them."""
-    whole = scene_of(graph)
+    whole = scene_of(graph, default())
     still = Still(whole.things)
     (x, y, z), (w, h, d) = room_of(graph).box or home_box(graph)
     for number in range(frames):
@@ -169,7 +170,7 @@ def ready(graph: EnvironmentGraph) -> list[Figure]:
     began = time.process_time()
     warm()
     compiled = time.process_time()
-    part = Still(scene_of(graph).things).whole
+    part = Still(scene_of(graph, default()).things).whole
     _ = part.rows, part.caster, part.shadows
     done = time.process_time()
     return [
@@ -184,7 +185,7 @@ def main() -> None:
     known.add_argument("--home", default="maple")
     known.add_argument("--frames", type=int, default=10)
     asked = known.parse_args()
-    graph = catalog.load_graph(asked.home)
+    graph = catalog.load_graph(asked.home, default())
     figures = ready(graph)
     films = list(scenes(graph, asked.frames))
     corner = room_views(graph, *SIZE)[room_of(graph).id][0]

@@ -32,8 +32,8 @@ OPTIONS = {"release": (REPLAY, Options(doors=False, watch_needs_on=False)), "own
 
 def started(corpus: str) -> list[tuple[World, Any]]:
     if corpus == "release":
-        return [(World.start(Home.from_release(graph)), program) for graph, program in _release()]
-    return [(World.start(Home.from_graph(graph)), program) for graph, program in cases.own()]
+        return [(World.start(Home.from_release(graph, "", default())), program) for graph, program in _release()]
+    return [(World.start(Home.from_graph(graph, "", default())), program) for graph, program in cases.own()]
 
 
 def plain(corpus: str) -> list[tuple[PlainWorld, Any]]:
@@ -98,7 +98,7 @@ def test_steps_keeping_every_state_reference(benchmark, corpus):
 
 @pytest.mark.benchmark(group="making worlds")
 def test_world_from_known_home(benchmark):
-    home = Home.from_graph(cases.own()[0][0])
+    home = Home.from_graph(cases.own()[0][0], "", default())
     note(benchmark, "world", against="test_world_reference")
     benchmark(World.start, home)
 
@@ -112,7 +112,7 @@ def test_world_reference(benchmark):
 
 @pytest.mark.benchmark(group="making worlds")
 def test_environment_of_twenty_more_things(benchmark):
-    home = Home.from_graph(cases.own()[0][0])
+    home = Home.from_graph(cases.own()[0][0], "", default())
     room, place = (home.ids[mask.bit_length() - 1] for mask in (home.rooms, home.properties["SURFACES"]))
     nodes = [Node(2000 + i, "cup", "Props", ("GRABBABLE", "RECIPIENT"), ("CLEAN",)) for i in range(20)]
     edges = [Edge(n.id, r, t) for n in nodes for r, t in (("INSIDE", room), ("ON", place), ("CLOSE", place))]
@@ -127,7 +127,7 @@ def test_parse_and_build_release_graph(benchmark):
     data = orjson.dumps(graph)
     benchmark.extra_info["size"] = f"{len(graph['nodes'])} nodes, {len(graph['edges'])} edges, {len(data)} bytes"
     note(benchmark, "home", against="test_parse_and_build_reference")
-    benchmark(lambda: World.start(Home.from_release(orjson.loads(data))))
+    benchmark(lambda: World.start(Home.from_release(orjson.loads(data), "", default())))
 
 
 @pytest.mark.benchmark(group="making worlds")
@@ -221,7 +221,7 @@ SIZES = [300, 3_000, 30_000]
 @pytest.mark.benchmark(group="steps in homes of any size")
 def test_steps_in_large_homes(benchmark, things):
     graph = cases.large(things)
-    world, program = World.start(Home.from_graph(graph)), cases.errands(graph)
+    world, program = World.start(Home.from_graph(graph, "", default())), cases.errands(graph)
     assert isinstance(final(world, program), World)
     note(benchmark, "step", len(program.steps), "test_steps_in_large_homes[300]" if things > 300 else "")
     benchmark.pedantic(lambda: final(world, program), rounds=20, iterations=3, warmup_rounds=1)

@@ -35,7 +35,7 @@ def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> No
     """
     from hearth.simulation.homes import catalog
 
-    rows = [{"home": name, **_figures(catalog.load_graph(name, homes))} for name in catalog.names(homes)]
+    rows = [{"home": name, **_figures(_graph(name, homes))} for name in catalog.names(homes)]
     if as_json:
         output.emit({"homes": rows})
         return
@@ -98,12 +98,13 @@ def lint(
       python cli.py home lint TrimmedTestScene1_graph.json
       python cli.py home lint TrimmedTestScene1_graph.json --layout
     """
+    from hearth.kb.loading import default
     from hearth.simulation.homes import catalog
     from hearth.simulation.homes.lint import lint as check
 
     graph = _graph(home, homes)
-    faults = check(graph, file=home if Path(home).suffix else "")
-    laid = catalog.laid_out(home, homes) if layout else None
+    faults = check(graph, default(), file=home if Path(home).suffix else "")
+    laid = catalog.laid_out(home, default(), homes) if layout else None
     if as_json:
         told = {"home": home, "faults": faults, "by_code": _codes(faults)}
         output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
@@ -155,13 +156,14 @@ def convert(
       python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
       python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
+    from hearth.kb.loading import default
     from hearth.simulation.homes import catalog, exporting
 
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(catalog.laid_out(home, homes).graph if layout else graph, out)
+        written = exporting.write_release(catalog.laid_out(home, default(), homes).graph if layout else graph, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -181,14 +183,15 @@ def generate(
     Example:
       python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
+    from hearth.kb.loading import default
     from hearth.simulation.homes import exporting
     from hearth.simulation.homes.generate import generate as draw_up
     from hearth.simulation.homes.scene import scene
 
-    layout = draw_up(rooms, seed)
+    layout = draw_up(rooms, seed, default())
     if out is not None:
-        exporting.write(layout, out)
-    figures = _figures(scene(layout))
+        exporting.write(layout, out, default())
+    figures = _figures(scene(layout, default()))
     names = ", ".join(room.name for room in layout.plan.rooms)
     text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
     output.say(text, {"home": layout.plan.name, "seed": seed, **figures, "file": out}, as_json)
@@ -241,17 +244,20 @@ def stats(
       python cli.py home stats --homes release_homes
       python cli.py home stats --generated 1000
     """
+    from hearth.kb.loading import default
     from hearth.simulation.homes import catalog
     from hearth.simulation.homes.generate import generate as draw_up
     from hearth.simulation.homes.scene import scene
     from hearth.simulation.homes.statistics import beside, of_homes
 
-    ours = catalog.names()
+    known, ours = default(), catalog.names()
     theirs = [name for name in catalog.names(homes) if name not in ours] if homes else []
     groups = {
-        "ours": of_homes(catalog.load_graph(name) for name in ours),
-        "generated": of_homes(scene(draw_up(3 + k % 7, k)) for k in range(seed, seed + generated)),
-        "theirs": of_homes(catalog.load_graph(name, homes) for name in theirs),
+        "ours": of_homes((_graph(name, None) for name in ours), known),
+        "generated": of_homes(
+            (scene(draw_up(3 + k % 7, k, known), known) for k in range(seed, seed + generated)), known
+        ),
+        "theirs": of_homes((_graph(name, homes) for name in theirs), known),
     }
     found = {name: figures for name, figures in groups.items() if figures}
     for figures in found.values():
@@ -266,15 +272,17 @@ def stats(
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
+    from hearth.kb.loading import default
     from hearth.simulation.homes import catalog
 
-    return catalog.graph_of(home) if Path(home).suffix else catalog.load_graph(home, homes)
+    return catalog.graph_of(home, default()) if Path(home).suffix else catalog.load_graph(home, default(), homes)
 
 
 def _layout(home: str, homes: Path | None) -> Any:
+    from hearth.kb.loading import default
     from hearth.simulation.homes import catalog
 
-    return catalog.layout_of(home) if Path(home).suffix else catalog.load_layout(home, homes)
+    return catalog.layout_of(home, default()) if Path(home).suffix else catalog.load_layout(home, default(), homes)
 
 
 def _figures(graph: EnvironmentGraph) -> dict[str, Any]:

@@ -64,5 +64,5 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     from hearth.simulation.homes import catalog
 
     if graph is not None:
-        return Home.from_graph(catalog.graph_of(graph), graph.stem, known)
-    return Home.from_graph(catalog.load_graph(name, homes), name, known)
+        return Home.from_graph(catalog.graph_of(graph, known), graph.stem, known)
+    return Home.from_graph(catalog.load_graph(name, known, homes), name, known)

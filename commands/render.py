@@ -12,6 +12,7 @@ from hearth.commands import inputs, options, output
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from hearth.kb.knowledge import Knowledge
     from hearth.rendering.snapshots import Snapshot
     from hearth.rendering.visibility import Looked
     from hearth.schemas.graph import EnvironmentGraph
@@ -75,18 +76,20 @@ def program(
       python cli.py render-program watch_tv.txt --home maple --out pictures
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
     """
+    from hearth.kb.loading import default
     from hearth.rendering.laid import laid
     from hearth.simulation.homes import catalog
 
-    execution = _execution(file, home, homes, seed)
-    place = laid(catalog.load_graph(home, homes), home)
+    known = default()
+    execution = _execution(file, home, homes, seed, known)
+    place = laid(catalog.load_graph(home, known, homes), home, known)
     graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
     taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
     if mode == "video":
-        told = _videos(execution, graph, out, _split(cameras), taken, fps)
+        told = _videos(execution, graph, known, out, _split(cameras), taken, fps)
     else:
-        told = _snapshots(execution, graph, out, "fine" if fine else "draft", taken, _split(modalities))
+        told = _snapshots(execution, graph, known, out, "fine" if fine else "draft", taken, _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
         said = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
@@ -119,14 +122,20 @@ def _split(names: str) -> list[str]:
 
 
 def _snapshots(
-    execution: Execution, graph: EnvironmentGraph, out: Path, quality: str, taken: Taken, modalities: list[str]
+    execution: Execution,
+    graph: EnvironmentGraph,
+    known: Knowledge,
+    out: Path,
+    quality: str,
+    taken: Taken,
+    modalities: list[str],
 ) -> dict[str, Any]:
     from hearth.rendering.contact import caption
     from hearth.rendering.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
     how = {"size": taken.size, "quality": quality, "seed": taken.seed, "hour": taken.hour}
-    for shot in snapshots(execution, graph, modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
+    for shot in snapshots(execution, graph, known, modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
         files += _write(out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
@@ -137,7 +146,13 @@ def _snapshots(
 
 
 def _videos(
-    execution: Execution, graph: EnvironmentGraph, out: Path, names: list[str], taken: Taken, fps: float
+    execution: Execution,
+    graph: EnvironmentGraph,
+    known: Knowledge,
+    out: Path,
+    names: list[str],
+    taken: Taken,
+    fps: float,
 ) -> dict[str, Any]:
     import orjson
 
@@ -148,7 +163,7 @@ def _videos(
     from hearth.rendering.video import record
 
     variation = drawn(taken.seed, taken.title) if taken.vary else None
-    staged = play(execution, graph, seed=taken.seed, hour=taken.hour, variation=variation)
+    staged = play(execution, graph, known, seed=taken.seed, hour=taken.hour, variation=variation)
     videos, frames, pages = [], [], []
     for name in names:
         done = record(staged, graph, out, name, size=taken.size, fps=fps)
@@ -244,22 +259,21 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
     rng(seed, "visible", "").shuffle(read)
     for number, program in enumerate(read):
         name = names[number % len(names)]
-        graph = catalog.load_graph(name)
+        graph = catalog.load_graph(name, known)
         trial = attempt(program, Home.from_graph(graph, name, known), seed)
         if isinstance(trial, Failure) or not trial.execution.executable:
             continue
-        yield trial.execution, list(looks(play(trial.execution, graph, seed=seed), graph))
+        yield trial.execution, list(looks(play(trial.execution, graph, known, seed=seed), graph))
         count -= 1
         if not count:
             return
 
 
-def _execution(file: Path, home: str, homes: Path | None, seed: int) -> Execution:
+def _execution(file: Path, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.trial import attempt
     from hearth.schemas.errors import HearthError
     from hearth.schemas.failures import Failure
 
-    known = inputs.read_knowledge(None)
     trial = attempt(inputs.read_program(file, known), inputs.read_home(home, None, homes, known), seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, trial.message(), file=str(file))

@@ -100,7 +100,7 @@ def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[Stanc
 
     if place.name not in catalog.names(homes) or place.node(place.agents[0]).box is None:
         return ()
-    return stances(trial.execution, Ways(catalog.load_layout(place.name, homes).floor))
+    return stances(trial.execution, Ways(catalog.load_layout(place.name, place.knowledge, homes).floor))
 
 
 def _stance(stance: Stance) -> str:

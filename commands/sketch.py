@@ -66,7 +66,7 @@ def _homes(folder: Path | None, known: Knowledge) -> list[Home]:
     from hearth.simulation.homes import catalog
 
     names = catalog.names(folder)[:ENVIRONMENTS]
-    return [Home.from_graph(catalog.load_graph(name, folder), name, known) for name in names]
+    return [Home.from_graph(catalog.load_graph(name, known, folder), name, known) for name in names]
 
 
 def _show(programs: list[Script], places: list[Home], known: Knowledge, seed: int, as_json: bool) -> None:

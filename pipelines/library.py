@@ -32,7 +32,7 @@ class Homes:
         from hearth.simulation.homes import catalog
 
         for name in self._settings.homes:
-            catalog.load_graph(name, self._settings.homes_folder)
+            catalog.load_graph(name, self.knowledge, self._settings.homes_folder)
         return self._settings.homes or catalog.names(self._settings.homes_folder)
 
     def catalog(self) -> tuple[str, ...]:
@@ -64,9 +64,8 @@ class Homes:
         from hearth.simulation.homes import catalog
 
         if self.in_catalog(name):
-            return prepared(
-                Home.from_graph(catalog.load_graph(name, self._settings.homes_folder), name, self.knowledge)
-            ).home
+            graph = catalog.load_graph(name, self.knowledge, self._settings.homes_folder)
+            return prepared(Home.from_graph(graph, name, self.knowledge)).home
         return Home.from_graph(self._derived(name), name, self.knowledge)
 
     def _derived(self, name: str) -> EnvironmentGraph:

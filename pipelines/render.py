@@ -49,7 +49,7 @@ class Context(NamedTuple):
         from hearth.simulation.homes import catalog
 
         if name not in self.laid:
-            graph = catalog.load_graph(name, self.job.settings.homes_folder)
+            graph = catalog.load_graph(name, self.homes.knowledge, self.job.settings.homes_folder)
             self.laid[name] = laid(graph, name, self.homes.knowledge)
         return self.laid[name]
 
@@ -65,7 +65,7 @@ def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow 
     folder = _folder(case["execution_id"])
     if case["execution_id"] in job.plan["films"]:
         yield "videos", _film(case, execution, place, context)
-    for shot in snapshots(execution, home, knowledge=context.homes.knowledge):
+    for shot in snapshots(execution, home, context.homes.knowledge):
         for modality, picture in shot.pictures.items():
             name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
             path = job.folder / name
@@ -88,7 +88,7 @@ def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) ->
     folder = f"{FILMS}/{_folder(name)}"
     (job.folder / folder).mkdir(parents=True, exist_ok=True)
     variation = drawn(job.settings.seed, name)
-    staged = play(execution, home, knowledge=context.homes.knowledge, variation=variation)
+    staged = play(execution, home, context.homes.knowledge, variation=variation)
     done = record(staged, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".webm",))
     return {
         "execution_id": name,

@@ -7,7 +7,6 @@ from typing import Any
 from numpy.typing import NDArray
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.rendering.acting import Actor, cast, posed
 from hearth.rendering.camera import Camera, follow, top_view
 from hearth.rendering.modalities import render
@@ -24,7 +23,7 @@ from hearth.simulation.world import World
 
 
 class Eyes:
-    """Pictures of an episode. Give them to an environment: `env.eyes = Eyes(home)`.
+    """Pictures of an episode. Give them to an environment: `env.eyes = Eyes(home, knowledge)`.
 
     They follow what happens from the moment they first look: people stand where their steps have brought them, and
     things lie where they were put.
@@ -45,17 +44,17 @@ class Eyes:
     def __init__(
         self,
         home: EnvironmentGraph,
+        knowledge: Knowledge,
         *,
         seed: int = 0,
         hour: float = 10.0,
         size: tuple[int, int] = (320, 240),
         view: str = FIRST,
         quality: str = "draft",
-        knowledge: Knowledge | None = None,
     ) -> None:
         check_geometry(home)
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
-        self.prepared = stage(home, seed=seed, hour=hour, knowledge=knowledge or default())
+        self.prepared = stage(home, knowledge, seed=seed, hour=hour)
         self.ground = ground_of(self.prepared)
         self.places = Places.start(home, self.prepared.knowledge)
         self.actors: tuple[Actor, ...] = ()

@@ -31,7 +31,7 @@ class Laid(NamedTuple):
         return f"{home} has no geometry: rooms and furniture were laid out by its relations; {few}."
 
 
-def laid(graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None = None) -> Laid:
+def laid(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Laid:
     """A home's graph as it is if it has geometry, else laid out: the same graph always in the same way.
 
     Raises:

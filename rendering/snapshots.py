@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.rendering.acting import Actor, carried, cast, moved, posed
 from hearth.rendering.camera import Camera, top_view
 from hearth.rendering.geometry import Still
@@ -94,24 +93,24 @@ class Snapshot:
 def moments(
     execution: Execution,
     home: EnvironmentGraph,
+    knowledge: Knowledge,
     *,
     seed: int = 0,
     hour: float = 10.0,
-    knowledge: Knowledge | None = None,
 ) -> Iterator[Moment]:
     """The scene at the start and after each tick of an execution.
 
     Args:
         execution: a recorded run; what its environment adds to the home, or has moved, is placed by its relations.
         home: the home's graph as it was built, with boxes.
+        knowledge: what is known of its classes.
         seed: decides bodies, colours and designs.
         hour: of the day.
-        knowledge: Hearth's own by default.
 
     Raises:
         HearthError: the home has no geometry.
     """
-    yield from play(execution, home, seed=seed, hour=hour, knowledge=knowledge).moments
+    yield from play(execution, home, knowledge, seed=seed, hour=hour).moments
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,17 +133,17 @@ class Play:
 def play(
     execution: Execution,
     home: EnvironmentGraph,
+    knowledge: Knowledge,
     *,
     seed: int = 0,
     hour: float = 10.0,
-    knowledge: Knowledge | None = None,
     variation: Variation | None = None,
 ) -> Play:
     """All moments of an execution at once; see `moments`. A `variation` comes in place of seed and hour."""
     check_geometry(home)
     how = variation or replace(PLAIN, seed=seed, hour=hour)
     placed = scattered(home, how)
-    prepared = stage(placed, seed=how.seed, hour=how.hour, knowledge=knowledge or default())
+    prepared = stage(placed, knowledge, seed=how.seed, hour=how.hour)
     found = list(_played(execution, placed, prepared, how))
     still = Still(_still([moment.scene for moment in found]))
     kept = frozenset(still.things)
@@ -231,6 +230,7 @@ def scene_at(prepared: Stage, places: Places, actors: tuple[Actor, ...]) -> Scen
 def snapshots(
     execution: Execution,
     home: EnvironmentGraph,
+    knowledge: Knowledge,
     cameras: Sequence[Camera | str] = (TOP, AUTO),
     modalities: Iterable[str] = ("rgb", "instance_ids"),
     *,
@@ -238,12 +238,11 @@ def snapshots(
     quality: str = "draft",
     seed: int = 0,
     hour: float = 10.0,
-    knowledge: Knowledge | None = None,
 ) -> Iterator[Snapshot]:
     """Pictures of every moment of an execution by every camera.
 
     Args:
-        execution, home, seed, hour, knowledge: as of `moments`.
+        execution, home, knowledge, seed, hour: as of `moments`.
         cameras: cameras that stay; `top` is a bird's eye over the home, `auto` the camera of the character's room
             that sees best what the step names.
         modalities, quality: as of `modalities.render`; `flow` leads to the next tick, and `graph` is the scene graph.
@@ -260,7 +259,7 @@ def snapshots(
     above = top_view(home_box(home), TOP, *size)
     last: dict[Camera | str, Camera] = {}
     takes: dict[Camera | str, Take] = {}
-    found = play(execution, home, seed=seed, hour=hour, knowledge=knowledge).moments
+    found = play(execution, home, knowledge, seed=seed, hour=hour).moments
     for moment, later in zip(found, (*found[1:], found[-1]), strict=True):
         named = named_nodes(moment.steps, rooms)
         for choice in cameras:

@@ -8,7 +8,6 @@ from functools import cached_property
 from math import cos, radians, sin
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.rendering.figure import Figure
 from hearth.rendering.lights import SPILL, Daylight, Light, daylight, lamp, window
 from hearth.rendering.meshes.catalog import RECIPES
@@ -242,23 +241,21 @@ class Stage:
         return Box((x, leaf.center[1] - 0.025, z), size)
 
 
-def stage(graph: EnvironmentGraph, *, seed: int = 0, hour: float = 10.0, knowledge: Knowledge | None = None) -> Stage:
+def stage(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Stage:
     """A graph prepared for rendering."""
-    return Stage(graph, knowledge or default(), seed, hour)
+    return Stage(graph, knowledge, seed, hour)
 
 
-def scene_of(
-    graph: EnvironmentGraph, *, seed: int = 0, hour: float = 10.0, knowledge: Knowledge | None = None
-) -> Scene:
+def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Scene:
     """The scene of a graph as it is. Nodes without a box are not drawn.
 
     Args:
         graph: with boxes, yaws and states.
+        knowledge: for hypernyms.
         seed: decides colours and variants.
         hour: of the day, 0 to 24.
-        knowledge: for hypernyms; Hearth's own by default.
     """
-    return stage(graph, seed=seed, hour=hour, knowledge=knowledge).scene()
+    return stage(graph, knowledge, seed=seed, hour=hour).scene()
 
 
 def local_size(size: Size, yaw: float) -> Size:

@@ -54,9 +54,9 @@ def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
 
 @lru_cache(maxsize=32)
 def _from_file(path: Path, knowledge: Knowledge) -> World:
-    return World.start(Home.from_graph(graph_of(path), path.stem, knowledge))
+    return World.start(Home.from_graph(graph_of(path, knowledge), path.stem, knowledge))
 
 
 @lru_cache(maxsize=32)
 def _from_home(name: str, homes: Path | None, knowledge: Knowledge) -> World:
-    return World.start(Home.from_graph(load_graph(name, homes), name, knowledge))
+    return World.start(Home.from_graph(load_graph(name, knowledge, homes), name, knowledge))

@@ -9,7 +9,7 @@ from typing import Any, overload
 from hearth.schemas.change import Change
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
@@ -60,7 +60,7 @@ class Env:
         self.ticks: list[Tick] = []
         self._deeds: dict[int, Deed] = {}
 
-    def reset(self, home: Home | EnvironmentGraph | World, agents: int = 1, seed: int = 0) -> dict[int, View]:
+    def reset(self, home: Home | World, agents: int = 1, seed: int = 0) -> dict[int, View]:
         """Begin anew.
 
         Args:
@@ -71,8 +71,6 @@ class Env:
         Returns:
             What each agent sees.
         """
-        if isinstance(home, EnvironmentGraph):
-            home = Home.from_graph(home)
         self.restore(with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed))
         return {number: self.observe(number) for number in range(len(self.world.agents))}
 
@@ -106,7 +104,7 @@ class Env:
         self._check(agent)
         if modalities:
             if self.eyes is None:
-                remedy = "env.eyes = hearth.rendering.eyes.Eyes(home)"
+                remedy = "env.eyes = hearth.rendering.eyes.Eyes(graph, knowledge)"
                 raise HearthError.of(Code.NOT_RENDERED, "the environment has no eyes", suggestion=remedy)
             return self.eyes(self, agent, modalities)
         return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))

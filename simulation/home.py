@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, read_node
 from hearth.simulation import building
 from hearth.simulation.affordance import allowed
@@ -58,11 +57,11 @@ class Home:
         self,
         nodes: Iterable[Mapping[str, Any]] | Iterable[Node],
         edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw],
-        name: str = "",
-        knowledge: Knowledge | None = None,
+        name: str,
+        knowledge: Knowledge,
     ) -> None:
         self.name = name
-        self.knowledge = knowledge or default()
+        self.knowledge = knowledge
         self.restated = self.absent = 0
         self.base: tuple[Home, int] | None = None
         read = building.read_nodes(nodes)
@@ -76,7 +75,7 @@ class Home:
         self.direct_room = Memo(self._direct_room)
 
     @classmethod
-    def from_release(cls, data: Mapping[str, Any], name: str = "", knowledge: Knowledge | None = None) -> Home:
+    def from_release(cls, data: Mapping[str, Any], name: str, knowledge: Knowledge) -> Home:
         """A home straight from the release's JSON, without an `EnvironmentGraph` between.
 
         Raises:
@@ -89,7 +88,7 @@ class Home:
         return cls(nodes, edges, name, knowledge)
 
     @classmethod
-    def from_graph(cls, graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None = None) -> Home:
+    def from_graph(cls, graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Home:
         """A home from a graph.
 
         Raises:

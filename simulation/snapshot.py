@@ -32,7 +32,7 @@ def export(world: World) -> dict[str, Any]:
     return {"home": world.home.name, "graph": to_release(world.graph()), "memories": memories}
 
 
-def restore(data: Mapping[str, Any], knowledge: Knowledge | None = None) -> World:
+def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
     """The world that was exported; a plain scene graph under `graph` will do.
 
     Raises:

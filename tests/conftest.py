@@ -37,7 +37,7 @@ def knowledge():
 
 @pytest.fixture(scope="session")
 def maple(knowledge):
-    return Home.from_graph(catalog.load_graph("maple"), "maple", knowledge)
+    return Home.from_graph(catalog.load_graph("maple", default()), "maple", knowledge)
 
 
 @pytest.fixture(scope="session")

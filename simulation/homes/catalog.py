@@ -9,6 +9,7 @@ from functools import lru_cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
@@ -31,50 +32,50 @@ def names(directory: Path | str | None = None) -> tuple[str, ...]:
     return tuple(sorted(_files(directory)))
 
 
-def load_graph(name: str, directory: Path | str | None = None) -> EnvironmentGraph:
+def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> EnvironmentGraph:
     """A home's scene graph; built once a process.
 
     Raises:
         HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
     """
     path = _file(name, directory)
-    return _graph(path) if path.suffix == ".json" else _scene(path)
+    return _graph(path) if path.suffix == ".json" else _scene(path, knowledge)
 
 
-def load_layout(name: str, directory: Path | str | None = None) -> Layout:
+def load_layout(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> Layout:
     """A home's plan with everything in its place; a scene graph is laid out by its relations.
 
     Raises:
         HearthError: UNKNOWN_HOME; every fault of its plan; or NO_ROOM: a graph without rooms.
     """
-    return layout_of(_file(name, directory))
+    return layout_of(_file(name, directory), knowledge)
 
 
-def layout_of(path: Path | str) -> Layout:
+def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
     """A plan file with everything in its place, or a graph laid out; errors as of `load_layout`."""
     found = Path(path)
     if found.suffix != ".json":
-        return _layout(found)
+        return _layout(found, knowledge)
     graph = _graph(found)
-    return measured(graph, found.stem) if has_geometry(graph) else laid_out(found).layout
+    return measured(graph, found.stem, knowledge) if has_geometry(graph) else laid_out(found, knowledge).layout
 
 
-def laid_out(home: Path | str, directory: Path | str | None = None) -> LaidOut:
+def laid_out(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> LaidOut:
     """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and what of them that
     does not show; errors as of `load_graph`.
     """
-    return _laid_out(Path(home) if Path(home).suffix else _file(str(home), directory))
+    return _laid_out(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
 
 
 @lru_cache(maxsize=16)
-def _laid_out(path: Path) -> LaidOut:
-    return lay_out(graph_of(path), path.stem)
+def _laid_out(path: Path, knowledge: Knowledge) -> LaidOut:
+    return lay_out(graph_of(path, knowledge), path.stem, knowledge)
 
 
-def graph_of(path: Path | str) -> EnvironmentGraph:
+def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
     """The scene graph of a plan file, or of a JSON file in the release's layout; errors as of `load_graph`."""
     found = Path(path)
-    return _graph(found) if found.suffix == ".json" else _scene(found)
+    return _graph(found) if found.suffix == ".json" else _scene(found, knowledge)
 
 
 def _file(name: str, directory: Path | str | None) -> Path:
@@ -108,8 +109,8 @@ def _in(folder: Path) -> dict[str, Path]:
 
 
 @lru_cache(maxsize=64)
-def _scene(path: Path) -> EnvironmentGraph:
-    return scene(_layout(path))
+def _scene(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
+    return scene(_layout(path, knowledge), knowledge)
 
 
 @lru_cache(maxsize=64)
@@ -128,13 +129,13 @@ def _graph(path: Path) -> EnvironmentGraph:
 
 
 @lru_cache(maxsize=64)
-def _layout(path: Path) -> Layout:
+def _layout(path: Path, knowledge: Knowledge) -> Layout:
     from dataclasses import replace
 
     text = decode(_bytes(path), str(path))
     if not isinstance(text, str):
         raise HearthError(text)
-    layout = read(text, str(path))
+    layout = read(text, str(path), knowledge)
     return replace(layout, plan=replace(layout.plan, ids=_ids(path.with_name(path.stem + IDS))))
 
 

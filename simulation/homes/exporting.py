@@ -7,6 +7,7 @@ import io
 from dataclasses import replace
 from pathlib import Path
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
@@ -16,7 +17,7 @@ from hearth.simulation.homes.scene import every_thing, node_ids, scene
 from hearth.simulation.homes.writing import plan_text
 
 
-def write(layout: Layout, path: Path) -> None:
+def write(layout: Layout, path: Path, knowledge: Knowledge) -> None:
     """Write a home as a plan, a scene graph or a drawing, by the file's ending.
 
     A plan is named after its file.
@@ -25,7 +26,7 @@ def write(layout: Layout, path: Path) -> None:
         HearthError: UNSUPPORTED_FILE for an ending other than .yaml, .json, .svg and .png.
     """
     if path.suffix == ".json":
-        write_release(scene(layout), path)
+        write_release(scene(layout, knowledge), path)
     elif path.suffix == ".yaml":
         path.write_text(plan_text(replace(layout.plan, name=path.stem)), encoding="utf-8")
     else:

@@ -6,7 +6,6 @@ from dataclasses import replace
 from random import Random
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
@@ -23,7 +22,7 @@ ROOM_TRIES = 4
 """Times a room is furnished before its floor plan is given up."""
 
 
-def generate(rooms: int, seed: int, knowledge: Knowledge | None = None) -> Layout:
+def generate(rooms: int, seed: int, knowledge: Knowledge) -> Layout:
     """A home of so many rooms, furnished; the same for the same arguments.
 
     Args:
@@ -37,7 +36,6 @@ def generate(rooms: int, seed: int, knowledge: Knowledge | None = None) -> Layou
         raise HearthError.of(
             Code.NO_PLACE, f"a home of {rooms} rooms", suggestion=f"from {LEAST_ROOMS} to {MOST_ROOMS} rooms"
         )
-    knowledge = knowledge or default()
     for attempt in range(TRIES):
         layout = _attempt(f"home_{rooms}_{seed}", rooms, knowledge, rng(seed, "home", rooms, attempt))
         if layout is not None:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from math import sqrt
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
@@ -53,13 +52,12 @@ class LaidOut:
     unmet: tuple[Diagnostic, ...]
 
 
-def lay_out(graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None = None) -> LaidOut:
+def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> LaidOut:
     """Give a graph plausible geometry; the same graph always gets the same.
 
     Raises:
         HearthError: NO_ROOM: it has no room.
     """
-    knowledge = knowledge or default()
     parts = Parts(graph, knowledge)
     if not parts.rooms:
         raise HearthError.of(Code.NO_ROOM, "there is no room to lay out", file=name,

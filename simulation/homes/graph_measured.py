@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation.homes.forms import form
@@ -23,9 +22,8 @@ def has_geometry(graph: EnvironmentGraph) -> bool:
     return bool(rooms) and all(room.box is not None for room in rooms)
 
 
-def measured(graph: EnvironmentGraph, name: str = "", knowledge: Knowledge | None = None) -> Layout:
+def measured(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Layout:
     """The layout that a graph's boxes describe; things are called by their ids."""
-    knowledge = knowledge or default()
     boxes = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY and node.box is not None}
     names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes if node.id in boxes}
     inside: dict[int, str] = {}

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.graph import Box
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -59,13 +58,12 @@ class Layout:
             yield Thing(room.name, room.class_name, room.name, box, None, "room", line=room.line)
 
 
-def read(text: str, file: str = "", knowledge: Knowledge | None = None) -> Layout:
+def read(text: str, file: str, knowledge: Knowledge) -> Layout:
     """A plan's text with everything in its place.
 
     Raises:
         HearthError: every fault of the plan, each naming the thing, the file, the line and what would mend it.
     """
-    knowledge = knowledge or default()
     faults = Faults(file)
     plan = read_plan(text, file, knowledge, faults)
     checks.check_rooms(plan, faults)

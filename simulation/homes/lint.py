@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TypeVar
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
@@ -71,9 +70,9 @@ class View:
         return self.targets["INSIDE"].get(node_id, [])
 
 
-def lint(graph: EnvironmentGraph, knowledge: Knowledge | None = None, file: str = "") -> tuple[Diagnostic, ...]:
+def lint(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> tuple[Diagnostic, ...]:
     """Every fault of a graph, in the order of `CHECKS`; empty when it is sound. Node ids stand in `found`."""
-    view = View(graph, knowledge or default())
+    view = View(graph, knowledge)
     return tuple(fault.at(file) for check in CHECKS.values() for fault in check(view))
 
 

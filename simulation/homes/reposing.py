@@ -47,7 +47,7 @@ def posed(graph: EnvironmentGraph, places: Mapping[int, tuple[str, int]], knowle
         if place.box is None:
             continue
         now = EnvironmentGraph(tuple(nodes.values()), graph.edges, graph.extra)
-        box, yaw = _place(measured(now, knowledge=knowledge), nodes[node_id], relation, place, graph, knowledge)
+        box, yaw = _place(measured(now, "", knowledge), nodes[node_id], relation, place, graph, knowledge)
         nodes[node_id] = replace(nodes[node_id], box=box, yaw=yaw)
         for other, moved in _carried(before, graph, node_id, box):
             if other not in places:

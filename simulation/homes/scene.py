@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
@@ -15,13 +14,12 @@ from hearth.simulation.homes.relations import edges
 from hearth.simulation.homes.shell import Thing
 
 
-def scene(layout: Layout, knowledge: Knowledge | None = None) -> EnvironmentGraph:
+def scene(layout: Layout, knowledge: Knowledge) -> EnvironmentGraph:
     """The home's graph, nodes in the order of their ids, in its default states (semantics: preparing an environment).
 
     Raises:
         HearthError: more things than ids below `FIRST_ADDED_ID`.
     """
-    knowledge = knowledge or default()
     things = every_thing(layout)
     ids = node_ids((thing.name for thing in things), layout.plan.ids, layout.plan.file)
     lookable = frozenset(name for name, known in knowledge.objects.items() if "LOOKABLE" in known.properties)

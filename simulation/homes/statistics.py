@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from statistics import fmean, median
 from typing import Any
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import EnvironmentGraph, edge_set
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.homes.lint import lint
@@ -40,7 +41,7 @@ def lacking(graph: EnvironmentGraph) -> tuple[str, ...]:
     return tuple(name for name, choices in REQUIRED.items() if not any(map(has, choices)))
 
 
-def of_home(graph: EnvironmentGraph) -> dict[str, Any]:
+def of_home(graph: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
     """One home's figures: counts, `degrees` of all nodes, `areas` of its rooms in square metres where known."""
     edges = edge_set(graph.edges)
     degrees: Counter[int] = Counter()
@@ -57,14 +58,14 @@ def of_home(graph: EnvironmentGraph) -> dict[str, Any]:
         "relations": Counter(relation for _, relation, _ in edges),
         "degrees": [degrees[node.id] for node in graph.nodes],
         "areas": [room.box.size[0] * room.box.size[2] for room in rooms if room.box is not None],
-        "sound": not lint(graph),
+        "sound": not lint(graph, knowledge),
         "lacks": lacking(graph),
     }
 
 
-def of_homes(graphs: Iterable[EnvironmentGraph]) -> dict[str, Any]:
+def of_homes(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> dict[str, Any]:
     """A collection's figures, each the mean over its homes unless its name says otherwise; empty for no homes."""
-    homes = [of_home(graph) for graph in graphs]
+    homes = [of_home(graph, knowledge) for graph in graphs]
     if not homes:
         return {}
 

@@ -35,7 +35,7 @@ def small_world(text: str) -> World:
         if words:
             nodes.append(_node(int(words[0]), words[1], [word for word in words[2:] if word in STATE_ID]))
             edges.extend(_edges(int(words[0]), [word for word in words[2:] if word not in STATE_ID]))
-    return World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "small"))
+    return World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "small", default()))
 
 
 def _node(number: int, name: str, states: list[str]) -> Node:

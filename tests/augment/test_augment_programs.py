@@ -41,7 +41,7 @@ def programs():
 
 @cache
 def home(name: str) -> Home:
-    return Home.from_graph(catalog.load_graph(name), name)
+    return Home.from_graph(catalog.load_graph(name, default()), name, default())
 
 
 @given(st.integers(0, 10_000), st.integers(0, 3), st.sampled_from(["maple", "birch"]))
@@ -140,7 +140,7 @@ def test_nearly_all_pairs_of_the_release_are_repaired(number, real_data):
     import zipfile
 
     graph = json.loads((real_data / f"homes/TrimmedTestScene{number}_graph.json").read_bytes())
-    place = Home.from_release(graph, f"home{number}")
+    place = Home.from_release(graph, f"home{number}", default())
     found = []
     with zipfile.ZipFile(real_data / "activityprograms-sample.zip") as release:
         names = sorted(name for name in release.namelist() if "withoutconds" in name and name.endswith(".txt"))

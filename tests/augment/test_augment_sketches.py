@@ -14,7 +14,7 @@ from hearth.simulation.homes import catalog
 
 @pytest.fixture(scope="module")
 def homes():
-    return [Home.from_graph(catalog.load_graph(name), name, default()) for name in catalog.names()[:2]]
+    return [Home.from_graph(catalog.load_graph(name, default()), name, default()) for name in catalog.names()[:2]]
 
 
 def program_of(title, description, *steps):
@@ -84,7 +84,7 @@ def test_people_agree_more_than_with_the_baselines(real_data):
     known = default()
     found = scripts([str(real_data / "activityprograms-sample.zip")], known)
     programs = [one for one in found if not isinstance(one, Reject)]
-    places = [Home.from_graph(catalog.load_graph(name), name, known) for name in catalog.names()[:3]]
+    places = [Home.from_graph(catalog.load_graph(name, default()), name, known) for name in catalog.names()[:3]]
     told = judge(annotated(real_data / "sketch_annotation.json", "s", programs, known), places, known).summary()
     assert told["programs"] >= 111
     assert told["inferred"]["f1"] > max(0.86, told["keeping_what_people_usually_keep"]["f1"])

@@ -3,6 +3,7 @@
 import pytest
 
 from hearth.grounding.for_goals import sample_for_goal
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
@@ -26,7 +27,7 @@ def test_a_goal_can_be_reached_and_is_not(maple, name, seed):
     goal = GOALS[name]
     environment, progress = sample_for_goal(goal, maple, seed)
     assert not progress.satisfied
-    assert lint(environment.world.graph()) == ()
+    assert lint(environment.world.graph(), default()) == ()
     classes = [node.class_name for node in environment.world.graph().nodes]
     for predicate, wanted in goal:
         counted = predicate.target if predicate.subject == "agent" else predicate.subject

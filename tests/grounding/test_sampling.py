@@ -11,7 +11,7 @@ from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
 from hearth.grounding.soundness import unsound
 from hearth.kb import grammar
-from hearth.kb.loading import load
+from hearth.kb.loading import default, load
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import Literal
@@ -141,7 +141,7 @@ def test_what_is_sampled_is_a_sound_graph(breakfast, maple):
     for seed in range(3):
         environment, _ = sample(breakfast, maple, seed)
         assert unsound(environment.world) is None
-        assert lint(environment.world.graph()) == ()
+        assert lint(environment.world.graph(), default()) == ()
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, co
     changed = extended(home, (), added, (), {node[name]: now for name, now in states.items()})
     fault = unsound(World.start(changed))
     assert (fault and fault.code) == code
-    assert bool(lint(World.start(changed).graph())) == (code is not None)
+    assert bool(lint(World.start(changed).graph(), default())) == (code is not None)
 
 
 def test_a_room_that_the_home_lacks_is_named(knowledge):
@@ -184,7 +184,7 @@ def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):
         "9900,zither,Props,instrument,GRABBABLE,,,0.6 0.1 0.3,strings on a box,,ours\n"
     )
     known = load(overlay=tmp_path)
-    home = Home.from_graph(catalog.load_graph("maple"), "maple", known)
+    home = Home.from_graph(catalog.load_graph("maple", default()), "maple", known)
     failure = sample(read("Zither\nFind it.\n\n\n[Walk] <zither> (1)\n", known), home, 0)
     assert (failure.code, failure.names) == (Code.NO_PLACE, ("zither",))
     assert "placements.csv" in failure.expected

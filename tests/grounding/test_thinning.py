@@ -6,6 +6,7 @@ import pytest
 from hearth.grounding.base import prepared
 from hearth.grounding.preconditions import infer
 from hearth.grounding.sampling import Size, sample
+from hearth.kb.loading import default
 from hearth.pipelines.cases import environment_of, home_of
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import CASE
@@ -28,7 +29,7 @@ A cup of it.
 
 @pytest.fixture(scope="module")
 def willow(knowledge):
-    return Home.from_graph(catalog.load_graph("willow"), "willow", knowledge)
+    return Home.from_graph(catalog.load_graph("willow", default()), "willow", knowledge)
 
 
 @pytest.mark.parametrize("name", ["maple", "willow"])
@@ -38,7 +39,7 @@ def test_a_home_that_is_too_large_is_thinned(name, maple, willow, knowledge):
     for seed in range(3):
         environment, execution = sample(program, home, seed, size=Size.about(290))
         assert 275 <= len(environment.world.home) <= 305
-        assert execution.executable and lint(environment.world.graph()) == ()
+        assert execution.executable and lint(environment.world.graph(), default()) == ()
         assert infer(program, knowledge)
 
 
@@ -51,7 +52,7 @@ def test_furniture_stays_and_what_there_is_most_of_goes_first(maple):
     classes = {thin.home.classes[i] for i in range(len(thin.home))}
     assert {node.class_name for node in gone} <= classes, "a class is gone while others were there twice"
     assert base.thinned(330) is thin and base.thinned(len(base.home)) is base
-    assert lint(World.start(thin.home).graph()) == ()
+    assert lint(World.start(thin.home).graph(), default()) == ()
 
 
 def test_what_was_left_out_is_stored_and_read_again(maple):

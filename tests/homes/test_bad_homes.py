@@ -2,6 +2,7 @@
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.homes.layout import read
@@ -11,7 +12,7 @@ KITCHEN = "home: x\nrooms:\n- name: kitchen\n  at: [0, 0]\n  size: [4, 4]\n"
 
 def faults(text):
     with pytest.raises(HearthError) as caught:
-        read(text, "x.yaml")
+        read(text, "x.yaml", default())
     return caught.value.diagnostics
 
 

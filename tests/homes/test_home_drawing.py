@@ -4,12 +4,13 @@ import xml.etree.ElementTree as Xml
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.simulation.homes import catalog, plan_drawing
 
 
 def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
-    layout = catalog.load_layout("maple")
+    layout = catalog.load_layout("maple", default())
     plan_drawing.write(layout, tmp_path / "plan.svg")
     root = Xml.parse(tmp_path / "plan.svg").getroot()
     texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
@@ -22,13 +23,13 @@ def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
 
 
 def test_everything_drawn_lies_within_the_drawing():
-    layout = catalog.load_layout("willow")
+    layout = catalog.load_layout("willow", default())
     area = plan_drawing.bounds(layout)
     assert all(area.contains(shape.rect) for shape in plan_drawing.shapes(layout))
 
 
 def test_the_png_is_the_same_each_time(tmp_path):
-    layout = catalog.load_layout("maple")
+    layout = catalog.load_layout("maple", default())
     for name in ("one.png", "two.png"):
         plan_drawing.write(layout, tmp_path / name)
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
@@ -37,4 +38,4 @@ def test_the_png_is_the_same_each_time(tmp_path):
 
 def test_other_formats_are_refused(tmp_path):
     with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
-        plan_drawing.write(catalog.load_layout("maple"), tmp_path / "plan.gif")
+        plan_drawing.write(catalog.load_layout("maple", default()), tmp_path / "plan.gif")

@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.simulation.homes import catalog
@@ -41,7 +42,7 @@ def flat(*, extra=(), without=()):
 
 @pytest.fixture(scope="module")
 def laid():
-    return lay_out(flat(), "flat")
+    return lay_out(flat(), "flat", default())
 
 
 def reached(layout):
@@ -77,12 +78,12 @@ def test_furniture_is_in_its_room_and_out_of_each_other(laid):
 
 
 def test_the_same_graph_gets_the_same_layout(laid):
-    assert lay_out(flat(), "flat").graph == laid.graph
+    assert lay_out(flat(), "flat", default()).graph == laid.graph
 
 
 def test_what_cannot_be_had_is_named():
     graph = flat(extra=((40, "CLOSE", 20), (20, "CLOSE", 40), (32, "INSIDE", 30), (32, "ON", 22)))
-    found = lay_out(graph)
+    found = lay_out(graph, "", default())
     said = [fault.message for fault in found.unmet]
     assert "no place for table (32) in kitchen" in said
     assert any("CLOSE" in message and "toilet (40)" in message for message in said)
@@ -91,12 +92,12 @@ def test_what_cannot_be_had_is_named():
 
 def test_a_graph_without_rooms_is_refused():
     with pytest.raises(HearthError, match="no room to lay out"):
-        lay_out(flat(without=(1, 2, 3)))
+        lay_out(flat(without=(1, 2, 3)), "", default())
 
 
 def test_boxes_are_read_where_there_are_some(laid):
     assert has_geometry(laid.graph) and not has_geometry(flat())
-    again = measured(laid.graph, "flat")
+    again = measured(laid.graph, "flat", default())
     for one, other in zip(again.plan.rooms, laid.layout.plan.rooms, strict=True):
         assert one.rect == pytest.approx(other.rect, abs=1e-3)
     assert min(reached(again)) > 20
@@ -128,7 +129,7 @@ QUICK = (1, 4)
 
 @pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(1, 8)])
 def test_the_releases_homes_can_be_walked_in(real_data, number):
-    found = catalog.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json")
+    found = catalog.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
     assert min(reached(found.layout)) > 50
     assert [n for n in found.graph.nodes if n.box is None] == []
     said = {r: sum(e.relation == r for e in found.graph.edges) for r in ("ON", "INSIDE", "CLOSE", "FACING")}
@@ -144,7 +145,7 @@ def test_tiles_and_walls_are_where_what_is_on_them_is():
     panels = [(50 + k, "floor") for k in range(6)] + [(60 + k, "wall") for k in range(4)]
     graph = flat(extra=[(n, "INSIDE", 2) for n, _ in panels] + [(30, "ON", 53), (32, "ON", 50), (35, "ON", 62)])
     nodes = (*graph.nodes, *(Node(n, name, {"floor": "Floor", "wall": "Walls"}[name]) for n, name in panels))
-    found = lay_out(replace(graph, nodes=nodes), "flat")
+    found = lay_out(replace(graph, nodes=nodes), "flat", default())
     assert [fault.message for fault in found.unmet if ") ON " in fault.message] == []
     boxes = {node.id: node.box for node in found.graph.nodes}
     area = sum(box.size[0] * box.size[2] for n, box in boxes.items() if n in dict(panels[:6]))

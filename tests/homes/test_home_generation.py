@@ -2,6 +2,7 @@
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.simulation.homes import catalog
 from hearth.simulation.homes.generate import generate
@@ -19,8 +20,8 @@ def layout(request):
 
 
 def test_generated_homes_lint_clean_and_have_what_is_needed(layout):
-    graph = scene(layout)
-    assert lint(graph) == ()
+    graph = scene(layout, default())
+    assert lint(graph, default()) == ()
     classes = {node.class_name for node in graph.nodes}
     assert {"bed", "toilet", "sink", "light", "door", "character"} <= classes
     assert len(graph.nodes) > 40 * len(layout.plan.rooms)
@@ -30,8 +31,8 @@ def test_generated_homes_lint_clean_and_have_what_is_needed(layout):
 
 def test_a_generated_plan_reads_back_to_the_same_home(layout):
     # Reading applies every check of plans: walls, doors, clearances, reach.
-    again = read(plan_text(layout.plan))
-    assert scene(again) == scene(layout)
+    again = read(plan_text(layout.plan), "", default())
+    assert scene(again, default()) == scene(layout, default())
 
 
 def test_tables_are_laid_and_shelves_filled(layout):
@@ -44,7 +45,7 @@ def test_tables_are_laid_and_shelves_filled(layout):
 
 
 def test_the_seed_decides():
-    one, same, other = generate(4, 7), generate(4, 7), generate(4, 8)
+    one, same, other = generate(4, 7, default()), generate(4, 7, default()), generate(4, 8, default())
     assert one.things == same.things
     assert plan_text(one.plan) == plan_text(same.plan)
     assert one.things != other.things
@@ -53,13 +54,13 @@ def test_the_seed_decides():
 @pytest.mark.parametrize("rooms", [0, 2, 10])
 def test_other_numbers_of_rooms_are_refused(rooms):
     with pytest.raises(HearthError, match="from 3 to 9 rooms"):
-        generate(rooms, 0)
+        generate(rooms, 0, default())
 
 
 @pytest.mark.parametrize("name", ["maple", "larch"])
 def test_designed_plans_are_written_and_read_back_too(name):
-    layout = catalog.load_layout(name)
-    again = read(plan_text(layout.plan))
+    layout = catalog.load_layout(name, default())
+    again = read(plan_text(layout.plan), "", default())
     assert [(t.name, t.box, t.yaw, t.on, t.inside) for t in again.things] == [
         (t.name, t.box, t.yaw, t.on, t.inside) for t in layout.things
     ]
@@ -68,5 +69,5 @@ def test_designed_plans_are_written_and_read_back_too(name):
 @pytest.mark.slow
 def test_a_thousand_in_a_row_lint_clean():
     for seed in range(1000):
-        layout = generate(3 + seed % 7, seed)
-        assert lint(scene(layout)) == (), seed
+        layout = generate(3 + seed % 7, seed, default())
+        assert lint(scene(layout, default()), default()) == (), seed

@@ -10,6 +10,7 @@ from pathlib import Path
 import orjson
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.graph import edge_set, from_release, to_release
 from hearth.schemas.vocabulary import FIRST_ADDED_ID
 from hearth.simulation.homes import catalog, exporting, relations
@@ -24,16 +25,16 @@ RELEASE_DENSITY = 18.33
 
 @pytest.fixture(params=SEVEN)
 def graph(request):
-    return catalog.load_graph(request.param)
+    return catalog.load_graph(request.param, default())
 
 
 @pytest.fixture(scope="module")
 def hut():
-    return read((GOLDEN / "hut.yaml").read_text(), "hut.yaml")
+    return read((GOLDEN / "hut.yaml").read_text(), "hut.yaml", default())
 
 
 def named_edges(layout):
-    graph = scene(layout)
+    graph = scene(layout, default())
     names = {number: name for name, number in node_ids([t.name for t in every_thing(layout)], {}).items()}
     return {(names[e.source], e.relation, names[e.target]) for e in graph.edges}
 
@@ -88,8 +89,8 @@ def test_nothing_is_seen_through_a_closet():
     text = (GOLDEN / "hut.yaml").read_text()
     blocked = text.replace("- drawing: {above: couch}", "- bookshelf: {spot: [2.4, 1.4], facing: west, width: 1.2}")
     couch = ("living_room/couch.1", "FACING", "living_room/tvstand.1/television.1")
-    assert couch in named_edges(read(text))
-    assert couch not in named_edges(read(blocked))
+    assert couch in named_edges(read(text, "", default()))
+    assert couch not in named_edges(read(blocked, "", default()))
 
 
 def test_seats_face_what_is_watched_from_them(graph):
@@ -134,7 +135,7 @@ def test_one_character_stands_in_a_room_with_empty_hands(graph):
 
 
 def test_there_are_enough_things_and_as_many_relations_as_in_the_release():
-    graphs = [catalog.load_graph(name) for name in SEVEN]
+    graphs = [catalog.load_graph(name, default()) for name in SEVEN]
     assert sum(len(graph.nodes) for graph in graphs) / len(graphs) >= 350
     density = sum(len(graph.edges) / len(graph.nodes) for graph in graphs) / len(graphs)
     assert 0.8 * RELEASE_DENSITY <= density <= 1.2 * RELEASE_DENSITY
@@ -150,12 +151,12 @@ def test_the_release_is_as_dense_as_we_say(real_data):
 
 @pytest.mark.parametrize("name", SEVEN)
 def test_every_node_of_a_designed_home_has_a_fixed_id(name):
-    layout = catalog.load_layout(name)
+    layout = catalog.load_layout(name, default())
     things = [thing.name for thing in every_thing(layout)]
     assert len(set(things)) == len(things)
     assert set(things) == set(layout.plan.ids), "run `home convert NAME data_raw/homes/NAME.ids.csv`"
     assert max(layout.plan.ids.values()) < FIRST_ADDED_ID
-    graph = catalog.load_graph(name)
+    graph = catalog.load_graph(name, default())
     assert [node.id for node in graph.nodes] == sorted(layout.plan.ids.values())
 
 
@@ -163,14 +164,14 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
     path = tmp_path / "hut.yaml"
     text = (GOLDEN / "hut.yaml").read_text()
     path.write_text(text)
-    exporting.write_ids(catalog.layout_of(path), tmp_path / "hut.ids.csv")
-    before = catalog.graph_of(path)
+    exporting.write_ids(catalog.layout_of(path, default()), tmp_path / "hut.ids.csv")
+    before = catalog.graph_of(path, default())
     catalog._layout.cache_clear()
     catalog._scene.cache_clear()
     path.write_text(
         text.replace("furniture:\n      - couch", "furniture:\n      - plant: {corner: northwest}\n      - couch")
     )
-    after = catalog.graph_of(path)
+    after = catalog.graph_of(path, default())
     old = {node.id: node.class_name for node in before.nodes}
     new = {node.id: node.class_name for node in after.nodes}
     assert {number: new[number] for number in old} == old
@@ -179,7 +180,7 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
 
 
 def test_a_graph_goes_to_the_releases_layout_and_back_without_loss(tmp_path):
-    graph = catalog.load_graph("maple")
+    graph = catalog.load_graph("maple", default())
     exporting.write_release(graph, tmp_path / "copy.json")
     copy = catalog.load_graph("copy", tmp_path)
     assert copy == graph

@@ -23,11 +23,11 @@ ROOMS = {"bathroom", "bedroom", "dining_room", "entrance_hall", "home_office", "
 
 @pytest.fixture(params=SEVEN)
 def layout(request):
-    return catalog.load_layout(request.param)
+    return catalog.load_layout(request.param, default())
 
 
 def test_there_are_seven_homes_of_four_to_seven_rooms_that_differ():
-    plans = [catalog.load_layout(name).plan for name in SEVEN]
+    plans = [catalog.load_layout(name, default()).plan for name in SEVEN]
     assert set(SEVEN) <= set(HOMES)
     assert all(4 <= len(plan.rooms) <= 7 for plan in plans)
     assert {len(plan.rooms) for plan in plans} == {4, 5, 6, 7}
@@ -133,7 +133,7 @@ def test_whatever_is_put_anywhere_does_not_overlap_or_stick_out(where, items):
         f"  - {name}: {{wall: north, {key}: [{things}]}}\n"
     )
     try:
-        layout = read(text)
+        layout = read(text, "", default())
     except HearthError as error:
         assert all("no room left" in fault.message for fault in error.diagnostics)
         return

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.simulation.homes import catalog
@@ -78,7 +79,7 @@ ODD = {
 @pytest.mark.parametrize("odd", ODD)
 def test_each_oddity_is_found_once_with_its_nodes(odd):
     graph, code, ids = ODD[odd]
-    faults = lint(graph, file="odd.json")
+    faults = lint(graph, default(), file="odd.json")
     assert [(fault.code, fault.found, fault.file) for fault in faults] == [(code, ids, "odd.json")]
 
 
@@ -87,19 +88,19 @@ def test_a_room_without_doors_is_found():
         (*NODES, Node(9, "bedroom", "Rooms"), Node(10, "bathroom", "Rooms"), Node(11, "door", "Doors", (), ("OPEN",))),
         (*INSIDE, Edge(11, "INSIDE", ROOM), Edge(11, "BETWEEN", ROOM), Edge(11, "BETWEEN", 9)),
     )
-    (fault,) = lint(graph)
+    (fault,) = lint(graph, default())
     assert (fault.code, fault.found) == (Code.NO_PATH, "10")
 
 
 def test_sound_graphs_have_no_faults():
-    assert lint(SOUND) == ()
+    assert lint(SOUND, default()) == ()
     # A cup in a box in the fridge may say both.
-    assert lint(with_edges((CUP, "INSIDE", BOX), (CUP, "INSIDE", FRIDGE), (BOX, "INSIDE", FRIDGE))) == ()
+    assert lint(with_edges((CUP, "INSIDE", BOX), (CUP, "INSIDE", FRIDGE), (BOX, "INSIDE", FRIDGE)), default()) == ()
 
 
 @pytest.mark.parametrize("name", catalog.names())
 def test_our_homes_lint_clean(name):
-    assert lint(catalog.load_graph(name)) == ()
+    assert lint(catalog.load_graph(name, default()), default()) == ()
 
 
 def test_every_check_is_tried():
@@ -108,13 +109,12 @@ def test_every_check_is_tried():
 
 
 def view_of(graph):
-    from hearth.kb.loading import default
     from hearth.simulation.homes.lint import View
 
     return View(graph, default())
 
 
 def test_the_releases_homes_have_the_faults_they_are_known_for(real_data):
-    faults = lint(catalog.load_graph("TrimmedTestScene1_graph", real_data / "homes"))
+    faults = lint(catalog.load_graph("TrimmedTestScene1_graph", default(), real_data / "homes"), default())
     assert {fault.code for fault in faults} == {Code.CONDITION_UNMET, Code.LOOP}
     assert any("curtain (23) INSIDE curtain (24)" in fault.message for fault in faults)

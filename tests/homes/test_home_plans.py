@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.homes.layout import read
@@ -13,7 +14,7 @@ GOLDEN = Path(__file__).parents[1] / "golden" / "homes"
 
 def faults_of(text):
     with pytest.raises(HearthError) as caught:
-        read(text, "plan.yaml")
+        read(text, "plan.yaml", default())
     return caught.value.diagnostics
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from hearth.grounding.base import prepared
 from hearth.grounding.sampling import sample
+from hearth.kb.loading import default
 from hearth.pipelines.cases import difference_of, difference_on_replay, environment_of, home_of, run_row
 from hearth.pipelines.library import Homes
 from hearth.pipelines.rows import failure_of, failure_row, node_of, node_row, step_rows, steps_of
@@ -82,7 +83,7 @@ def test_nodes_that_are_gone_or_other_than_at_home(homes):
     nodes = [node for node in graph.nodes if node.id != 21]
     nodes[nodes.index(graph.node(22))] = Node(22, "bowl", "Props", ("GRABBABLE",), ("CLEAN",))
     edges = tuple(edge for edge in graph.edges if 21 not in (edge.source, edge.target))
-    other = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), edges), "cabin"))
+    other = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), edges), "cabin", default()))
     row = difference_of(other, home, homes.edges("cabin"))
     assert row["removed_nodes"] == [21, 22]
     assert World.start(home_of(as_read(row), home)).graph().edges == other.graph().edges

@@ -5,11 +5,13 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering.eyes import Eyes
 from hearth.schemas.errors import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.env import Env
+from hearth.simulation.home import Home
 
 HOME = EnvironmentGraph(
     (
@@ -26,7 +28,7 @@ CUP = ObjectRef("cup", 1, 4)
 @pytest.fixture
 def env():
     found = Env(partial=False)
-    found.reset(HOME)
+    found.reset(Home.from_graph(HOME, "", default()))
     return found
 
 
@@ -36,7 +38,7 @@ def test_who_has_no_eyes_is_told_where_to_get_them(env):
 
 
 def test_pictures_follow_what_is_done(env):
-    env.eyes = Eyes(HOME, size=(64, 48))
+    env.eyes = Eyes(HOME, default(), size=(64, 48))
     before = env.observe(0, "rgb", "instance_ids")
     assert before["rgb"].shape == (48, 64, 3)
     assert env.observe(0).agent == 0
@@ -51,7 +53,7 @@ def test_pictures_follow_what_is_done(env):
 
 
 def test_a_new_beginning_is_seen(env):
-    env.eyes = Eyes(HOME, size=(32, 24), view="third")
+    env.eyes = Eyes(HOME, default(), size=(32, 24), view="third")
     start, first = env.world, env.observe(0, "rgb")["rgb"]
     env.step({0: Step("Walk", (CUP,))})
     assert not np.array_equal(env.observe(0, "rgb")["rgb"], first)

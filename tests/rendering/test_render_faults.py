@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip("open3d", exc_type=ImportError)
 
+from hearth.kb.loading import default
 from hearth.rendering.camera import look_at
 from hearth.rendering.laid import laid
 from hearth.rendering.variation import PLAIN, drawn, scattered
@@ -107,11 +108,11 @@ def test_a_home_without_geometry_is_laid_out_and_said():
         (Node(9, "kitchen", "Rooms"), *(replace(node, box=None) for node in HOME.nodes)),
         (*HOME.edges, *(Edge(node.id, "INSIDE", 9) for node in HOME.nodes)),
     )
-    found = laid(bare, "bare")
+    found = laid(bare, "bare", default())
     assert found.made
     assert [node.id for node in found.graph.nodes] == [node.id for node in bare.nodes]
     assert all(node.box for node in found.graph.nodes)
     assert "bare has no geometry" in found.note("bare")
-    again = laid(found.graph)
+    again = laid(found.graph, "", default())
     assert again.graph is found.graph, "what has geometry keeps its own"
     assert not again.note("bare")

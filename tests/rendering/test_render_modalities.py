@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering import png
 from hearth.rendering.camera import look_at, top_view
 from hearth.rendering.meshes.look import Look
@@ -88,8 +89,8 @@ MILK = Node(3, "milk", "Food", box=Box((0.0, 1.3, -1.6), (0.09, 0.24, 0.09)), ya
 
 def test_what_is_in_a_closed_fridge_is_seen_once_it_is_open():
     camera = plain((0.5, 1.5, 0.8), (0, 1.2, -1.6))
-    closed = render(scene_of(room(fridge("CLOSED"), MILK)), camera, ("instance_ids",))["instance_ids"]
-    opened = render(scene_of(room(fridge("OPEN"), MILK)), camera, ("instance_ids",))["instance_ids"]
+    closed = render(scene_of(room(fridge("CLOSED"), MILK), default()), camera, ("instance_ids",))["instance_ids"]
+    opened = render(scene_of(room(fridge("OPEN"), MILK), default()), camera, ("instance_ids",))["instance_ids"]
     assert (closed == 2).sum() > 50
     assert (closed == 3).sum() == 0
     assert (opened == 3).sum() > 3
@@ -98,7 +99,9 @@ def test_what_is_in_a_closed_fridge_is_seen_once_it_is_open():
 def test_a_lamp_that_is_switched_on_brightens_its_room():
     def brightness(*states):
         lamp = Node(4, "ceilinglamp", "Lamps", states=states, box=Box((0, 2.5, 0), (0.4, 0.2, 0.4)), yaw=0.0)
-        picture = render(scene_of(room(lamp), hour=23.0), plain((1.5, 1.5, 1.5), (-1, 0.3, -1)), ("rgb",))["rgb"]
+        picture = render(scene_of(room(lamp), default(), hour=23.0), plain((1.5, 1.5, 1.5), (-1, 0.3, -1)), ("rgb",))[
+            "rgb"
+        ]
         return picture.mean()
 
     assert brightness("ON") > brightness("OFF") * 1.3
@@ -108,7 +111,7 @@ def test_a_view_from_above_looks_into_rooms_with_ceilings():
     table = Node(5, "table", "Furniture", box=Box((0, 0.37, 0), (1.4, 0.74, 0.8)), yaw=0.0)
     graph = room(table)
     camera = top_view(graph.node(1).box, width=W, height=H)
-    seen = render(scene_of(graph), camera, ("instance_ids", "depth"))
+    seen = render(scene_of(graph, default()), camera, ("instance_ids", "depth"))
     assert seen["instance_ids"][H // 2, W // 2] == 5
     eye = camera.eye[1]
     assert abs(int(seen["depth"][H // 2, W // 2]) - (eye - 0.74) * 1000) < 15
@@ -117,7 +120,9 @@ def test_a_view_from_above_looks_into_rooms_with_ceilings():
 @pytest.mark.parametrize("quality", ["draft", "fine"])
 def test_the_same_scene_gives_the_same_bytes(quality):
     camera = plain((1.5, 1.5, 1.5), (-1, 0.3, -1), 48, 36)
-    first, second = (render(scene_of(room(fridge("OPEN"), MILK)), camera, quality=quality)["rgb"] for _ in range(2))
+    first, second = (
+        render(scene_of(room(fridge("OPEN"), MILK), default()), camera, quality=quality)["rgb"] for _ in range(2)
+    )
     assert png.encode(first) == png.encode(second)
     assert 20 < first.mean() < 240
     assert (first == 255).mean() < 0.02

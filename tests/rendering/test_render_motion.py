@@ -9,6 +9,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering.motion import frames, spans
 from hearth.rendering.player import page
 from hearth.rendering.routes import path, ways_of
@@ -49,9 +50,9 @@ def staged():
     program, faults = parse_program(PROGRAM.replace("[Sit]", "[Walk] <chair> (1)\n[Sit]"))
     assert not faults
     bound = program.bound({("cup", 1): CUP, ("table", 1): TABLE, ("chair", 1): CHAIR})
-    done = run(World.start(Home.from_graph(HOME)), bound)
+    done = run(World.start(Home.from_graph(HOME, "", default())), bound)
     assert done.executable, done.failure
-    return play(done, HOME)
+    return play(done, HOME, default())
 
 
 @pytest.fixture(scope="module")

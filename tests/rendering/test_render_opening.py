@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering.meshes.catalog import RECIPES
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.motion import OPENING, frames, spans, swinging
@@ -41,9 +42,9 @@ HOME = EnvironmentGraph(
 @pytest.fixture(scope="module")
 def staged():
     text = "Look\nFor milk\n\n\n[Walk] <fridge> (1)\n[Open] <fridge> (1)\n[Close] <fridge> (1)\n"
-    done = run(World.start(Home.from_graph(HOME)), parse_program(text)[0].bound({("fridge", 1): FRIDGE}))
+    done = run(World.start(Home.from_graph(HOME, "", default())), parse_program(text)[0].bound({("fridge", 1): FRIDGE}))
     assert done.executable, done.failure
-    return play(done, HOME)
+    return play(done, HOME, default())
 
 
 def test_a_fridge_opens_and_closes_bit_by_bit_after_the_hand_arrives(staged):
@@ -78,7 +79,7 @@ def test_what_is_ajar_lies_between_closed_and_open(name):
 def test_a_door_turns_about_its_hinge():
     leaf = node(DOOR, "door", "Doors", (2.05, 1.0, 0.45), (0.04, 2.0, 0.9), yaw=90.0, states=("OPEN",))
     jamb = node(JAMB, "doorjamb", "Doors", (2.5, 1.03, 0.0), (1.0, 2.05, 0.1))
-    prepared = stage(EnvironmentGraph((HOME.nodes[0], leaf, jamb), (Edge(DOOR, "INSIDE", ROOM),)))
+    prepared = stage(EnvironmentGraph((HOME.nodes[0], leaf, jamb), (Edge(DOOR, "INSIDE", ROOM),)), default())
     ways = []
     for share in (0.25, 0.5, 0.75, 1.0):
         (thing,) = prepared.things(leaf, share)

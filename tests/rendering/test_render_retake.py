@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering.camera import look_at, top_view
 from hearth.rendering.figure import BODIES, Figure
 from hearth.rendering.geometry import Still
@@ -36,7 +37,7 @@ STILL = {}
 @pytest.fixture(scope="module")
 def still():
     graph = EnvironmentGraph(NODES, tuple(Edge(node.id, "INSIDE", 1) for node in NODES[1:]))
-    return scene_of(graph, hour=11.0)
+    return scene_of(graph, default(), hour=11.0)
 
 
 def moment(still, *moving, lights=None):

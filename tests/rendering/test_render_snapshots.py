@@ -50,7 +50,7 @@ def execution(graph):
     program, faults = parse_program(PROGRAM)
     assert not faults
     bound = program.bound({("cup", 1): CUP, ("table", 1): TABLE, ("chair", 1): CHAIR})
-    done = run(World.start(Home.from_graph(graph)), bound)
+    done = run(World.start(Home.from_graph(graph, "", default())), bound)
     assert done.executable, done.failure
     return done
 
@@ -58,7 +58,7 @@ def execution(graph):
 @pytest.fixture(scope="module")
 def filmed():
     graph = flat()
-    return list(moments(execution(graph), graph))
+    return list(moments(execution(graph), graph, default()))
 
 
 def box_of(moment, node_id):
@@ -127,7 +127,7 @@ def test_new_things_find_places_in_and_on_others():
 
 def test_pictures_by_two_cameras_show_person_and_cup():
     graph = flat()
-    taken = list(snapshots(execution(graph), graph, size=(80, 60)))
+    taken = list(snapshots(execution(graph), graph, default(), size=(80, 60)))
     assert len(taken) == 14
     assert {shot.camera.name for shot in taken[::2]} == {"top"}
     for shot in taken:
@@ -145,4 +145,4 @@ def test_a_home_without_geometry_is_told():
     nodes = tuple(Node(n.id, n.class_name, n.category, n.properties) for n in flat().nodes)
     graph = EnvironmentGraph(nodes, flat().edges)
     with pytest.raises(HearthError, match="geometry"):
-        next(iter(snapshots(execution(graph), graph)))
+        next(iter(snapshots(execution(graph), graph, default())))

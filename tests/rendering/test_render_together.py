@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip("open3d")
 
+from hearth.kb.loading import default
 from hearth.rendering.motion import frames, spans
 from hearth.rendering.snapshots import play
 from hearth.rendering.video import Director, agent_of
@@ -43,9 +44,9 @@ IDS = {("chair", 1): CHAIR, ("cabinet", 1): BOX, ("cup", 1): CUP}
 
 def staged_of(text, home=HOME):
     program = parse_program("Both\nAt once\n\n\n" + text)[0].bound(IDS)
-    done = run(World.start(Home.from_graph(home)), program)
+    done = run(World.start(Home.from_graph(home, "", default())), program)
     assert done.executable, done.failure
-    return play(done, home)
+    return play(done, home, default())
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@ import zipfile
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.failures import Code
 from hearth.scoring.executability import ErrorClass, executability
 from hearth.scoring.reading import read
@@ -107,5 +108,5 @@ def test_the_releases_own_programs_are_executable(real_data):
         names = [name for name in archive.namelist() if "/executable_programs/" in name and name.endswith(".txt")]
         for name in names[::20]:
             graphs = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
-            start = World.start(Home.from_release(json.loads(archive.read(graphs))["init_graph"]))
+            start = World.start(Home.from_release(json.loads(archive.read(graphs))["init_graph"], "", default()))
             assert executability(read(archive.read(name).decode()), start, rules=REPLAY).executable, name

@@ -59,7 +59,7 @@ def home() -> Home:
             edges.append(Edge(IDS[name], relation, IDS[other]))
             if relation == "CLOSE":
                 edges.append(Edge(IDS[other], relation, IDS[name]))
-    return Home.from_graph(EnvironmentGraph(tuple(NODES.values()), tuple(edges)))
+    return Home.from_graph(EnvironmentGraph(tuple(NODES.values()), tuple(edges)), "", default())
 
 
 def step(text: str):

@@ -5,6 +5,7 @@ import random
 import pytest
 from small_worlds import bound_step, node, random_graph, random_step
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -31,7 +32,7 @@ def kitchen() -> Home:
         Edge(4, "CLOSE", 5), Edge(3, "CLOSE", 4), Edge(4, "CLOSE", 3), Edge(4, "FACING", 6), Edge(6, "INSIDE", 2),
         Edge(7, "BETWEEN", 1), Edge(7, "BETWEEN", 2), Edge(5, "MADE_BY", 6),
     )  # fmt: skip
-    return Home.from_graph(EnvironmentGraph(nodes, edges), "kitchen")
+    return Home.from_graph(EnvironmentGraph(nodes, edges), "kitchen", default())
 
 
 ADDED = (
@@ -68,7 +69,7 @@ def test_an_extended_home_is_the_home_of_the_extended_graph():
     before = World.start(home).graph()
     new = extended(home, ADDED, EDGES, REMOVED, NEW_STATES)
     assert World.start(new).graph() == by_hand(home)
-    fresh = Home.from_graph(by_hand(home))
+    fresh = Home.from_graph(by_hand(home), "", default())
     for name in ("ids", "classes", "by_class", "properties", "rooms", "states", "agents", "agent_rows", "index"):
         assert getattr(new, name) == getattr(fresh, name), name
     assert new.rows == fresh.rows
@@ -82,7 +83,7 @@ def test_changes_between_a_home_and_one_derived_from_it_rebuild_the_graph():
     home = kitchen()
     start = World.start(home)
     after = World.start(extended(home, ADDED, EDGES, REMOVED, NEW_STATES))
-    again = World.start(Home.from_graph(by_hand(home)))
+    again = World.start(Home.from_graph(by_hand(home), "", default()))
     change = after.changes(start)
     assert change == again.changes(start)
     edges = (set(start.edges()) | set(change.added)) - set(change.removed)
@@ -97,7 +98,7 @@ def test_changes_between_a_home_and_one_derived_from_it_rebuild_the_graph():
 def test_ids_below_the_homes_own_are_put_in_order():
     home = extended(kitchen(), [node(2000, "bowl")])
     new = extended(home, ADDED[:1], EDGES[:4], [Edge(5, "ON", 4)], {5: ["DIRTY"]})
-    fresh = Home.from_graph(World.start(new).graph())
+    fresh = Home.from_graph(World.start(new).graph(), "", default())
     assert new.ids == [1, 2, 3, 4, 5, 6, 7, 1000, 2000]
     assert new.rows == fresh.rows
     assert new.states == fresh.states
@@ -125,7 +126,7 @@ def mid_execution(seed: int) -> World:
     """A world some steps after the start of a random home, with its memories."""
     rng = random.Random(seed)
     graph = random_graph(rng, characters=1 + seed % 2)
-    world = World.start(Home.from_graph(graph))
+    world = World.start(Home.from_graph(graph, "", default()))
     for _ in range(30):
         result = act(world, random_step(rng, graph, rng.randrange(len(world.agents))), DEFAULT)
         world = world if isinstance(result, Failure) else result
@@ -171,7 +172,7 @@ def test_an_edited_world_goes_on_like_one_built_from_its_graph(seed):
     place = next(n.id for n in world.graph().nodes if n.category in ("Props", "Furniture"))
     victim = max(i for i in world.home.ids if i not in (room, place) and i not in ids_of_agents(world))
     edited = edit(world, add=[new], remove=[victim], place={1000: ("ON", place)}, check=False)
-    fresh = World.start(Home.from_graph(edited.graph()))
+    fresh = World.start(Home.from_graph(edited.graph(), "", default()))
     assert edited.graph() == fresh.graph()
     rng = random.Random(seed)
     for _ in range(30):
@@ -253,7 +254,7 @@ def test_what_does_not_fit_is_said_and_can_be_forced(code, change):
 def test_a_seat_bears_no_more_than_its_limit():
     nodes = [node(1, "kitchen"), node(2, "chair"), node(3, "character")]
     pillows = [node(10 + i, "pillow") for i in range(3)]
-    home = Home.from_graph(EnvironmentGraph((*nodes, *pillows), (Edge(3, "INSIDE", 1),)))
+    home = Home.from_graph(EnvironmentGraph((*nodes, *pillows), (Edge(3, "INSIDE", 1),)), "", default())
     one = edit(World.start(home), place={10: ("ON", 2)})
     assert isinstance(one, World)
     assert edit(one, place={11: ("ON", 2)}).code == "OCCUPIED"

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from small_worlds import bound_step, node
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph
@@ -47,7 +48,7 @@ def do(action: str, *ids: int, agent: int = 0):
 
 def both_in_the_kitchen(*before) -> World:
     """Two characters there, after some steps."""
-    world = with_agents(World.start(Home.from_graph(GRAPH)), 2)
+    world = with_agents(World.start(Home.from_graph(GRAPH, "", default())), 2)
     for step in (do("Walk", KITCHEN, agent=1), *before):
         world = act(world, step)
         assert isinstance(world, World), (step, world)
@@ -144,7 +145,7 @@ def test_who_walks_to_another_arrives_where_that_one_has_gone():
 
 def test_one_seat_two_sitters():
     nodes = (*GRAPH.nodes, node(20, "chair"))
-    home = Home.from_graph(EnvironmentGraph(nodes, (*EDGES, Edge(20, "INSIDE", KITCHEN))))
+    home = Home.from_graph(EnvironmentGraph(nodes, (*EDGES, Edge(20, "INSIDE", KITCHEN))), "", default())
     world = with_agents(World.start(home), 2)
     chair = node(20, "chair")
     for agent in (0, 1):
@@ -165,16 +166,18 @@ def test_two_instructions_of_one_agent_in_one_tick_are_refused():
 
 def test_reset_adds_the_agents_a_home_lacks_and_the_seed_decides_their_rooms():
     env = Env()
-    views = env.reset(Home.from_graph(GRAPH), agents=3, seed=4)
+    views = env.reset(Home.from_graph(GRAPH, "", default()), agents=3, seed=4)
     assert sorted(views) == [0, 1, 2]
     rooms = [view.me.room for view in views.values()]
     assert rooms[0] == KITCHEN
-    again = Env().reset(GRAPH, agents=3, seed=4)
+    again = Env().reset(Home.from_graph(GRAPH, "", default()), agents=3, seed=4)
     assert [view.me.room for view in again.values()] == rooms
-    other = {seed: Env().reset(GRAPH, agents=3, seed=seed)[2].me.room for seed in range(8)}
+    other = {
+        seed: Env().reset(Home.from_graph(GRAPH, "", default()), agents=3, seed=seed)[2].me.room for seed in range(8)
+    }
     assert set(other.values()) == {KITCHEN, BEDROOM}
     with pytest.raises(HearthError, match="NO_ROOM"):
-        Env().reset(Home.from_graph(EnvironmentGraph((NODES[CUP],))), agents=1)
+        Env().reset(Home.from_graph(EnvironmentGraph((NODES[CUP],)), "", default()), agents=1)
     with pytest.raises(HearthError, match="UNKNOWN_AGENT"):
         env.observe(3)
 
@@ -189,7 +192,7 @@ def test_an_episode_goes_on_from_a_world_in_mid_execution():
 
 def test_an_agent_sees_its_room_but_not_what_is_shut_away():
     env = Env()
-    env.reset(GRAPH)
+    env.reset(Home.from_graph(GRAPH, "", default()))
     seen = env.observe(0)
     assert seen.ids == (KITCHEN, BEDROOM, A, FRIDGE, CUP, TABLE, DOOR)
     assert not seen.sees(SHELF)
@@ -231,7 +234,7 @@ def test_agents_see_how_the_others_stand_and_what_they_did():
 
 def test_a_step_says_what_changed_and_keeps_the_worlds():
     env = Env()
-    env.reset(GRAPH, agents=2)
+    env.reset(Home.from_graph(GRAPH, "", default()), agents=2)
     before, graph = env.world, env.world.graph()
     done = env.step({0: do("Walk", CUP), 1: do("Grab", CUP, agent=1)})
     assert codes(done.failures) == {1: Code.NOT_CLOSE}
@@ -246,7 +249,7 @@ def test_a_step_says_what_changed_and_keeps_the_worlds():
 
 def test_legal_follows_what_the_agent_sees_unless_told_otherwise():
     env = Env()
-    env.reset(GRAPH)
+    env.reset(Home.from_graph(GRAPH, "", default()))
     assert do("Walk", BED).objects[0].node not in env.legal(0).objects("Walk")
     assert BED in env.legal(0, only_visible=False).objects("Walk")
     assert BEDROOM in env.legal(0).objects("Walk")

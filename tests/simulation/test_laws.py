@@ -5,6 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from small_worlds import graphs, homes_and_steps
 
+from hearth.kb.loading import default
 from hearth.schemas.change import encode
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
@@ -21,7 +22,7 @@ law = settings(derandomize=True, deadline=None, max_examples=60)
 
 def reached(graph: EnvironmentGraph, steps) -> list[World]:
     """The worlds along a program of which what can't be done is left out."""
-    worlds = [World.start(Home.from_graph(graph))]
+    worlds = [World.start(Home.from_graph(graph, "", default()))]
     for step in steps:
         result = act(worlds[-1], step, DEFAULT)
         if isinstance(result, World):
@@ -74,7 +75,7 @@ def test_a_held_thing_is_in_one_room_and_nowhere_else_and_in_the_hands_of_one(ca
 @given(homes_and_steps(characters=2))
 def test_a_failed_step_changes_nothing_and_says_what_was_expected(case):
     graph, steps = case
-    world = World.start(Home.from_graph(graph))
+    world = World.start(Home.from_graph(graph, "", default()))
     for step in steps:
         before, key = world.graph(), world.key()
         result = act(world, step, DEFAULT)
@@ -92,7 +93,7 @@ def test_a_failed_step_changes_nothing_and_says_what_was_expected(case):
 @given(homes_and_steps())
 def test_replaying_the_changes_rebuilds_every_state(case):
     graph, steps = case
-    start = World.start(Home.from_graph(graph))
+    start = World.start(Home.from_graph(graph, "", default()))
     execution = run(start, Program(steps=tuple(steps)))
     edges, now, before = set(start.edges()), states(start), start
     for world, change in zip(execution.worlds[1:], execution.changes(), strict=True):
@@ -131,7 +132,7 @@ def test_a_world_in_mid_execution_goes_on_after_export_and_import_as_if_nothing_
     graph, steps = case
     half = len(steps) // 2
     world = reached(graph, steps[:half])[-1]
-    again = restore(export(world))
+    again = restore(export(world), default())
     assert again.graph() == world.graph()
     for step in steps[half:]:
         one, other = act(world, step, DEFAULT), act(again, step, DEFAULT)
@@ -146,7 +147,7 @@ def test_a_world_in_mid_execution_goes_on_after_export_and_import_as_if_nothing_
 @law
 @given(graphs)
 def test_a_home_shows_the_graph_it_was_made_of(graph):
-    shown = World.start(Home.from_graph(graph)).graph()
+    shown = World.start(Home.from_graph(graph, "", default())).graph()
     assert set(shown.edges) == set(graph.edges)
     assert [n.id for n in shown.nodes] == [n.id for n in graph.nodes]
     assert all(set(a.states) == set(b.states) for a, b in zip(shown.nodes, graph.nodes, strict=True))

@@ -5,6 +5,7 @@ import random
 import pytest
 from small_worlds import arity, bound_step, random_graph, random_step
 
+from hearth.kb.loading import default
 from hearth.schemas.failures import Failure
 from hearth.simulation import reach, rows
 from hearth.simulation.actions import (
@@ -29,7 +30,7 @@ from hearth.simulation.world import World
 def some_world(rng: random.Random, characters: int, rules) -> tuple[World, list]:
     """A world some steps after the start of a random home, and the home's nodes."""
     graph = random_graph(rng, characters=characters)
-    world = World.start(Home.from_graph(graph))
+    world = World.start(Home.from_graph(graph, "", default()))
     for _ in range(rng.randint(0, 40)):
         result = act(world, random_step(rng, graph, rng.randrange(characters)), rules)
         world = world if isinstance(result, Failure) else result

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import pytest
 
+from hearth.kb.loading import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.homes import catalog
@@ -15,7 +16,7 @@ from hearth.simulation.world import World
 
 @pytest.fixture(scope="module")
 def ways():
-    return Ways(catalog.load_layout("maple").floor)
+    return Ways(catalog.load_layout("maple", default()).floor)
 
 
 @pytest.fixture

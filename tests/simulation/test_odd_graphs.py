@@ -7,6 +7,7 @@ import random
 import pytest
 from small_worlds import bound_step, node, random_graph
 
+from hearth.kb.loading import default
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, to_release
@@ -23,7 +24,9 @@ BASE = (node(1, "kitchen"), node(2, "bedroom"), node(3, "character"), node(4, "c
 
 def world(*edges: tuple[int, str, int], nodes=BASE, way: str = "graph") -> World:
     graph = EnvironmentGraph(tuple(nodes), tuple(Edge(*e) for e in edges))
-    home = Home.from_graph(graph) if way == "graph" else Home.from_release(to_release(graph))
+    home = (
+        Home.from_graph(graph, "", default()) if way == "graph" else Home.from_release(to_release(graph), "", default())
+    )
     return World.start(home)
 
 
@@ -81,7 +84,7 @@ def test_missing_and_unknown_categories_properties_and_states_do_no_harm():
         ],
         "edges": [{"from_id": 2, "relation_type": "INSIDE", "to_id": 1}],
     }
-    w = World.start(Home.from_release(data))
+    w = World.start(Home.from_release(data, "", default()))
     shown = w.graph().node(2)
     assert (shown.category, shown.properties, shown.states) == ("Nonsense", ("SHINY",), ("FREE",))
     assert isinstance(do(w, "Walk", 2), World)
@@ -154,7 +157,7 @@ def test_without_rooms_nobody_can_walk():
 
 
 def test_a_home_of_nothing_is_a_home():
-    assert World.start(Home.from_graph(EnvironmentGraph())).graph() == EnvironmentGraph()
+    assert World.start(Home.from_graph(EnvironmentGraph(), "", default())).graph() == EnvironmentGraph()
 
 
 NODE = {"id": 1, "class_name": "kitchen", "category": "Rooms", "properties": [], "states": []}
@@ -184,13 +187,13 @@ BAD = {
 @pytest.mark.parametrize("data", BAD.values(), ids=BAD)
 def test_what_is_no_graph_is_refused_as_such(data):
     with pytest.raises(HearthError, match="BAD_GRAPH"):
-        Home.from_release(data)
+        Home.from_release(data, "", default())
 
 
 @pytest.mark.parametrize("end", ["1", 1.5, None, -7, 10**30])
 def test_an_edge_with_an_end_that_is_no_node_is_left_out(end):
     edge = {"from_id": end, "relation_type": "ON", "to_id": 1}
-    assert World.start(Home.from_release({"nodes": [NODE], "edges": [edge]})).edges() == []
+    assert World.start(Home.from_release({"nodes": [NODE], "edges": [edge]}, "", default())).edges() == []
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -200,9 +203,9 @@ def test_large_and_small_homes_are_read_alike(seed, monkeypatch):
     nodes = tuple(node(spread[n.id], n.class_name, n.category, n.properties, n.states) for n in graph.nodes)
     extra = (Edge(1, "HOLDS_LH", 1), Edge(1, "LIKES", spread[1]), Edge(spread[1], "LIKES", spread[1]))
     moved = tuple(Edge(spread[a], r, spread[b]) for a, r, b in graph.edges) + extra
-    small = Home.from_graph(EnvironmentGraph(nodes, moved))
+    small = Home.from_graph(EnvironmentGraph(nodes, moved), "", default())
     monkeypatch.setattr(building, "LARGEST_MATRIX", 0)
-    large = Home.from_graph(EnvironmentGraph(nodes, moved))
+    large = Home.from_graph(EnvironmentGraph(nodes, moved), "", default())
     assert small.rows == large.rows
     assert (small.agent_rows, small.others, small.states) == (large.agent_rows, large.others, large.states)
 
@@ -217,7 +220,7 @@ def test_nothing_odd_gets_through_to_the_actions(seed):
         Edge(rng.choice(ids), rng.choice(["ON", "INSIDE", "BETWEEN", "HOLDS_RH", "FACING", "CLOSE"]), rng.choice(ids))
         for _ in range(25)
     ]
-    w = World.start(Home.from_graph(EnvironmentGraph(graph.nodes, graph.edges + tuple(odd))))
+    w = World.start(Home.from_graph(EnvironmentGraph(graph.nodes, graph.edges + tuple(odd)), "", default()))
     for _ in range(150):
         action = rng.choice(sorted(ACTIONS))
         arity = len(w.home.knowledge.actions[action].needs)
@@ -225,5 +228,5 @@ def test_nothing_odd_gets_through_to_the_actions(seed):
         result = act(w, step, rng.choice((DEFAULT, REPLAY)))
         w = result if isinstance(result, World) else w
     assert w.changes(World.start(w.home)) is not None
-    assert w.graph() == World.start(Home.from_graph(w.graph())).graph()
+    assert w.graph() == World.start(Home.from_graph(w.graph(), "", default())).graph()
     assert all(len(legal(w, number)) >= 0 for number in range(len(w.agents)))

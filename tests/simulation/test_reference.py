@@ -10,6 +10,7 @@ from oracles.world import Options
 from oracles.world import World as PlainWorld
 from small_worlds import random_graph, random_step
 
+from hearth.kb.loading import default
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
 from hearth.simulation.home import Home
@@ -23,7 +24,7 @@ def agree(seed: int, steps: int = 30) -> int:
     graph = random_graph(rng)
     rules = rng.choice((DEFAULT, REPLAY))
     options = Options(rules.doors, rules.watch_needs_on)
-    world, plain = World.start(Home.from_graph(graph)), PlainWorld(graph, rules.origin == "release")
+    world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):
         instruction = random_step(rng, graph)

@@ -65,12 +65,12 @@ def test_where_a_thing_came_from_is_kept():
     for action in ("Walk", "Grab"):
         world = act(world, instruction(action, 4, 0))
     assert export(world)["memories"] == [{"agent": 2, "thing": 4, "place": 5, "relation": "ON"}]
-    back = act(restore(export(world)), instruction("PutObjBack", 4, 0))
+    back = act(restore(export(world), default()), instruction("PutObjBack", 4, 0))
     assert Edge(4, "ON", 5) in back.edges()
 
 
 @pytest.mark.parametrize("data", [{}, {"graph": 3}, {"graph": {"nodes": [], "edges": []}, "memories": [{"agent": 9}]}])
 def test_what_is_no_world_is_refused(data):
     with pytest.raises(HearthError) as caught:
-        restore(data)
+        restore(data, default())
     assert caught.value.diagnostics[0].code is Code.BAD_GRAPH

@@ -1,0 +1,88 @@
+"""Which knowledge counts is said by a dataset, a build's settings or a command: code below them gets it passed in."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LOADING = "hearth.kb.loading"
+
+ENTRIES = ("commands", "cli.py", "__init__.py", "docs", "benchmarks", "tests")
+"""Where programs begin: they may take our own knowledge."""
+
+READS = {
+    "kb/compare.py": "another's knowledge, to be compared",
+    "pipelines/dataset_knowledge.py": "what a dataset was made with",
+    "pipelines/surroundings.py": "what a build was asked to use",
+}
+"""Files below that read knowledge because something names it."""
+
+FILES = [
+    path
+    for path in sorted(ROOT.rglob("*.py"))
+    if not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
+    and path.relative_to(ROOT).parts[0] not in ENTRIES
+]
+NAMES = [path.relative_to(ROOT).as_posix() for path in FILES]
+
+
+def loaded(tree):
+    """What a file takes from the module that reads knowledge; the module itself gives all."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module == LOADING:
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module == "hearth.kb":
+            yield from ("*" for alias in node.names if alias.name == "loading")
+        elif isinstance(node, ast.Import):
+            yield from ("*" for alias in node.names if alias.name == LOADING)
+
+
+def optional(tree):
+    """Parameters for knowledge that a caller may leave out, by the line of their function."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            with_default = node.args.args[len(node.args.args) - len(node.args.defaults) :]
+            keyword = [arg for arg, value in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True) if value]
+            for arg in (*with_default, *keyword):
+                if arg.annotation is not None and "Knowledge" in ast.unparse(arg.annotation):
+                    yield node.lineno, arg.arg
+
+
+def made(tree):
+    """The lines that make a `Knowledge` themselves."""
+    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+    return [call.lineno for call in calls if ast.unparse(call.func) == "Knowledge"]
+
+
+def test_there_is_something_to_look_at():
+    assert len(FILES) > 250
+    assert set(READS) < set(NAMES)
+
+
+def test_knowledge_is_passed_in():
+    wrong = {}
+    for path, name in zip(FILES, NAMES, strict=True):
+        allowed = {"FILES", "digest", "files_of"} | ({"laid_over", "load"} if name in READS else set())
+        tree = ast.parse(path.read_text())
+        found = [*(set(loaded(tree)) - allowed), *optional(tree), *made(tree)]
+        if found and name != "kb/loading.py":
+            wrong[name] = found
+    assert not wrong
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "from hearth.kb.loading import default\ndefault()",
+        "from hearth.kb import loading\nloading.default()",
+        "import hearth.kb.loading as kb\nkb.default()",
+    ],
+)
+def test_every_way_to_our_own_is_seen(code):
+    assert {"default", "*"} & set(loaded(ast.parse(code)))
+
+
+def test_a_parameter_that_may_be_left_out_is_seen():
+    code = "def f(a, knowledge: Knowledge | None = None): ...\ndef g(*, known: Knowledge = OURS): ..."
+    assert list(optional(ast.parse(code))) == [(1, "knowledge"), (2, "known")]
