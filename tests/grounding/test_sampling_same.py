@@ -14,11 +14,12 @@ TEXTS = [
 
 CODE = """
 import hashlib
+from hearth.kb.loading import default
 from hearth.grounding.sampling import Size, sample
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.home import Home
 from hearth.simulation.homes import catalog
-maple = Home.from_graph(catalog.load_graph("maple"), "maple")
+maple = Home.from_graph(catalog.load_graph("maple", default()), "maple", default())
 found = [sample(parse_program(text)[0], maple, 3, "x", size=size)[0]
          for text in TEXTS for size in (Size(), Size.about(290))]
 print(hashlib.sha256(repr([(e.nodes, e.added, e.removed, e.states, e.gone) for e in found]).encode()).hexdigest())

@@ -16,7 +16,7 @@ KITCHENS = {"kitchen", "dining_room", "home_office"}
 
 @pytest.fixture(scope="module", params=[(rooms, seed) for rooms in range(3, 10) for seed in (0, 1)])
 def layout(request):
-    return generate(*request.param)
+    return generate(*request.param, default())
 
 
 def test_generated_homes_lint_clean_and_have_what_is_needed(layout):

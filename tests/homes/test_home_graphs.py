@@ -182,7 +182,7 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
 def test_a_graph_goes_to_the_releases_layout_and_back_without_loss(tmp_path):
     graph = catalog.load_graph("maple", default())
     exporting.write_release(graph, tmp_path / "copy.json")
-    copy = catalog.load_graph("copy", tmp_path)
+    copy = catalog.load_graph("copy", default(), tmp_path)
     assert copy == graph
     assert "copy" in catalog.names(tmp_path)
 
@@ -190,7 +190,7 @@ def test_a_graph_goes_to_the_releases_layout_and_back_without_loss(tmp_path):
 def test_the_releases_own_homes_are_read_and_written_without_loss(real_data):
     for path in sorted((real_data / "homes").glob("*_graph.json")):
         data = orjson.loads(path.read_bytes())
-        graph = catalog.load_graph(path.stem, real_data / "homes")
+        graph = catalog.load_graph(path.stem, default(), real_data / "homes")
         again = from_release(to_release(graph))
         assert again == graph
         assert edge_set(graph.edges) == {(e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"]}
@@ -200,11 +200,12 @@ def test_the_releases_own_homes_are_read_and_written_without_loss(real_data):
 def test_the_order_of_hashing_changes_nothing():
     code = (
         "import hashlib, orjson, sys; from hearth.schemas.graph import to_release;"
+        "from hearth.kb.loading import default;"
         "from hearth.simulation.homes import catalog, plan_drawing;"
-        "graph = orjson.dumps(to_release(catalog.load_graph('larch')));"
+        "graph = orjson.dumps(to_release(catalog.load_graph('larch', default())));"
         # scipy would cost every process ten homes' loading.
         "assert 'scipy' not in sys.modules;"
-        "drawing = plan_drawing.svg(catalog.load_layout('larch')).encode();"
+        "drawing = plan_drawing.svg(catalog.load_layout('larch', default())).encode();"
         "print(hashlib.sha256(graph + drawing).hexdigest())"
     )
     found = set()
