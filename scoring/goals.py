@@ -6,16 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
-from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.graph import Edge
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATES
 from hearth.scoring.signature import signature
 from hearth.scoring.views import nodes_of
 from hearth.simulation.bits import indices
 from hearth.simulation.holds import candidates
-from hearth.simulation.home import Home
 from hearth.simulation.moved import INSIDE, NOTHING, ON
 from hearth.simulation.world import World
 
@@ -52,16 +50,14 @@ class Satisfaction:
         return tuple((literal, wanted - found) for literal, found, wanted in self.counts if found < wanted)
 
 
-def satisfaction(goal: Goal, final: EnvironmentGraph | World, knowledge: Knowledge | None = None) -> Satisfaction:
+def satisfaction(goal: Goal, final: World) -> Satisfaction:
     """Count how often each literal of a goal holds; one about what there is not, never.
 
     Args:
         goal: counted literals.
-        final: the graph, or the world, that is to be as the goal says.
-        knowledge: other names of a graph's classes; a world has its own.
+        final: the world that is to be as the goal says.
     """
-    world = final if isinstance(final, World) else World.start(Home.from_graph(final, knowledge=knowledge))
-    return Satisfaction(tuple((literal, _count(literal, world), wanted) for literal, wanted in goal))
+    return Satisfaction(tuple((literal, _count(literal, final), wanted) for literal, wanted in goal))
 
 
 def _count(literal: Literal[Name], world: World) -> int:
