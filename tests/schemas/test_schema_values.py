@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hearth.kb.loading import default
 from hearth.pipelines.rows import node_of, node_row
 from hearth.schemas import vocabulary
 from hearth.schemas.errors import Diagnostic, HearthError
@@ -47,7 +48,7 @@ def test_a_node_is_read_the_same_wherever_a_graph_is_read():
     bare = {"id": 1, "class_name": "kitchen", "category": "Rooms", "properties": None}
     data = {"nodes": [bare, said], "edges": []}
     nodes = from_release(data).nodes
-    home = Home.from_release(data)
+    home = Home.from_release(data, "", default())
     assert nodes == (home.node(0), home.node(1)) == tuple(map(read_node, data["nodes"]))
     assert [type(value) for value in nodes[1].box.center] == [float, float, float]
     assert [node_of(node_row(node)) for node in nodes] == [*nodes]
