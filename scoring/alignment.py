@@ -16,7 +16,7 @@ from itertools import combinations, permutations, product
 from hearth.schemas.graph import Edge
 from hearth.scoring.counts import Match, Matches, matched, shared
 from hearth.scoring.views import Label, View
-from hearth.simulation.bits import indices, mask_of
+from hearth.simulation.bits import indices
 
 Tuples = Counter[object]
 
@@ -191,22 +191,23 @@ class _Side:
         self._to_characters: dict[int, Tuples] = {}
         self._out: dict[int, list[Edge]] = {}
         self._into: dict[int, list[Edge]] = {}
-        moving, characters = (mask_of(map(view.index.__getitem__, group)) for group in (movable, view.nodes.characters))
-        for node in movable:
-            self._sort(view, node, moving, characters)
+        moving, characters = view.mask(movable), view.mask(view.nodes.characters)
+        for i in indices(moving):
+            self._sort(view, i, moving, characters)
         relations: Tuples = Counter()
-        for me in view.nodes.characters:
-            for (relation, out), row in view.rows(view.index[me]).items():
+        for i in indices(characters):
+            for (relation, out), row in view.rows(i).items():
                 # What comes from a character stands in its own row.
                 for j in indices(row & ~moving if out else row & ~moving & ~characters):
-                    other = _label(view, j)
-                    relations[(relation, me, other) if out else (relation, other, me)] += 1
-        self.still: About = {(me, state) for me in view.nodes.characters for state in view.states(me)}, relations
+                    ends = _label(view, i), _label(view, j)
+                    relations[relation, ends if out else ends[::-1]] += 1
+        self.still: About = {(i, state) for i in indices(characters) for state in view.states(i)}, relations
 
-    def _sort(self, view: View, node: int, moving: int, characters: int) -> None:
+    def _sort(self, view: View, i: int, moving: int, characters: int) -> None:
         """Read a movable node's tuples."""
+        node = view.ids[i]
         relations: Tuples = Counter()
-        for (relation, out), row in view.rows(view.index[node]).items():
+        for (relation, out), row in view.rows(i).items():
             if out:
                 for j in indices(row & moving):
                     edge = Edge(node, relation, view.ids[j])
@@ -215,8 +216,8 @@ class _Side:
             for j in indices(row & ~moving):
                 relations[relation, out, _label(view, j)] += 1
             for j in indices(row & characters):
-                self._to_characters.setdefault(node, Counter())[relation, out, view.ids[j]] += 1
-        self._about[node] = view.states(node), relations
+                self._to_characters.setdefault(node, Counter())[relation, out, _label(view, j)] += 1
+        self._about[node] = view.states(i), relations
 
     def about(self, node: int | None) -> About:
         """The state and relation tuples of an aligned node, its edges to movable nodes left aside."""

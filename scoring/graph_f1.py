@@ -11,7 +11,7 @@ from hearth.scoring.alignment import LIMIT, PERFECT, Pair, Problem
 from hearth.scoring.counts import NOTHING, Match, Matches, Prf
 from hearth.scoring.signature import signature
 from hearth.scoring.views import Final, View, views_of
-from hearth.simulation.bits import indices, mask_of
+from hearth.simulation.bits import indices
 
 MatchBy = Literal["none", "swap1", "best"]
 """How instances of a class may stand for each other; see `score`."""
@@ -123,12 +123,10 @@ def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pai
 
 def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
     """What the graphs share, ids compared, and have: tuples about some nodes of each, and about its characters."""
-    ours, theirs = ours | a.nodes.characters, theirs | b.nodes.characters
-    mine, yours = (mask_of(map(a.index.__getitem__, nodes)) for nodes in (ours, theirs))
-    found = ((a, b, ours, theirs, mine, yours), (a, a, ours, ours, mine, mine), (b, b, theirs, theirs, yours, yours))
-    states = (sum(len(x.states(node) & y.states(node)) for node in one & other) for x, y, one, other, _, _ in found)
-    relations = (_shared(x, y, one, other) for x, y, _, _, one, other in found)
-    return Matches(Match(*states), Match(*relations))
+    mine, yours = a.mask(ours | a.nodes.characters), b.mask(theirs | b.nodes.characters)
+    found = (a, b, mine, yours), (a, a, mine, mine), (b, b, yours, yours)
+    states = (sum(len(x.states(i) & y.states(i)) for i in indices(one & other)) for x, y, one, other in found)
+    return Matches(Match(*states), Match(*(_shared(*each) for each in found)))
 
 
 def _shared(a: View, b: View, ours: int, theirs: int) -> int:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache, partial
 
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation import rows
-from hearth.simulation.bits import indices
+from hearth.simulation.bits import indices, mask_of
 from hearth.simulation.home import Home
 from hearth.simulation.nodes import states_of
 from hearth.simulation.world import World
@@ -80,42 +80,27 @@ class Nodes:
         return cls(classes, {name: tuple(ids) for name, ids in instances.items()}, left_out, characters, labels)
 
 
+@dataclass(frozen=True, slots=True)
 class View:
-    """A final graph.
+    """A final graph; what is asked of a node is read once.
 
     Attributes:
         nodes: the table of its nodes.
         ids: node ids by number; those of edges' ends that are no nodes of it, too.
         index: their numbers.
+        states: the states of the node of a number.
+        rows: its edges, in both directions.
     """
 
-    def __init__(
-        self,
-        nodes: Nodes,
-        ids: list[int],
-        index: Mapping[int, int],
-        states: Callable[[int], frozenset[str]],
-        edges: Callable[[int], EdgeRows],
-    ) -> None:
-        self.nodes, self.ids, self.index = nodes, ids, index
-        self._states, self._edges = states, edges
-        self._read: dict[int, EdgeRows] = {}
+    nodes: Nodes
+    ids: list[int]
+    index: Mapping[int, int]
+    states: Callable[[int], frozenset[str]]
+    rows: Callable[[int], EdgeRows]
 
-    def states(self, node: int) -> frozenset[str]:
-        """The states of a node."""
-        return self._states(self.index[node])
-
-    def rows(self, i: int) -> EdgeRows:
-        """The edges of the node of a number, in both directions."""
-        found = self._read.get(i)
-        if found is None:
-            found = self._read[i] = self._edges(i)
-        return found
-
-
-def view_of(final: Final) -> View:
-    """A graph or world as a view."""
-    return _of_world(final) if isinstance(final, World) else _of_graph(final, _ids(final))
+    def mask(self, nodes: Iterable[int]) -> int:
+        """Some nodes as a set of numbers."""
+        return mask_of(map(self.index.__getitem__, nodes))
 
 
 def views_of(one: Final, other: Final) -> tuple[View, View]:
@@ -150,7 +135,7 @@ def _of_world(world: World) -> View:
         fixed = (name for name in home.node(i).states if name not in STATE_ID)
         return frozenset((*states_of(i, world.states), *fixed))
 
-    return View(nodes_of(home), home.ids, home.index, states, lambda i: _world_rows(world, i))
+    return View(nodes_of(home), home.ids, home.index, cache(states), cache(partial(_world_rows, world)))
 
 
 _READ: tuple[tuple[Direction, Callable[[World, int], int], str, str], ...] = (

@@ -13,7 +13,7 @@ from hearth.schemas.syntax import parse_program
 from hearth.scoring.alignment import Problem
 from hearth.scoring.counts import Match, Matches, Prf
 from hearth.scoring.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
-from hearth.scoring.views import view_of, views_of
+from hearth.scoring.views import views_of
 from hearth.simulation.bits import indices
 from hearth.simulation.engine import act, run
 from hearth.simulation.legal import legal
@@ -266,11 +266,15 @@ def test_a_world_is_scored_as_its_graph(world):
 
 def test_a_worlds_view_is_its_graphs_view(world):
     final, _ = ran(world, CUP_TO_TABLE)
-    one, other = view_of(final), view_of(final.graph())
+    (one, _), (other, _) = views_of(final, final), views_of(final.graph(), final.graph())
     assert one.nodes == other.nodes
     for node in (9, 10, 11, 12, 20, 21, 22):
         assert edges_of(one, node) == edges_of(other, node) == {e for e in final.edges() if node in (e[0], e[2])}
-        assert one.states(node) == other.states(node) == set(final.home.node(final.home.index[node]).states)
+        assert (
+            one.states(one.index[node])
+            == other.states(other.index[node])
+            == set(final.home.node(final.home.index[node]).states)
+        )
 
 
 def edges_of(view, node):
