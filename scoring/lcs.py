@@ -7,8 +7,8 @@ from collections.abc import Hashable, Iterable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
-from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.reading import Lines
+from hearth.schemas.program import ObjectRef
+from hearth.scoring.reading import Line, Lines
 from hearth.scoring.signature import signature
 
 if TYPE_CHECKING:
@@ -48,17 +48,7 @@ def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[
     unless asked for; then an object is its node where it is bound, else its number in the program. Modifiers are left
     out. A step of another agent than the first is another step. A line that does not parse is one item at every level.
     """
-    found: list[Hashable] = []
-    for line in lines:
-        if isinstance(line, str):
-            found.append(("text", line.casefold()))
-        elif level == "action":
-            found.append(_plain(line.action))
-        elif level == "object":
-            found.extend(_named(ref, instances) for ref in line.objects)
-        else:
-            found.append(_instruction(line, instances))
-    return found
+    return _levels(lines, instances)[LEVELS.index(level)]
 
 
 def similarity(predicted: Lines, reference: Lines, level: Level = "step", instances: bool = False) -> float:
@@ -83,22 +73,20 @@ def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -
     return [LcsScore(*row) for row in zip(*columns, strict=True)]
 
 
-def _levels(lines: Lines, instances: bool) -> tuple[list[Hashable], list[Hashable], list[Hashable]]:
-    """The items of every level, as `items` gives them one by one."""
-    steps: list[Hashable] = []
-    actions: list[Hashable] = []
-    objects: list[Hashable] = []
-    for line in lines:
-        if isinstance(line, str):
-            for level in (steps, actions, objects):
-                level.append(("text", line.casefold()))
-            continue
-        action = _plain(line.action)
-        named = [_plain(ref.name) if not instances else _named(ref, True) for ref in line.objects]
-        steps.append((action, *named, line.agent))
-        actions.append(action)
-        objects += named
-    return steps, actions, objects
+def _levels(lines: Lines, instances: bool) -> list[list[Hashable]]:
+    """The items of every level."""
+    found = [_items(line, instances) for line in lines]
+    return [[item for each in found for item in each[place]] for place in range(len(LEVELS))]
+
+
+@lru_cache(maxsize=65_536)
+def _items(line: Line, instances: bool) -> tuple[tuple[Hashable, ...], ...]:
+    """The items of a line at every level."""
+    if isinstance(line, str):
+        return ((("text", line.casefold()),),) * len(LEVELS)
+    objects = tuple([_named(ref, instances) for ref in line.objects])
+    action = _plain(line.action)
+    return ((action, *objects, line.agent),), (action,), objects
 
 
 def matrix(
@@ -150,12 +138,6 @@ def _encode(*sides: Sequence[Sequence[Hashable]]) -> tuple[Sequences, ...]:
     return tuple([[codes[item] for item in sequence] for sequence in side] for side in sides)
 
 
-@lru_cache(maxsize=65_536)
-def _instruction(step: Step, instances: bool) -> Hashable:
-    return (_plain(step.action), *(_named(ref, instances) for ref in step.objects), step.agent)
-
-
-@lru_cache(maxsize=65_536)
 def _named(ref: ObjectRef, instances: bool) -> Hashable:
     name = _plain(ref.name)
     if not instances:
