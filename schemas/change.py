@@ -76,7 +76,7 @@ class Parts(NamedTuple):
 
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
-    """What must be done to `before` to get `after`; order, and what is said twice, are no difference."""
+    """What must be done to `before` to get `after`; order and repetitions make no difference."""
     return difference(_parts(before), _parts(after))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 
+import pyarrow as pa
 import pytest
 
 from hearth.grounding.base import prepared
@@ -11,11 +12,23 @@ from hearth.grounding.sampling import sample
 from hearth.kb.loading import default
 from hearth.pipelines.cases import difference_of, difference_on_replay, environment_of, home_of, run_row
 from hearth.pipelines.library import Homes
-from hearth.pipelines.rows import failure_of, failure_row, node_of, node_row, step_rows, steps_of
+from hearth.pipelines.rows import (
+    environment_change,
+    environment_row,
+    failure_of,
+    failure_row,
+    node_of,
+    node_row,
+    step_rows,
+    steps_of,
+)
 from hearth.pipelines.settings import Settings
+from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Box, EnvironmentGraph, Node
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.rows import DifferenceRow
 from hearth.schemas.syntax import parse_program
+from hearth.schemas.tables import struct
 from hearth.simulation.home import Home
 from hearth.simulation.world import World
 
@@ -88,6 +101,16 @@ def test_nodes_that_are_gone_or_other_than_at_home(homes):
     assert row["removed_nodes"] == [21, 22]
     assert World.start(home_of(as_read(row), home)).graph().edges == other.graph().edges
     assert home_of(as_read(row), home).classes == other.home.classes
+
+
+def test_a_change_is_read_from_parquet_as_it_was_written():
+    bowl = Node(22, "bowl", "Props", ("GRABBABLE",), ("CLEAN",), "bowl_1", Box((0.0, 1.0, 2.0), (0.5, 0.5, 0.5)), 90.0)
+    edges = (Edge(22, "INSIDE", 1), Edge(22, "ON", 3)), (Edge(4, "CLOSE", 5),)
+    change = Change(*edges, ((3, "OPEN"),), ((3, "CLOSED"),), (bowl, Node(23, "cup")), (22,))
+    table = pa.Table.from_pylist(
+        [{"environment": environment_row(change)}], pa.schema([("environment", struct(DifferenceRow))])
+    )
+    assert environment_change(table.to_pylist()[0]["environment"]) == change
 
 
 def case_of(homes, text, seed=0):

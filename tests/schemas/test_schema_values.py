@@ -44,9 +44,9 @@ def test_a_graph_is_written_as_it_was_read():
 
 
 def test_a_node_is_read_the_same_wherever_a_graph_is_read():
-    said = {"id": 3, "class_name": "cup", "states": ["CLEAN"], "bounding_box": {"center": [0, 1, 2], "size": [1, 1, 1]}}
+    cup = {"id": 3, "class_name": "cup", "states": ["CLEAN"], "bounding_box": {"center": [0, 1, 2], "size": [1, 1, 1]}}
     bare = {"id": 1, "class_name": "kitchen", "category": "Rooms", "properties": None}
-    data = {"nodes": [bare, said], "edges": []}
+    data = {"nodes": [bare, cup], "edges": []}
     nodes = from_release(data).nodes
     home = Home.from_release(data, "", default())
     assert nodes == (home.node(0), home.node(1)) == tuple(map(read_node, data["nodes"]))
