@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from random import Random
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
@@ -15,6 +15,7 @@ from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
+from hearth.schemas.rows import Row
 from hearth.scoring.evaluate import Scored, summarise
 from hearth.scoring.lcs import matrix
 
@@ -129,7 +130,7 @@ def _examples(dataset: Dataset, split: str, part: str, originals: bool) -> list[
     return [_example(row, starts.get(row["environment_id"], frozenset())) for row in rows]
 
 
-def _example(row: dict[str, Any], start: frozenset[Difference]) -> Example:
+def _example(row: Row, start: frozenset[Difference]) -> Example:
     told = row["program"]
     steps = program_of(told).steps
     kept = tuple(step for step, keep in zip(steps, row["keep"] or (), strict=False) if keep)

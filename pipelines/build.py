@@ -23,6 +23,7 @@ from hearth.pipelines.stores import fetched, working
 from hearth.pipelines.surroundings import kept_knowledge
 from hearth.schemas.errors import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.rows import RejectedRow
 
 CORPUS = ("crowd/descriptions.csv", "crowd/programs.csv")
 """The embedded corpus, in `data_raw`."""
@@ -128,8 +129,15 @@ def _check_something(ingested: Manifest) -> None:
     raise HearthError(faults or [Diagnostic(Code.EMPTY, "the sources hold no records")])
 
 
-def _faults(rows: Iterable[dict[str, Any]]) -> Iterator[Diagnostic]:
-    known = {str(code): code for code in Code}
+def _faults(rows: Iterable[RejectedRow]) -> Iterator[Diagnostic]:
     for row in rows:
-        places = {name: row[name] for name in ("message", "file", "line", "column", "found", "suggestion")}
-        yield Diagnostic(known.get(row["code"], Code.INTERNAL_ERROR), **places)
+        code = Code.__members__.get(row["code"], Code.INTERNAL_ERROR)
+        yield Diagnostic(
+            code,
+            row["message"],
+            row["file"],
+            row["line"],
+            row["column"],
+            found=row["found"],
+            suggestion=row["suggestion"],
+        )
