@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from operator import itemgetter
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any
 
 from hearth.grounding.conditions import Condition, Preconditions
 from hearth.schemas.change import Change
@@ -98,9 +98,15 @@ def graph_of(row: GraphRow) -> EnvironmentGraph:
 
 def change_row(change: Change) -> ChangeRow:
     """A change, as a row."""
-    names = ("added", "removed", "set_states", "cleared_states")
     # Arrow takes named tuples and pairs for structs, and much faster than dicts.
-    return cast(ChangeRow, {name: list(getattr(change, name)) for name in names})
+    found: Any = {
+        "added": list(change.added),
+        "removed": list(change.removed),
+        "set_states": list(change.set_states),
+        "cleared_states": list(change.cleared_states),
+    }
+    row: ChangeRow = found
+    return row
 
 
 def change_of(row: ChangeRow) -> Change:
