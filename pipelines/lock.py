@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
+
+from filelock import FileLock, Timeout
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
-
-_HELD: set[Path] = set()
 
 
 @contextmanager
@@ -22,41 +20,23 @@ def locked(folder: Path) -> Iterator[None]:
     Raises:
         HearthError: LOCKED, naming the process that builds there now; UNWRITABLE, when the folder cannot be made.
     """
-    key = folder.resolve()
-    if key in _HELD:
-        yield
-        return
-    with _opened(folder) as file:
-        _take(file.fileno(), folder)
-        file.truncate(0)
-        file.write(f"{os.getpid()}\n")
-        file.flush()
-        _HELD.add(key)
-        try:
-            yield
-        finally:
-            _HELD.discard(key)
-
-
-def _opened(folder: Path) -> TextIO:
+    path = folder.resolve() / ".lock"
+    # What is called a lock here is held by the system, and so is free as soon as its process is no more.
+    lock = FileLock(path, blocking=False, thread_local=False, is_singleton=True, fallback_to_soft=False)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        return (folder / ".lock").open("a+")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lock.acquire()
+    except Timeout:
+        holder = path.read_text().strip() or "?"
+        suggestion = "wait until it has ended, or choose another folder with --out"
+        message = f"process {holder} is building here"
+        raise HearthError.of(Code.LOCKED, message, file=str(folder), suggestion=suggestion) from None
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        message = f"nothing can be written here: {reason}"
+        message = f"nothing can be written here: {(error.strerror or str(error)).lower()}"
         suggestion = "choose another folder with --out, or make this one writable"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(folder), suggestion=suggestion) from None
-
-
-def _take(descriptor: int, folder: Path) -> None:
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        holder = (folder / ".lock").read_text().strip() or "?"
-        raise HearthError.of(
-            Code.LOCKED,
-            f"process {holder} is building here",
-            file=str(folder),
-            suggestion="wait until it has ended, or choose another folder with --out",
-        ) from None
+        path.write_text(f"{os.getpid()}\n")
+        yield
+    finally:
+        lock.release()
