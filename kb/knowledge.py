@@ -26,7 +26,7 @@ class Knowledge:
     """All that is known. Immutable; every method is a pure look-up.
 
     Attributes:
-        actions: the 84 actions by canonical name, in the order of their ids.
+        actions: the actions by canonical name, in the order of their ids.
         objects: the classes by canonical name, in the order of their ids; rooms are classes too.
         rooms: the eight rooms a program may name, sorted.
         room_standins: room -> the room that serves where a home lacks it.

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.md"))
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.DOTALL | re.MULTILINE)
-APART = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "tests", "benchmarks")
+APART = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "benchmarks")
 
 pytestmark = pytest.mark.slow
 

@@ -10,6 +10,7 @@ import pytest
 from hearth.kb.knowledge import key_of
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import OPPOSITE, PROPERTIES, STATES
+from hearth.simulation.actions.registry import ACTIONS
 
 IDS = Path(__file__).resolve().parents[1] / "golden/kb/ids.json"
 
@@ -42,8 +43,10 @@ sheets IN basket_for_clothes dresser washing_machine cabinet ON couch love_seat 
 
 
 def test_the_grammar_has_84_actions_of_which_42_are_executed(knowledge):
-    assert len(knowledge.actions) == 84
-    assert sum(action.executed for action in knowledge.actions.values()) == 42
+    published = [action for action in knowledge.actions.values() if action.id < 84]
+    assert len(published) == 84
+    assert sum(action.executed for action in published) == 42
+    assert {name for name, action in knowledge.actions.items() if action.executed} == ACTIONS.keys()
     assert all(knowledge.actions[name] for name in TABLE_2_2.split())
     arities = {action.name: action.arity for action in knowledge.actions.values()}
     assert [arities[name] for name in ("StandUp", "Grab", "PutBack", "Pour", "Throw", "Turnleft")] == [0, 1, 2, 2, 2, 0]

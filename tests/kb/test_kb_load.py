@@ -187,7 +187,7 @@ def test_a_directory_of_its_own_must_be_complete(tmp_path):
             shutil.copy(OURS / name, tmp_path)
     assert lines(faults(tmp_path, overlay=False)) == ["rooms.yaml:0: MISSING_FILE: is missing"]
     shutil.copy(OURS / "rooms.yaml", tmp_path)
-    assert len(load(tmp_path).actions) == 84
+    assert load(tmp_path).actions.keys() == load().actions.keys()
 
 
 def test_an_overlay_adds_replaces_and_removes(tmp_path):

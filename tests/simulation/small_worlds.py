@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from hypothesis import strategies as st
 
+from hearth.kb.loading import default
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import STATES
@@ -89,15 +90,15 @@ def _random_edges(rng: random.Random, nodes: list[Node], rooms: list[int]) -> It
             yield Edge(b, relation, a)
 
 
-def random_step(rng: random.Random, graph: EnvironmentGraph, agent: int = 0) -> Step:
-    """Any action of anything."""
-    name = rng.choice(USUAL) if rng.random() < 0.5 else rng.choice(sorted(ACTIONS))
+def random_step(rng: random.Random, graph: EnvironmentGraph, agent: int = 0, actions: Iterable[str] = ACTIONS) -> Step:
+    """Any of some actions, of anything."""
+    name = rng.choice(USUAL) if rng.random() < 0.5 else rng.choice(sorted(actions))
     return bound_step(name, [rng.choice(graph.nodes) for _ in range(arity(name))], agent)
 
 
 def arity(action: str) -> int:
     """How many objects an action takes."""
-    return {"StandUp": 0, "Sleep": 0, "WakeUp": 0, "PutBack": 2, "PutIn": 2, "Pour": 2}.get(action, 1)
+    return default().actions[action].arity
 
 
 def bound_step(action: str, things: Iterable[Node], agent: int = 0) -> Step:

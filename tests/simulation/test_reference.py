@@ -27,7 +27,7 @@ def agree(seed: int, steps: int = 30) -> int:
     world, plain = World.start(Home.from_graph(graph, "", default())), PlainWorld(graph, rules.origin == "release")
     done = 0
     for number in range(steps):
-        instruction = random_step(rng, graph)
+        instruction = random_step(rng, graph, actions=reference.ACTIONS)
         code = reference.step(plain, instruction, options)
         result = act(world, instruction, rules)
         where = (seed, number, instruction, code)

@@ -1,0 +1,94 @@
+"""The worked example of a new action, in a copy of the checkout: the files it touches, and the suite with it."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = "docs/examples/new-action.md"
+BASH = re.compile(r"^```bash\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+TITLED = re.compile(r'^```text title="([^"]+)"\n(.*?)^```$', re.DOTALL | re.MULTILINE)
+
+LEGAL = """
+from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.env import Env
+from hearth.simulation.homes import catalog
+
+env = Env()
+env.reset(catalog.load("maple"))
+home = env.world.home
+ball = next(home.ids[i] for i, name in enumerate(home.classes) if name == "ball")
+ref = ObjectRef("ball", 1, ball)
+assert Step("Juggle", (ref,)) not in env.legal()
+for action in ("Walk", "Grab"):
+    assert not env.step({0: Step(action, (ref,))}).failures
+assert Step("Juggle", (ref,)) in env.legal()
+assert env.legal().objects("Juggle") == (ball,)
+"""
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """The checkout with the action, committed before it: `git status` says what the page has changed."""
+    place = tmp_path_factory.mktemp("new-action")
+    copy = place / "hearth"
+    names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in names.strip("\0").split("\0"):
+        target = copy / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, target, follow_symlinks=False)
+    (place / "site").mkdir()
+    (place / "site/hearth").symlink_to(copy)
+    (place / "bin").mkdir()
+    (place / "bin/python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    (place / "bin/python").chmod(0o755)
+    who = ("-c", "user.name=test", "-c", "user.email=test@example.org")
+    done(copy, "git", "init", "-q")
+    done(copy, "git", "add", "-A", "-f")
+    done(copy, "git", *who, "commit", "-qm", "before")
+    text = (copy / PAGE).read_text("utf-8")
+    for title, content in TITLED.findall(text):
+        (copy / title).write_text(content, "utf-8")
+    for script in BASH.findall(text):
+        done(copy, "bash", "-euo", "pipefail", "-c", script)
+    return copy
+
+
+def done(copy: Path, *command: str) -> str:
+    """Run something in the copy, whose package is the copy; its output."""
+    place = copy.parent
+    path = f"{place / 'bin'}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "PYTHONPATH": str(place / "site")}
+    for name in [name for name in environment if name.startswith("PYTEST_")]:
+        del environment[name]
+    ran = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, f"{ran.stdout[-8000:]}\n{ran.stderr[-4000:]}"
+    return ran.stdout
+
+
+def test_it_touches_the_files_that_contributing_names(copy):
+    changed = {line[3:] for line in done(copy, "git", "status", "--porcelain").splitlines()} - {"ball.txt"}
+    text = (copy / "CONTRIBUTING.md").read_text("utf-8")
+    (section,) = re.findall(r"\*\*An action\*\*\n(.*?)\n\n", text, re.DOTALL)
+    named = {name for name in re.findall(r"`([^`]+)`", section) if "/" in name or name.endswith(".py")}
+    assert len(changed) == 4
+    for file in changed:
+        assert any(file == name or (name.endswith("/") and file.startswith(name)) for name in named), file
+
+
+def test_it_is_legal_where_it_can_be_done(copy):
+    done(copy, sys.executable, "-c", LEGAL)
+
+
+def test_the_whole_suite_is_green_with_it(copy):
+    options = ("-q", "-n", "2", "--dist", "loadfile", "-p", "no:cacheprovider", "-m", "not slow and not tools")
+    assert " passed" in done(copy, sys.executable, "-m", "pytest", *options)
