@@ -21,16 +21,16 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.env import Env
 from hearth.simulation.homes import catalog
 
-env = Env()
-env.reset(catalog.load("maple"))
+env = Env(partial=False)
+env.reset(catalog.load_graph("maple"))
 home = env.world.home
-ball = next(home.ids[i] for i, name in enumerate(home.classes) if name == "ball")
-ref = ObjectRef("ball", 1, ball)
+book = next(home.ids[i] for i, name in enumerate(home.classes) if name == "book")
+ref = ObjectRef("book", 1, book)
 assert Step("Juggle", (ref,)) not in env.legal()
 for action in ("Walk", "Grab"):
     assert not env.step({0: Step(action, (ref,))}).failures
 assert Step("Juggle", (ref,)) in env.legal()
-assert env.legal().objects("Juggle") == (ball,)
+assert env.legal().objects("Juggle") == (book,)
 """
 
 pytestmark = pytest.mark.slow
