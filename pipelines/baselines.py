@@ -13,6 +13,7 @@ from hearth.pipelines.judging import judge_steps
 from hearth.pipelines.rows import program_of
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.schemas.rows import Row
@@ -22,18 +23,16 @@ from hearth.scoring.lcs import matrix
 Steps = tuple[Step, ...]
 
 
-Difference = str
-"""What differs from a home at the start, told of classes: `ON cup table`, `OPEN fridge`."""
-
-
 class Example(NamedTuple):
-    """A program with its words, its sketch, and the start of one of its executions."""
+    """A program with its words, its sketch, and what differs from its home, said of classes, where one of its
+    executions starts.
+    """
 
     execution_id: str
     text: str
     steps: Steps
     sketch: Steps = ()
-    start: frozenset[Difference] = frozenset()
+    start: frozenset[Literal[str]] = frozenset()
 
 
 class Result(NamedTuple):
@@ -111,8 +110,8 @@ _STARTS = """
         SELECT environment_id, n.id AS id, n.class_name AS class_name
         FROM (SELECT environment_id, unnest(added_nodes) AS n FROM environments)
     )
-    SELECT told.environment_id, list(DISTINCT concat_ws(' ', name, coalesce(a.class_name, b.class_name),
-                                                   coalesce(c.class_name, d.class_name))) AS facts
+    SELECT told.environment_id, list(DISTINCT [name, coalesce(a.class_name, b.class_name),
+                                             coalesce(c.class_name, d.class_name)]) AS literals
     FROM told
     LEFT JOIN node a ON a.environment_id = told.environment_id AND a.id = told.node
     LEFT JOIN home_nodes b ON b.home = told.home AND b.id = told.node
@@ -126,11 +125,16 @@ def _examples(dataset: Dataset, split: str, part: str, originals: bool) -> list[
     where = "p.parent_id IS NULL" if originals else "k.keep IS NOT NULL"
     query = _EXAMPLES.format(where=where, group="p.program_id" if originals else "s.execution_id")
     rows = dataset.sql(query, split=split, part=part).to_arrow_table().to_pylist()
-    starts = {} if originals else {name: frozenset(facts) for name, facts in dataset.rows(_STARTS)[1]}
+    starts = {} if originals else {name: frozenset(map(_literal, found)) for name, found in dataset.rows(_STARTS)[1]}
     return [_example(row, starts.get(row["environment_id"], frozenset())) for row in rows]
 
 
-def _example(row: Row, start: frozenset[Difference]) -> Example:
+def _literal(names: Sequence[str | None]) -> Literal[str]:
+    name, *terms = (each for each in names if each)
+    return Literal(name, tuple(terms))
+
+
+def _example(row: Row, start: frozenset[Literal[str]]) -> Example:
     told = row["program"]
     steps = program_of(told).steps
     kept = tuple(step for step, keep in zip(steps, row["keep"] or (), strict=False) if keep)
@@ -201,7 +205,7 @@ def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int,
     return answers
 
 
-def _shared(one: frozenset[Difference], other: frozenset[Difference]) -> float:
+def _shared(one: frozenset[Literal[str]], other: frozenset[Literal[str]]) -> float:
     return len(one & other) / len(one | other) if one or other else 1.0
 
 

@@ -23,6 +23,7 @@ from hearth.pipelines.baselines import (
 )
 from hearth.pipelines.judging import chosen, judge, read_line
 from hearth.schemas.errors import HearthError
+from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import print_lines
 from hearth.scoring.evaluate import summarise
@@ -32,6 +33,10 @@ from hearth.scoring.parse import parsability
 @pytest.fixture(scope="module")
 def ds(made):
     return hearth.load(made.out)
+
+
+ON_TABLE, ON_BED = Literal.of("ON", "cup", "table"), Literal.of("ON", "cup", "bed")
+OPEN, LAMP = Literal.of("OPEN", "fridge"), Literal.of("ON", "lamp")
 
 
 def programs(ds):
@@ -145,14 +150,26 @@ def test_the_nearest_description_shares_the_rarest_words():
 
 def test_the_nearest_sketch_and_of_equals_the_nearest_start():
     train = [
-        Example("t0", "", walk("cup"), walk("sink"), frozenset({"ON cup table"})),
-        Example("t1", "", walk("book"), walk("sofa"), frozenset({"ON cup table", "OPEN fridge"})),
-        Example("t2", "", walk("bed"), walk("sofa"), frozenset({"ON cup bed", "OPEN fridge", "ON lamp"})),
+        Example("t0", "", walk("cup"), walk("sink"), frozenset({ON_TABLE})),
+        Example(
+            "t1",
+            "",
+            walk("book"),
+            walk("sofa"),
+            frozenset({ON_TABLE, OPEN}),
+        ),
+        Example(
+            "t2",
+            "",
+            walk("bed"),
+            walk("sofa"),
+            frozenset({ON_BED, OPEN, LAMP}),
+        ),
     ]
     test = [
-        Example("a", "", (), walk("sofa"), frozenset({"ON lamp", "ON cup bed"})),
-        Example("b", "", (), walk("sofa"), frozenset({"ON cup table"})),
-        Example("c", "", (), walk("sink"), frozenset({"ON lamp"})),
+        Example("a", "", (), walk("sofa"), frozenset({LAMP, ON_BED})),
+        Example("b", "", (), walk("sofa"), frozenset({ON_TABLE})),
+        Example("c", "", (), walk("sink"), frozenset({LAMP})),
     ]
     assert nearest_sketch(train, test, 0, default()) == [walk("bed"), walk("book"), walk("cup")]
 

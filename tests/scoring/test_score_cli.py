@@ -58,6 +58,15 @@ def test_the_environment_may_stand_in_the_row(score, tmp_path):
     assert json.loads(score("program", "rows.jsonl", "--json").stdout)["mean"]["executable"]["mean"] == 1
 
 
+@pytest.mark.parametrize("one", ["sofa", "couch"])
+@pytest.mark.parametrize("other", ["sofa", "couch", "settee"])
+def test_a_goal_is_reached_whatever_the_thing_is_called(score, tmp_path, one, other):
+    predicted, reference = (f"[Walk] <{name}> (1)\n[Sit] <{name}> (1)" for name in (one, other))
+    row = {"id": "a", "home": "maple", "predicted": predicted, "reference": reference}
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row))
+    assert json.loads(score("program", "rows.jsonl", "--json").stdout)["mean"]["goal"]["mean"] == 1
+
+
 @pytest.mark.parametrize(
     ("args", "status", "said"),
     [

@@ -1,0 +1,134 @@
+"""A literal has one value, whoever asks: the fast evaluator against the plain one, and all its users against it."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from oracles.holds import Plain
+from small_worlds import random_graph
+
+from hearth.grounding.checking import unmet
+from hearth.grounding.conditions import Condition, Preconditions
+from hearth.kb.loading import default
+from hearth.schemas.failures import Failure
+from hearth.schemas.goals import Goal
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.literals import Literal
+from hearth.schemas.program import ObjectRef, Step
+from hearth.scoring.goals import satisfaction
+from hearth.simulation.bits import indices
+from hearth.simulation.engine import act
+from hearth.simulation.goals import Progress
+from hearth.simulation.holds import BINARY, UNARY, candidates, holds
+from hearth.simulation.home import Home
+from hearth.simulation.homes import catalog
+from hearth.simulation.world import World
+
+KNOWLEDGE = default()
+STEPS = 12
+ACTIONS = ("Grab", "Grab", "Open", "Close", "PutBack", "PutIn", "Sit", "Lie", "TurnTo", "SwitchOn", "SwitchOff", "Wash",
+           "PutOn", "PlugOut", "Find")  # fmt: skip
+
+
+def with_guest(graph: EnvironmentGraph) -> EnvironmentGraph:
+    """The home with a second character, where the first is."""
+    me = next(node for node in graph.nodes if node.class_name == "character")
+    guest = Node(max(node.id for node in graph.nodes) + 1, "character", me.category, me.properties, me.states)
+    room = next(edge.target for edge in graph.edges if edge.source == me.id and edge.relation == "INSIDE")
+    return EnvironmentGraph((*graph.nodes, guest), (*graph.edges, Edge(guest.id, "INSIDE", room)))
+
+
+HOMES = [
+    Home.from_graph(with_guest(catalog.load_graph(name)), name, KNOWLEDGE) for name in ("maple", "cedar", "willow")
+] + [Home.from_graph(random_graph(random.Random(seed), characters=2), "", KNOWLEDGE) for seed in range(24)]
+GRAPHS = [World.start(home).graph() for home in HOMES]
+
+
+def reached(home: Home, rng: random.Random) -> World:
+    """The world after random actions that can be done: each with a walk before it."""
+    world = World.start(home)
+    for _ in range(STEPS):
+        agent = rng.randrange(len(world.agents))
+        name = rng.choice(ACTIONS)
+        able = [[*indices(home.able(name, position))] for position in range(KNOWLEDGE.actions[name].arity)]
+        if not all(able):
+            continue
+        things = [home.ids[rng.choice(fit)] for fit in able]
+        if name.startswith("Put") and (held := world.holding()[agent]):
+            things[0] = held[0]
+        for action, nodes in (("Walk", things[-1:]), (name, things)):
+            after = act(world, Step(action, tuple(ObjectRef("thing", 1, node) for node in nodes), agent))
+            world = world if isinstance(after, Failure) else after
+    return world
+
+
+KEYS = (("cup", 1), ("fridge", 1), ("couch", 2), ("nothing", 1), ("character", 1), ("character", 2), ("character", 3))
+OTHERS = (*KEYS, "agent", "agent:0", "agent:1", "agent:2", "agent:x", "agents", "o", 10**6)
+SPELLINGS = sorted(KNOWLEDGE.object_spellings)
+
+
+def drawn(seed: int) -> tuple[World, Plain, list[Literal], dict]:
+    """A world, the same plainly, literals of every name, most of them about nodes that have to do with each other, and
+    what keys and variables are bound to.
+    """
+    rng = random.Random(seed)
+    number = rng.randrange(len(HOMES))
+    world = reached(HOMES[number], rng)
+    index, agents = world.home.index, {world.home.ids[i] for i in world.home.agents}
+    edges = sorted(world.edges())
+    mine = [edge for edge in edges if edge.source in agents or edge.target in agents]
+    loaded = [edge[::-1] for edge in edges if edge.relation == "ON"]
+    stowed = [edge for edge in edges if edge.relation == "INSIDE" and world.has_state(edge.target, "CLOSED")]
+
+    def term(node: int) -> object:
+        """The node, its class, another name of that, or something else."""
+        name = world.home.classes[index[node]]
+        kinds = (node, node, name, rng.choice(KNOWLEDGE.same_class(name)), rng.choice(SPELLINGS), rng.choice(OTHERS))
+        return rng.choice(kinds)
+
+    def literal(name: str, terms: int) -> Literal:
+        edge = rng.choice(rng.choice((edges, mine, loaded or edges, stowed or edges)))
+        ends = edge[::2] if rng.random() < 0.8 else edge[::-2]
+        return Literal(name, tuple(map(term, ends[:terms])), rng.random() < 0.2)
+
+    literals = [literal(name, 1) for name in (*UNARY, "GRABBED") for _ in range(5)]
+    literals += [literal(name, 2) for name in (*BINARY, "UNDER") for _ in range(5)]
+    bound = {key: rng.choice(world.home.ids) for key in (*KEYS[:3], "o")}
+    return world, Plain.of(world.graph(), GRAPHS[number], KNOWLEDGE), literals, bound
+
+
+@settings(max_examples=60, phases=[Phase.generate])
+@given(st.integers(0, 1 << 32))
+def test_a_literal_holds_as_it_does_read_slowly(seed):
+    world, plain, literals, bound = drawn(seed)
+    for literal in literals:
+        assert holds(literal, world, bound) == plain.holds(literal, bound), literal
+
+
+@settings(max_examples=30, phases=[Phase.generate])
+@given(st.integers(0, 1 << 32))
+def test_a_literal_counts_as_it_does_read_slowly(seed):
+    world, plain, literals, _ = drawn(seed)
+    for literal in literals:
+        if not any(isinstance(term, tuple) for term in literal.terms):
+            found = sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
+            assert found == plain.count(literal), literal
+
+
+@pytest.mark.parametrize(("literal", "found"), [
+    (Literal.of("CLEAN", "sofa"), 1), (Literal.of("CLEAN", "couch"), 1), (Literal.of("DIRTY", "sofa"), 0),
+    (Literal.of("INSIDE", "settee", "living_room"), 1), (Literal.of("CLEAN", "piano"), 0),
+])  # fmt: skip
+def test_a_name_means_the_same_to_all_who_ask(maple, literal, found):
+    world = World.start(maple)
+    nodes = {("sofa", 1): next(node.id for node in world.graph().nodes if node.class_name == "couch")}
+    assert holds(literal, world) == bool(found)
+    assert Progress.start(Goal.of(literal), world).counts == (found,)
+    for final in (world, world.graph()):
+        assert satisfaction(Goal.of(literal), final, maple.knowledge).counts == ((literal, found, 1),)
+    if literal == Literal.of("CLEAN", "sofa"):
+        clean = Preconditions((Condition(Literal.of("clean", ("sofa", 1))),))
+        assert unmet(clean, world, nodes) == () and holds(Literal.of("CLEAN", ("sofa", 1)), world, nodes)
