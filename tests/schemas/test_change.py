@@ -70,6 +70,7 @@ def test_what_ticks_come_to_is_one_change(history):
     changes = [encode(one, other) for one, other in pairwise(history)]
     assert all(not change.added_nodes and not change.removed_nodes for change in changes)
     assert compose(changes) == encode(history[0], history[-1])
+    assert plain(apply(history[0], *changes)) == plain(history[-1])
 
 
 def test_what_comes_and_goes_is_sorted_and_a_node_of_another_class_is_another():
