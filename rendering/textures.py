@@ -27,10 +27,6 @@ def _wood() -> Floats:
     return _grey(1 + grain + wave)
 
 
-def _wood_fine() -> Floats:
-    return _grey(1 + noise(4, (1.5, 50.0)) * 0.05)
-
-
 def _planks() -> Floats:
     rows = np.arange(SIDE) * 8 // SIDE
     shade = np.array([0.95, 1.04, 0.9, 1.1, 0.98, 0.87, 1.05, 0.93])[rows][:, None]
@@ -42,26 +38,10 @@ def _planks() -> Floats:
     return _grey(shade * board * grain * np.clip(seam, 0.55, 1))
 
 
-def _tiles() -> Floats:
-    return _grey((1 + noise(6, (3.0, 3.0)) * 0.03 + squares(7, 2) * 0.03) * (1 - 0.28 * grid_lines(2, 3)))
-
-
-def _tiles_small() -> Floats:
-    return _grey((1 + squares(8, 8) * 0.07) * (1 - 0.25 * grid_lines(8, 2)))
-
-
-def _carpet() -> Floats:
-    return _grey(1 + noise(9, (60.0, 60.0)) * 0.16 + noise(10, (4.0, 4.0)) * 0.04)
-
-
 def _fabric() -> Floats:
     t = np.arange(SIDE) / SIDE * 2 * np.pi * 32
     weave = np.sin(t)[:, None] * np.sin(t)[None, :]
     return _grey(1 + weave * 0.07 + noise(11, (30.0, 30.0)) * 0.06)
-
-
-def _leather() -> Floats:
-    return _grey(1 - np.abs(noise(12, (14.0, 14.0))) * 0.14)
 
 
 def _wicker() -> Floats:
@@ -72,21 +52,9 @@ def _wicker() -> Floats:
     return _grey(0.6 + 0.55 * strand)
 
 
-def _brushed() -> Floats:
-    return _grey(1 + noise(13, (1.0, 90.0)) * 0.05)
-
-
 def _marble() -> Floats:
     vein = np.abs(noise(14, (3.0, 3.0)) + 0.5 * noise(15, (8.0, 8.0)))
     return _grey(1 - 0.22 * np.exp(-vein * 9) + noise(16, (5.0, 5.0)) * 0.03)
-
-
-def _granite() -> Floats:
-    return _grey(1 + np.clip(noise(17, (50.0, 50.0)), -1, 2) * 0.35)
-
-
-def _plaster() -> Floats:
-    return _grey(1 + noise(18, (8.0, 8.0)) * 0.012)
 
 
 def _grass() -> Floats:
@@ -126,25 +94,21 @@ def _grime() -> Floats:
     return blend(_plain(), (0.33, 0.24, 0.13), patch)
 
 
-def _water() -> Floats:
-    return _grey(1 + noise(25, (6.0, 6.0)) * 0.12)
-
-
 TILES: dict[str, Callable[[], Floats]] = {
     "plain": _plain,
     "wood": _wood,
-    "wood_fine": _wood_fine,
+    "wood_fine": lambda: _grey(1 + noise(4, (1.5, 50.0)) * 0.05),
     "planks": _planks,
-    "tiles": _tiles,
-    "tiles_small": _tiles_small,
-    "carpet": _carpet,
+    "tiles": lambda: _grey((1 + noise(6, (3.0, 3.0)) * 0.03 + squares(7, 2) * 0.03) * (1 - 0.28 * grid_lines(2, 3))),
+    "tiles_small": lambda: _grey((1 + squares(8, 8) * 0.07) * (1 - 0.25 * grid_lines(8, 2))),
+    "carpet": lambda: _grey(1 + noise(9, (60.0, 60.0)) * 0.16 + noise(10, (4.0, 4.0)) * 0.04),
     "fabric": _fabric,
-    "leather": _leather,
+    "leather": lambda: _grey(1 - np.abs(noise(12, (14.0, 14.0))) * 0.14),
     "wicker": _wicker,
-    "brushed": _brushed,
+    "brushed": lambda: _grey(1 + noise(13, (1.0, 90.0)) * 0.05),
     "marble": _marble,
-    "granite": _granite,
-    "plaster": _plaster,
+    "granite": lambda: _grey(1 + np.clip(noise(17, (50.0, 50.0)), -1, 2) * 0.35),
+    "plaster": lambda: _grey(1 + noise(18, (8.0, 8.0)) * 0.012),
     "grass": _grass,
     "leaf": _leaf,
     "brick": _brick,
@@ -152,7 +116,7 @@ TILES: dict[str, Callable[[], Floats]] = {
     "checks": _checks,
     "dots": _dots,
     "grime": _grime,
-    "water": _water,
+    "water": lambda: _grey(1 + noise(25, (6.0, 6.0)) * 0.12),
 }
 """Textures that repeat and modulate the colour: linear, about 1."""
 
@@ -180,7 +144,7 @@ def atlas() -> NDArray[np.uint8]:
     """(slots, texels, 3) bytes: every texture with its mipmaps, level after level."""
     rows = np.empty((len(SLOTS), OFFSETS[-1], 3), np.uint8)
     for name, slot in SLOTS.items():
-        level = (TILES.get(name) or pictures.PICTURES[name])()
+        level = TILES[name]() if name in TILES else pictures.picture(name)
         for number in range(LEVELS):
             code = np.sqrt(np.clip(level, 0, RANGE) / RANGE) * 255 + 0.5
             rows[slot, OFFSETS[number] : OFFSETS[number + 1]] = code.astype(np.uint8).reshape(-1, 3)

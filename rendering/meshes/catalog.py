@@ -5,16 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib.resources import files
-from typing import Any
 
-import yaml
-
-from hearth.rendering.meshes.expressions import Expression, Node, Scope, Values
+from hearth.rendering.meshes.expressions import Expression, Node, Scope, Values, entries_of, shared_of, text_of
 from hearth.rendering.meshes.interpreter import Draw, Interpreter
 from hearth.rendering.meshes.look import Look, Recipe, Region, Regions, nowhere, top
 from hearth.rendering.meshes.primitives import FUNCTIONS, KNOWN, names_of
 
+PACKAGE = "hearth.rendering.meshes"
 FAMILIES = (
     "seats.yaml", "tables_and_counters.yaml", "storage.yaml", "appliances.yaml", "electronics.yaml", "lighting.yaml",
     "bath.yaml", "toiletries.yaml", "tableware.yaml", "kitchen_tools.yaml", "food.yaml", "cleaning.yaml",
@@ -51,18 +48,8 @@ RECIPES: Mapping[str, Recipe] = Catalog()
 @cache
 def _index() -> dict[str, tuple[str, str]]:
     """Entry -> its family and its parameters. Entries begin at the margin, so that nothing is parsed for it."""
-    found = ((family, *entry) for family in FAMILIES for entry in ENTRY.findall(_text(family)))
+    found = ((family, *entry) for family in FAMILIES for entry in ENTRY.findall(text_of(PACKAGE, family)))
     return {name: (family, takes) for family, name, takes in found if name != "shared"}
-
-
-def _text(family: str) -> str:
-    return (files("hearth.rendering.meshes") / family).read_text(encoding="utf-8")
-
-
-@cache
-def _entries(family: str) -> dict[str, Any]:
-    found: dict[str, Any] = yaml.load(_text(family), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
-    return found
 
 
 def _scope(family: str, name: str, known: frozenset[str]) -> Scope:
@@ -71,13 +58,7 @@ def _scope(family: str, name: str, known: frozenset[str]) -> Scope:
 
 @cache
 def _shared(family: str) -> Values:
-    """What all entries of a family can name, from its entry `shared`; mappings are tables."""
-    names, found = dict(FUNCTIONS), Values()
-    for name, node in _entries(family).get("shared", {}).items():
-        scope = _scope(family, "shared", frozenset(names)).at(name)
-        table = {key: scope.expression(value)(names) for key, value in node.items()} if isinstance(node, dict) else None
-        found[name] = names[name] = scope.expression(node)(names) if table is None else table
-    return found
+    return shared_of(PACKAGE, family, FUNCTIONS)
 
 
 @cache
@@ -86,7 +67,7 @@ def _drawn(name: str) -> Draw | None:
     family, takes = _index().get(name, ("", ""))
     if not family:
         return None
-    entry = {key: node for key, node in _entries(family)[name + takes].items() if key not in FACTS}
+    entry = {key: node for key, node in entries_of(PACKAGE, family)[name + takes].items() if key not in FACTS}
     scope = _scope(family, name, KNOWN).knowing(_shared(family))
     return INTERPRETER.definition(entry, takes.strip("()"), _shared(family), scope)
 
@@ -100,7 +81,7 @@ def _recipe(name: str) -> Recipe:
     if not draw:
         raise KeyError(name)
     family = _index()[name][0]
-    entry = _entries(family)[name]
+    entry = entries_of(PACKAGE, family)[name]
     scope = _scope(family, name, KNOWN).knowing(_shared(family))
     return Recipe(
         draw=lambda look: draw(names_of(look), (), {}),

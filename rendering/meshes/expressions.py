@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import ast
 import difflib
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
 from types import CodeType
 from typing import Any, TypeAlias
+
+import yaml
 
 from hearth.schemas.errors import HearthError
 from hearth.schemas.failures import Code
@@ -17,6 +22,13 @@ Node: TypeAlias = "str | list[Node] | dict[str, Node]"
 Values = dict[str, object]
 """Values by name, as an expression sees them."""
 
+MATH: Values = {
+    "__builtins__": {},
+    **{f.__name__: f for f in (abs, enumerate, int, len, max, min, range, reversed, round, sorted, tuple, zip)},
+    **{f.__name__: f for f in (math.cos, math.exp, math.sin)},
+    "pi": math.pi,
+}
+"""What every expression knows."""
 ALLOWED = (
     ast.expr_context, ast.operator, ast.unaryop, ast.boolop, ast.cmpop, ast.comprehension, ast.keyword, ast.Starred,
     ast.Constant, ast.Name, ast.Tuple, ast.List, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Call,
@@ -146,3 +158,27 @@ def _source(node: Node) -> str:
     if isinstance(node, dict):
         return f"{{{', '.join(node)}}}"
     return repr(node) if node.startswith("#") else node.strip()
+
+
+@cache
+def text_of(package: str, file: str) -> str:
+    """A file of entries as it is written."""
+    return (files(package) / file).read_text(encoding="utf-8")
+
+
+@cache
+def entries_of(package: str, file: str) -> dict[str, Any]:
+    """The entries of a file, every scalar of them a text."""
+    found: dict[str, Any] = yaml.load(text_of(package, file), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+    return found
+
+
+def shared_of(package: str, file: str, known: Values) -> Values:
+    """What all entries of a file can name besides what is `known`, from its entry `shared`; mappings are tables."""
+    names, found = dict(known), Values()
+    place = f"{package.removeprefix('hearth.').replace('.', '/')}/{file}"
+    for name, node in entries_of(package, file).get("shared", {}).items():
+        scope = Scope(place, "shared", frozenset(names), name)
+        table = {key: scope.expression(value)(names) for key, value in node.items()} if isinstance(node, dict) else None
+        found[name] = names[name] = scope.expression(node)(names) if table is None else table
+    return found

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeVar
 
 from hearth.rendering.meshes import paint as paints
 from hearth.rendering.meshes import shapes
-from hearth.rendering.meshes.expressions import Values
+from hearth.rendering.meshes.expressions import MATH, Values
 from hearth.rendering.meshes.leaf import leaf
 from hearth.rendering.meshes.look import Look, Region, nowhere, over, shelves, top
 from hearth.rendering.meshes.mesh import Mesh
@@ -42,10 +41,7 @@ def _lookup(table: Mapping[str, Value], key: str, default: Value) -> Value:
 
 
 FUNCTIONS: Values = {
-    "__builtins__": {},
-    **{f.__name__: f for f in (abs, enumerate, int, len, max, min, range, reversed, round, sorted, tuple, zip)},
-    **{f.__name__: f for f in (math.cos, math.exp, math.sin)},
-    "pi": math.pi,
+    **MATH,
     "arc": shapes.arc,
     "mix": paints.mix,
     "Paint": Paint,
@@ -58,7 +54,7 @@ FUNCTIONS: Values = {
     "PAINTINGS": PAINTINGS,
     "SHOWS": SHOWS,
 }
-"""What every expression knows."""
+"""What every expression of a model knows."""
 
 
 def names_of(look: Look) -> Values:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 import yaml
 
+from hearth.rendering import pictures
 from hearth.rendering.meshes import catalog
 from hearth.rendering.meshes.catalog import ENTRY, FAMILIES, RECIPES
+from hearth.rendering.meshes.expressions import MATH, Scope, text_of
 from hearth.rendering.meshes.interpreter import Interpreter
 from hearth.rendering.meshes.look import Look
 from hearth.rendering.meshes.mesh import join
@@ -56,7 +58,12 @@ def test_models_look_as_they_did():
 
 
 def test_every_entry_has_a_name_of_its_own_and_is_compiled():
-    found = [entry for family in FAMILIES for entry in ENTRY.findall(catalog._text(family)) if entry[0] != "shared"]
+    found = [
+        entry
+        for family in FAMILIES
+        for entry in ENTRY.findall(text_of(catalog.PACKAGE, family))
+        if entry[0] != "shared"
+    ]
     assert sorted(name for name, _ in found) == sorted({name for name, _ in found})
     assert [name for name, takes in found if not takes] == list(RECIPES)
     assert all(catalog._drawn(name) for name, _ in found)
@@ -72,7 +79,8 @@ def test_no_key_is_written_twice():
                 keys(each)
 
     for family in FAMILIES:
-        keys(yaml.compose(catalog._text(family), yaml.BaseLoader))
+        keys(yaml.compose(text_of(catalog.PACKAGE, family), yaml.BaseLoader))
+    keys(yaml.compose(text_of(pictures.PACKAGE, pictures.FILE), yaml.BaseLoader))
 
 
 def test_a_model_that_does_not_exist_is_a_missing_key():
@@ -126,3 +134,14 @@ def test_an_entry_is_read_from_top_to_bottom():
     assert len(drawn(entry)) == 4 * len(drawn(BOX))
     chosen = {"either": [{"when": "w > 2", **BOX}, {"parts": [BOX, BOX]}, BOX]}
     assert len(drawn(chosen)) == 2 * len(drawn(BOX))
+
+
+def test_a_picture_is_its_strokes_in_order():
+    scope = Scope("rendering/pictures.yaml", "flag", frozenset(MATH))
+    flag = np.zeros((pictures.SIDE, pictures.SIDE, 3), np.uint8)
+    halves = {"for": "k in range(3)", "when": "k", "fill": ["0", "0", "1", "0.25 * k", ["k", "0", "9"]]}
+    pictures._paint([{"ground": ["5", "6", "7"]}, {"for": "n in (1, 1)", "all": [halves]}], flag, dict(MATH), scope)
+    assert flag[0, 0].tolist() == flag[127, 9].tolist() == [2, 0, 9]
+    assert flag[128, 9].tolist() == [5, 6, 7]
+    with pytest.raises(HearthError, match="flag: `fil` is not a stroke"):
+        pictures._paint([{"fil": []}], flag, dict(MATH), scope)
