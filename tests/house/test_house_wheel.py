@@ -1,5 +1,6 @@
 """The package as others get it: built, installed into an empty environment, used from somewhere else."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -18,7 +19,10 @@ ENDINGS = {".py", ".yaml", ".csv", ".sql"}
 
 
 def run(*command, cwd):
-    done = subprocess.run([*map(str, command)], cwd=cwd, capture_output=True, text=True, check=False, timeout=300)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    done = subprocess.run(
+        [*map(str, command)], cwd=cwd, env=environment, capture_output=True, text=True, check=False, timeout=300
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
