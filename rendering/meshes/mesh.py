@@ -39,9 +39,6 @@ class Mesh:
     def __len__(self) -> int:
         return len(self.corners)
 
-    def __add__(self, other: Mesh) -> Mesh:
-        return join((self, other))
-
     def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner of the bounding box; zeros for an empty mesh."""
         if not len(self):

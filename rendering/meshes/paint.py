@@ -45,12 +45,6 @@ def linear(color: str) -> Floats:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
-def mix(first: str, second: str, share: float) -> str:
-    """A colour `share` of the way from `first` to `second`."""
-    a, b = (np.array([int(c[i : i + 2], 16) for i in (1, 3, 5)]) for c in (first, second))
-    return "#" + "".join(f"{round(v):02x}" for v in a + (b - a) * share)
-
-
 OAK = Paint("#b98a58", "wood", 1.3, shine=0.15)
 WALNUT = Paint("#6f4528", "wood", 1.3, shine=0.18)
 PINE = Paint("#d9b888", "wood", 1.3, shine=0.12)
@@ -80,7 +74,6 @@ SOIL = Paint("#4a3526", "carpet", 3.0)
 TERRACOTTA = Paint("#b9653f")
 MARBLE = Paint("#e4e2dd", "marble", 0.8, shine=0.4)
 GRANITE = Paint("#4b4c50", "granite", 2.0, shine=0.4)
-SKIN = Paint("#d9a583")
 
 FABRIC_COLORS = ("#5f7896", "#8a5a5a", "#6d8266", "#a68a64", "#7c7f88", "#b7653f", "#4d6b70", "#9a7aa0")
 BRIGHT_COLORS = ("#c8463c", "#3f77b5", "#e0a83a", "#4f9a5c", "#8b5fa8", "#d97a3a", "#3fa3a0", "#d2678f")

@@ -43,7 +43,6 @@ def _lookup(table: Mapping[str, Value], key: str, default: Value) -> Value:
 FUNCTIONS: Values = {
     **MATH,
     "arc": shapes.arc,
-    "mix": paints.mix,
     "Paint": Paint,
     "tinted": Paint.tinted,
     "lit": Paint.lit,
