@@ -8,10 +8,35 @@ from typing import NamedTuple
 from hearth.kb.hearing import Candidate, understand
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.phrases import say
-from hearth.pipelines.readers.spoken import NUMBERED, header
 from hearth.schemas.errors import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
+
+NUMBERED = re.compile(r"\s*(?:step\s*\d{1,4}\s*[.:)\]–-]?|\d{1,4}\s*[.:)\]]|[-*•])\s+(?=\S)", re.IGNORECASE)
+"""How a line begins that is a step in words."""
+
+TITLE = re.compile(r"\s*(?:task|title|activity|goal)\s*:\s*", re.IGNORECASE)
+"""How the line of a title may begin."""
+
+
+class Header(NamedTuple):
+    """What stands above the steps."""
+
+    title: str
+    description: str
+
+
+def header(text: str) -> Header:
+    """Title and description: the lines before the first numbered one; `Task:` before the title is left out."""
+    found: list[str] = []
+    for line in text.split("\n"):
+        if NUMBERED.match(line):
+            break
+        if line.strip():
+            found.append(line.strip())
+    title = TITLE.sub("", found[0], count=1) if found else ""
+    return Header(title, "\n".join(found[1:]))
+
 
 _JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z])", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)

@@ -4,41 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
 from hearth.pipelines.rejects import Reject
+from hearth.pipelines.spoken import NUMBERED, TITLE, header
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 
 NAME = "spoken"
 
 _LONGEST_PROGRAM = 100_000
-
-NUMBERED = re.compile(r"\s*(?:step\s*\d{1,4}\s*[.:)\]–-]?|\d{1,4}\s*[.:)\]]|[-*•])\s+(?=\S)", re.IGNORECASE)
-"""How a line begins that is a step in words."""
-
-_TITLE = re.compile(r"\s*(?:task|title|activity|goal)\s*:\s*", re.IGNORECASE)
-
-
-class Header(NamedTuple):
-    """What stands above the steps."""
-
-    title: str
-    description: str
-
-
-def header(text: str) -> Header:
-    """Title and description: the lines before the first numbered one; `Task:` before the title is left out."""
-    found: list[str] = []
-    for line in text.split("\n"):
-        if NUMBERED.match(line):
-            break
-        if line.strip():
-            found.append(line.strip())
-    title = _TITLE.sub("", found[0], count=1) if found else ""
-    return Header(title, "\n".join(found[1:]))
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
@@ -89,7 +65,7 @@ def looks_spoken(lines: list[str]) -> bool:
     """Whether a text's first lines are steps in words: numbered ones, and none in brackets."""
     numbered = [line for line in lines if NUMBERED.match(line)]
     bracketed = any(re.match(r"\s*(?:\[|<[^<>]*>\s*\[)", line) for line in lines)
-    return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(_TITLE.match(lines[0])))
+    return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(TITLE.match(lines[0])))
 
 
 def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
