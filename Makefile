@@ -30,8 +30,8 @@ tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.c
 manifest = $(OUT)/$(1)/manifest.json
 
 # What decides a stage's output. Generous: a stage that runs without need finds by digests that nothing changed.
-SHARED   := version.py $(call tree,schemas simulation grounding) \
-            $(filter-out $(STAGES:%=pipelines/%.py),$(wildcard pipelines/*.py pipelines/*.sql pipelines/*.yaml))
+SHARED   := version.py $(call tree,schemas storage homes simulation grounding repair datasets analysis) \
+            $(call tree,pipelines/engine pipelines/crowd pipelines/checks)
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
@@ -61,7 +61,7 @@ $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up 
 # Progress goes to the terminal; the table that each command prints is only wanted at the end.
 RUN = @$(HEARTH) $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
 
-$(call manifest,ingest): $(SHARED) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
+$(call manifest,ingest): $(SHARED) $(shell find kb -name '*.py') $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
 	$(RUN) >/dev/null
 
 $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)
@@ -70,7 +70,7 @@ $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.p
 $(call manifest,sample): $(call manifest,validate) $(WORLD) pipelines/sample.py | $(READY)
 	$(RUN) --seed $(SEED) >/dev/null
 
-$(call manifest,augment): $(call manifest,sample) $(WORLD) $(call tree,pipelines/handlers) pipelines/augment.py | $(READY)
+$(call manifest,augment): $(call manifest,sample) $(WORLD) pipelines/augment.py | $(READY)
 	$(RUN) --seed $(SEED) >/dev/null
 
 $(call manifest,render): $(call manifest,augment) $(WORLD) $(call tree,rendering) pipelines/render.py | $(READY)

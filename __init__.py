@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from hearth.version import VERSION as __version__
 
 if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
     from hearth.kb.knowledge import Knowledge
-    from hearth.pipelines.dataset import Dataset
 
 __all__ = ["__version__", "knowledge", "load"]
 
@@ -19,7 +19,7 @@ def load(path: str) -> Dataset:
     Raises:
         HearthError: the folder is not a dataset, or was written by a newer version.
     """
-    from hearth.pipelines.dataset import Dataset
+    from hearth.datasets.dataset import Dataset
 
     return Dataset.open(path)
 
@@ -34,6 +34,6 @@ def knowledge(overlay: str | None = None) -> Knowledge:
     """
     from pathlib import Path
 
-    from hearth.kb.loading import laid_over
+    from hearth.kb.loading.load import laid_over
 
     return laid_over(Path(overlay) if overlay else None)

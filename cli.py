@@ -34,7 +34,7 @@ if __name__ == "__main__":
 import typer
 from typer.core import TyperGroup
 
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
 

@@ -17,16 +17,16 @@ from pathlib import Path
 import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, tell
 
-from hearth.grounding.base import prepared
-from hearth.kb.loading import default
-from hearth.pipelines.augment_figures import GIVEN_UP
-from hearth.pipelines.augmenting import Options, augment
+from hearth.analysis.augment_figures import GIVEN_UP
+from hearth.analysis.coverage import Script, scripts
+from hearth.grounding.environments.default_state import prepared
+from hearth.homes import library
+from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
-from hearth.pipelines.rehearsal import Script, scripts
-from hearth.pipelines.rejects import Reject
+from hearth.repair.variants import Options, augment
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
+from hearth.simulation.world.home import Home
+from hearth.storage.rejects import Reject
 
 ROOT = Path(__file__).resolve().parents[1]
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real")) / "activityprograms-sample.zip"
@@ -78,7 +78,7 @@ def main() -> None:
     arguments.add_argument("--pairs", type=int, default=5)
     asked = arguments.parse_args()
     known = default()
-    homes = [Home.from_graph(catalog.load_graph(name, default()), name, known) for name in catalog.names()]
+    homes = [Home.from_graph(library.load_graph(name, default()), name, known) for name in library.names()]
     for home in homes:
         prepared(home)
     given = {str(path): [str(path)] for path in asked.sources}

@@ -15,17 +15,17 @@ from typing import Any
 import orjson
 
 from hearth.grounding.binding import Binding, bind
+from hearth.homes import library
 from hearth.kb import grammar
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
+from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
-from hearth.simulation.legal import legal
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))  # for `oracles`
 
@@ -55,8 +55,8 @@ def release() -> tuple[tuple[dict[str, Any], Program], ...]:
 def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
     """Our homes, each with programs of 12 steps that can be done there."""
     found = []
-    for name in catalog.names():
-        graph = catalog.load_graph(name, default())
+    for name in library.names():
+        graph = library.load_graph(name, default())
         start = World.start(Home.from_graph(graph, name, default()))
         found += [(graph, _wander(start, random.Random(seed))) for seed in range(2)]
     return tuple(found)
@@ -67,7 +67,7 @@ def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
     """Crowd-sourced programs of that many steps, their instances counters, with each home that they can be done in."""
     rows = csv.DictReader(CROWD.read_text("utf-8").splitlines(keepends=True))
     worlds = [
-        World.start(Home.from_graph(catalog.load_graph(name, default()), name, default())) for name in catalog.names()
+        World.start(Home.from_graph(library.load_graph(name, default()), name, default())) for name in library.names()
     ]
     found: list[tuple[World, Program]] = []
     for row in rows:

@@ -19,8 +19,9 @@ from random import Random
 import plain
 from measuring import Figure, finish, parser, passes, rate, runs, seconds, tell
 
-from hearth.kb.loading import default
-from hearth.pipelines import corpus, spoken, synthesis
+from hearth.analysis import corpus_statistics, synthesis
+from hearth.kb.language import plans
+from hearth.kb.loading.load import default
 from hearth.pipelines.readers.crowd import DESCRIPTIONS, PROGRAMS
 from hearth.schemas.program import ObjectRef, Step
 
@@ -32,9 +33,9 @@ SLICE = 400
 INGEST = """
 import sys, tempfile, time
 from hearth.pipelines.ingest import STAGE
-from hearth.pipelines.run import run_stage
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.workers import Workers
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.workers import Workers
 with tempfile.TemporaryDirectory() as out, Workers(1) as workers:
     began = time.process_time()
     counts = run_stage(STAGE, Settings((sys.argv[1],), out), workers).manifest.counts
@@ -160,15 +161,17 @@ def others() -> Iterator[Figure]:
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
     split = plain.split_words([words] * 1_000)
-    heard = runs(lambda: [spoken.parse_spoken(words, 0, "", known) for _ in range(1_000)])
+    heard = runs(lambda: [plans.parse_spoken(words, 0, "", known) for _ in range(1_000)])
     yield rate("programs in words understood", 1_000, heard, "a second", ratio=split.ratio(1_000, heard))
     drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
     ratio = plain.drawn_steps().ratio(13 * SLICE, drawn)
     yield rate("programs drawn", 13 * SLICE, drawn, "a second", 5_000, ratio)
     some = list(synthesis.synthesize(5_000, 0, grammar))
     steps = [tuple(Step(action, tuple(map(ObjectRef, names))) for action, names in one.steps) for one in some]
-    many = corpus.Corpus(programs=[corpus.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)])
-    taken = runs(lambda: corpus.similarities(many, workers=1), 9)
+    many = corpus_statistics.Corpus(
+        programs=[corpus_statistics.Written(str(n), some[n].title, "", each) for n, each in enumerate(steps)]
+    )
+    taken = runs(lambda: corpus_statistics.similarities(many, workers=1), 9)
     ratio = plain.textbook_lcs(steps).ratio(len(steps) ** 2, taken)
     yield seconds("all pairs of 5,000 programs compared and sorted", taken, "s", 2.0, ratio)
 

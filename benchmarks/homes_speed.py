@@ -16,17 +16,17 @@ from time import process_time
 import plain
 from measuring import Figure, finish, parser, passes, rate, runs, seconds, stalls, tell
 
-from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import Size, sample
-from hearth.kb.loading import default
-from hearth.pipelines.library import Homes
-from hearth.pipelines.rehearsal import Script, scripts
-from hearth.pipelines.settings import Settings
+from hearth.analysis.coverage import Script, scripts
+from hearth.grounding.environments.sampling import Size, sample
+from hearth.grounding.preconditions.infer import infer
+from hearth.homes import library
+from hearth.homes.from_graph.graph_layout import lay_out
+from hearth.homes.procedural.generate import generate
+from hearth.homes.scene_graph import scene
+from hearth.kb.loading.load import default
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Failure
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.generate import generate
-from hearth.simulation.homes.graph_layout import lay_out
-from hearth.simulation.homes.scene import scene
 
 CORPUS = Path(__file__).resolve().parents[1] / "data_raw" / "crowd"
 SIZES = (("as they come", Size()), ("of 280 to 300 nodes", Size.about(290)))
@@ -36,12 +36,12 @@ def loading() -> Figure:
     """All our homes from their plans, read and parsed anew."""
 
     def load() -> None:
-        catalog._layout.cache_clear()
-        catalog._scene.cache_clear()
-        for name in catalog.names():
-            catalog.load_graph(name, default())
+        library._layout.cache_clear()
+        library._scene.cache_clear()
+        for name in library.names():
+            library.load_graph(name, default())
 
-    names = catalog.names()
+    names = library.names()
     taken = [s / len(names) for s in runs(load, 3)]
     ratio = plain.written_home().ratio(1, taken)
     return seconds(f"one of {len(names)} designed homes, read and built", taken, "ms", ratio=ratio)
@@ -57,7 +57,7 @@ def drawing_up(count: int = 21) -> Figure:
 
 def laying_out(homes: Path) -> Figure:
     """A graph's layout, over the graphs of a folder."""
-    graphs = [(path.stem, catalog.graph_of(path, default())) for path in sorted(homes.glob("*.json"))]
+    graphs = [(path.stem, library.graph_of(path, default())) for path in sorted(homes.glob("*.json"))]
     taken = [
         s for name, graph in graphs for s in runs(lambda name=name, graph=graph: lay_out(graph, name, default()), 1)
     ]

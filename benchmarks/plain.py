@@ -26,7 +26,7 @@ from oracles import engine as reference
 from oracles.world import Options
 from oracles.world import World as PlainWorld
 
-from hearth.rendering.camera import Camera
+from hearth.rendering.cameras.camera import Camera
 from hearth.schemas.graph import EnvironmentGraph
 
 TIMES = 15

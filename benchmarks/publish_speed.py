@@ -16,17 +16,17 @@ from typing import Any
 import plain
 from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
 
-from hearth.kb.loading import default
-from hearth.pipelines import judging
-from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.rows import bindings_of, program_of
-from hearth.pipelines.stored_cases import stored_cases
-from hearth.schemas.errors import HearthError
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.homes import library
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
+from hearth.scoring import dataset_scores
 from hearth.scoring.evaluate import Options, Pair, lcs_of
-from hearth.scoring.lcs import matrix
-from hearth.simulation.homes import catalog
+from hearth.scoring.metrics.lcs import matrix
 
 ASKED = 30_000
 """Predictions and executions that the targets are about."""
@@ -81,26 +81,28 @@ def figures(asked: Namespace) -> Iterator[Figure]:
 
 def yardsticks() -> tuple[plain.Yardstick, plain.Yardstick]:
     """Reading a graph from JSON, and counting relations in one."""
-    graphs = [plain.as_dicts(catalog.load_graph(name, default())) for name in catalog.names()]
+    graphs = [plain.as_dicts(library.load_graph(name, default())) for name in library.names()]
     return plain.read_graph(graphs), plain.counted_relations(graphs)
 
 
 def scoring(dataset: Dataset) -> Iterator[Figure]:
     """What a prediction costs, read in shares of neighbours as the `score` command does, and scored one by one."""
     folder = str(dataset.folder)
-    _, homes = judging.opened(folder)
+    _, homes = dataset_scores.opened(folder)
     ids = [name for (name,) in dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
-    shares = [ids[number * len(ids) // SHARES :][: judging.PART] for number in range(SHARES)]
+    shares = [ids[number * len(ids) // SHARES :][: dataset_scores.PART] for number in range(SHARES)]
     reading = passes(lambda share: list(stored_cases(dataset, share)), shares, 9)
     cases = {case["execution_id"]: case for share in shares for case in stored_cases(dataset, share[:EACH])}
     pairs = [
-        judging._filled(Pair(name, predicted(case, place), ()), case)
+        dataset_scores._filled(Pair(name, predicted(case, place), ()), case)
         for place, (name, case) in enumerate(cases.items())
     ]
     options = Options()
 
     def score(pair: Pair) -> object:
-        return list(judging._scored(cases[pair.id], [(pair, *lcs_of([pair], options.instances))], homes, options))
+        return list(
+            dataset_scores._scored(cases[pair.id], [(pair, *lcs_of([pair], options.instances))], homes, options)
+        )
 
     taken = passes(score, pairs, 9)
     read = sum(map(len, shares))

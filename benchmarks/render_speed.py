@@ -18,24 +18,24 @@ from pathlib import Path
 import plain
 from measuring import Figure, finish, parser, rate, seconds, tell
 
-from hearth.kb.loading import default
-from hearth.rendering import threads
-from hearth.rendering.camera import Camera, top_view
-from hearth.rendering.figure import BODIES, figure_mesh
-from hearth.rendering.figure import Figure as Person
-from hearth.rendering.geometry import Still
-from hearth.rendering.meshes.look import Look
+from hearth.homes import library
+from hearth.kb.loading.load import default
+from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.viewpoints import home_box, room_views
 from hearth.rendering.modalities import MODALITIES, pictures_of, render
-from hearth.rendering.models import Model
-from hearth.rendering.retake import take
-from hearth.rendering.scene import Scene
-from hearth.rendering.skeleton import Stance
-from hearth.rendering.staging import scene_of
-from hearth.rendering.things import Thing, placed
-from hearth.rendering.viewpoints import home_box, room_views
-from hearth.rendering.warm import warm
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import Model
+from hearth.rendering.people.figure import BODIES, figure_mesh
+from hearth.rendering.people.figure import Figure as Person
+from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.rays import threads
+from hearth.rendering.rays.incremental import take
+from hearth.rendering.rays.warm import warm
+from hearth.rendering.scene.instances import Thing, placed
+from hearth.rendering.scene.prepared import scene_of
+from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.triangles import Still
 from hearth.schemas.graph import EnvironmentGraph, Node
-from hearth.simulation.homes import catalog
 
 Picture = Callable[[int, Scene], object]
 PASSES, PIECED = 3, 8
@@ -143,7 +143,7 @@ class Stayed:
 
 def filmed(camera: Camera) -> Picture:
     """Pictures written as VP80."""
-    from hearth.rendering.video import Writer
+    from hearth.rendering.film.video import Writer
 
     writer = Writer(Path(tempfile.mkdtemp()) / "bench.webm", camera.width, camera.height, 30)
     stayed = Stayed(camera, ())
@@ -185,7 +185,7 @@ def main() -> None:
     known.add_argument("--home", default="maple")
     known.add_argument("--frames", type=int, default=10)
     asked = known.parse_args()
-    graph = catalog.load_graph(asked.home, default())
+    graph = library.load_graph(asked.home, default())
     figures = ready(graph)
     films = list(scenes(graph, asked.frames))
     corner = room_views(graph, *SIZE)[room_of(graph).id][0]

@@ -23,10 +23,10 @@ import pyarrow.parquet as pq
 from measuring import Figure, Passes, finish, parser, passes, rate, seconds, tell
 
 from hearth.pipelines.build import stage
-from hearth.pipelines.parts import READ_BATCH, read_rows, write_table
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job
-from hearth.pipelines.tiers import TIERS
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job
+from hearth.pipelines.engine.tiers import TIERS
+from hearth.storage.partitions import READ_BATCH, read_rows, write_table
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = (ROOT / "data_raw/crowd/descriptions.csv", ROOT / "data_raw/crowd/programs.csv")

@@ -16,16 +16,16 @@ from oracles.world import Options
 from oracles.world import World as PlainWorld
 
 from hearth.grounding.binding import Binding, bind
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge, Node, from_release
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.edit import extended
+from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import final, run
-from hearth.simulation.home import Home
-from hearth.simulation.legal import legal
+from hearth.simulation.observation.views import view
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.views import view
-from hearth.simulation.world import World
+from hearth.simulation.world.edit import extended
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 OPTIONS = {"release": (REPLAY, Options(doors=False, watch_needs_on=False)), "own homes": (DEFAULT, Options())}
 

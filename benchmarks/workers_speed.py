@@ -20,12 +20,12 @@ import pyarrow as pa
 from measuring import Figure, finish, parser, spread, tell
 
 from hearth.pipelines.build import stage
-from hearth.pipelines.run import run_stage
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.spread import unseen
-from hearth.pipelines.stage import Job, Partition, Record, Stage, run_partition
-from hearth.pipelines.tiers import TIERS
-from hearth.pipelines.workers import Workers
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job, Partition, Record, Stage, run_partition
+from hearth.pipelines.engine.tiers import TIERS
+from hearth.pipelines.engine.workers import Workers
+from hearth.storage.parallel import unseen
 
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = tuple(str(ROOT / "data_raw/crowd" / name) for name in ("descriptions.csv", "programs.csv"))

@@ -24,11 +24,11 @@ def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json:
     Example:
       python cli.py augmented data_out --out figures
     """
-    from hearth.pipelines.augment_figures import figures
+    from hearth.analysis.augment_figures import figures
 
     found = figures(_published(dataset))
     if out is not None:
-        from hearth.pipelines.augment_pictures import draw
+        from hearth.analysis.augment_pictures import draw
 
         found["files"] = [str(file) for file in draw(found, out)]
     if as_json:

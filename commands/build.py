@@ -122,7 +122,7 @@ def build(
       python cli.py build corpus.csv --out small --tier mini
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
-    from hearth.pipelines.tiers import tiered
+    from hearth.pipelines.engine.tiers import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
     given = [name for name, source in sources_of.items() if source and source.name == "COMMANDLINE"]
@@ -198,10 +198,10 @@ def sample(
                                      param_hint="--nodes, --limit")  # fmt: skip
         _run(context, "sample", {**context.params, "homes": folder})
         return
-    from hearth.commands import rehearsal
+    from hearth.commands import coverage
 
     settings = _settings({"seed": seed, "home": home, "homes": folder, "kb": kb})
-    rehearsal.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
+    coverage.show(sources, settings, size=size, limit=limit, strict=strict, as_json=as_json)
 
 
 def augment(
@@ -232,7 +232,7 @@ def augment(
     if not as_json:
         _run(context, "augment", chosen)
         return
-    from hearth.pipelines.augment_figures import outcome
+    from hearth.analysis.augment_figures import outcome
 
     found = _built("augment", chosen)
     output.emit(outcome(out / "augment"))
@@ -299,7 +299,7 @@ def _run(context: typer.Context, only: str | None, chosen: Mapping[str, Any] | N
 
 def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
     from hearth.pipelines.build import build as run
-    from hearth.pipelines.progress import JsonLines, for_terminal
+    from hearth.pipelines.engine.progress import JsonLines, for_terminal
 
     paths = [str(path) for path in chosen.get("sources") or ()]
     progress = JsonLines() if chosen.get("log_json") else for_terminal()

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hearth.commands import inputs, options, output
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs
-from hearth.schemas.text import decode
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -77,8 +77,8 @@ def check(
 
 def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
     """Correct one file where it can be read as text; what it would be is compared with what it is."""
-    from hearth.pipelines import fixes
-    from hearth.pipelines.files import write_bytes
+    from hearth.pipelines.checks import fixes
+    from hearth.storage.files import write_bytes
 
     if str(path) == "-" or not path.is_file():
         return ""
@@ -127,10 +127,10 @@ def check_text(
 
 
 def _warnings(program: Program, knowledge: Knowledge, file: str, source: list[str]) -> list[Diagnostic]:
-    from hearth.pipelines import lint
+    from hearth.pipelines.checks import programs
 
-    found = [*lint.contradictions(program, knowledge), *lint.findings(program, knowledge)]
-    return [lint.diagnostic(each, program, file, source) for each in found]
+    found = [*programs.contradictions(program, knowledge), *programs.findings(program, knowledge)]
+    return [programs.diagnostic(each, program, file, source) for each in found]
 
 
 def _json(checked: Checked) -> dict[str, Any]:

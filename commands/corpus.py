@@ -11,7 +11,7 @@ import typer
 from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
-    from hearth.pipelines.corpus import Corpus, Similarities
+    from hearth.analysis.corpus_statistics import Corpus, Similarities
     from hearth.schemas.program import Program
 
 app = typer.Typer(help="What people say and write: statistics, synthesis, ratings, and how well faults are found.")
@@ -45,8 +45,8 @@ def synthesize(
     """
     import orjson
 
-    from hearth.pipelines import synthesis
-    from hearth.pipelines.files import replacing
+    from hearth.analysis import synthesis
+    from hearth.storage.files import replacing
 
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
@@ -86,8 +86,8 @@ def stats(
       python cli.py corpus stats data_out --out figures
       python cli.py corpus stats release.zip
     """
-    from hearth.pipelines import corpus as numbers
-    from hearth.pipelines import corpus_figures
+    from hearth.analysis import corpus_figures
+    from hearth.analysis import corpus_statistics as numbers
 
     found = numbers.gather(inputs.paths(sources), inputs.read_knowledge(kb))
     alike = numbers.similarities(found)
@@ -101,7 +101,7 @@ def stats(
 
 
 def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[str, Any]:
-    from hearth.pipelines import corpus as numbers
+    from hearth.analysis import corpus_statistics as numbers
 
     actions, objects = numbers.frequencies(found)
     return {
@@ -120,7 +120,7 @@ def _stats_json(found: Corpus, alike: Similarities, files: list[Path]) -> dict[s
 
 
 def _print_stats(found: Corpus, alike: Similarities) -> None:
-    from hearth.pipelines import corpus as numbers
+    from hearth.analysis import corpus_statistics as numbers
 
     for title, ours, thesis in (
         ("What became of the descriptions", numbers.funnel(found), numbers.THESIS_FUNNEL),
@@ -157,7 +157,7 @@ def dirt(
     Example:
       python cli.py corpus dirt data_raw/crowd/key.csv
     """
-    from hearth.pipelines import dirt as finding
+    from hearth.analysis import error_detection as finding
 
     report = finding.score(finding.find(inputs.paths(sources), inputs.read_knowledge(kb)), finding.read_key(key))
     if as_json:
@@ -189,9 +189,9 @@ def fuzz(
     Example:
       python cli.py corpus fuzz --seconds 60 --seed 7
     """
-    from hearth.pipelines import fuzzing
+    from hearth.analysis import mutated_input
 
-    report = fuzzing.fuzz(inputs.read_knowledge(None), seconds, seed, most)
+    report = mutated_input.fuzz(inputs.read_knowledge(None), seconds, seed, most)
     if as_json:
         output.emit(report)
     else:
@@ -224,8 +224,8 @@ def sheet(
     Example:
       python cli.py corpus sheet data_out --programs 100 --out ratings.csv
     """
-    from hearth.pipelines import ratings
-    from hearth.pipelines.files import write_bytes
+    from hearth.analysis import ratings
+    from hearth.storage.files import write_bytes
 
     drawn = _drawn(sources, count, seed)
     text = ratings.sheet(drawn, raters)
@@ -237,7 +237,7 @@ def sheet(
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
     """Some valid programs, the same for the same seed."""
-    from hearth.pipelines import corpus as numbers
+    from hearth.analysis import corpus_statistics as numbers
     from hearth.schemas.program import Program
     from hearth.schemas.rng import rng
 
@@ -262,7 +262,7 @@ def completeness(
       python cli.py corpus completeness data_out --programs 100
       python cli.py corpus completeness data_out --programs 100 --sheet ratings.csv
     """
-    from hearth.pipelines import ratings
+    from hearth.analysis import ratings
     from hearth.schemas.failures import Failure
 
     known = inputs.read_knowledge(None)
@@ -283,7 +283,7 @@ def completeness(
 
 
 def _shares(classes: dict[str, Any]) -> list[float]:
-    from hearth.pipelines import ratings
+    from hearth.analysis import ratings
 
     return [*ratings.shares(classes.values()).values()]
 

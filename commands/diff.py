@@ -11,7 +11,7 @@ import typer
 from hearth.commands import options, output
 
 if TYPE_CHECKING:
-    from hearth.pipelines.compare import TableDifference
+    from hearth.datasets.diff import TableDifference
 
 First = Annotated[Path, typer.Argument(metavar="A", help="A dataset, or a build's folder.")]
 Second = Annotated[Path, typer.Argument(metavar="B", help="Another.")]
@@ -27,7 +27,7 @@ def diff(
     Example:
       python cli.py diff data_out yesterday/data_out --rows 20
     """
-    from hearth.pipelines.compare import compare
+    from hearth.datasets.diff import compare
 
     found = compare(first, second, rows or None)
     if as_json:

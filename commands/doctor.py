@@ -19,7 +19,7 @@ from typing import Annotated
 import typer
 
 from hearth.commands import options, output
-from hearth.rendering.quiet import quiet
+from hearth.rendering.film.quiet import quiet
 
 LIBRARIES = {
     "libusb-1.0.so.0": "libusb-1.0-0",

@@ -10,7 +10,7 @@ import typer
 from hearth.commands import inputs, options, output
 
 if TYPE_CHECKING:
-    from hearth.pipelines.library import Homes as AllHomes
+    from hearth.pipelines.engine.build_homes import Homes as AllHomes
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -29,8 +29,8 @@ def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Js
     Example:
       python cli.py environment conditions watch_tv.txt
     """
-    from hearth.grounding.preconditions import at_odds, infer
-    from hearth.grounding.release_rules import compare
+    from hearth.grounding.preconditions.infer import at_odds, infer
+    from hearth.grounding.preconditions.release_rules import compare
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 
@@ -75,8 +75,8 @@ def rules(source: options.Source, limit: options.Limit = None, as_json: options.
     """
     from itertools import islice
 
-    from hearth.pipelines.agreement import agreement
-    from hearth.pipelines.rehearsal import scripts
+    from hearth.analysis.agreement import agreement
+    from hearth.analysis.coverage import scripts
 
     known = inputs.read_knowledge(None)
     told = agreement(islice(scripts([str(source)], known), limit), known)
@@ -118,13 +118,13 @@ def sample_one(
       python cli.py environment sample --goal "ON(plate, kitchen_table): 9" --goal "CLEAN(stove)" --nodes 290
       python cli.py environment sample --home birch --seed 7 --out any.json
     """
-    from hearth.commands import drawing
-    from hearth.simulation.homes import exporting
+    from hearth.commands import sampled_environment
+    from hearth.homes import exporting
 
     known = inputs.read_knowledge(kb)
     place = inputs.read_home(home, None, homes, known)
     program = None if file is None else inputs.read_program(file, known)
-    drawn = drawing.draw(program, goal or (), place, seed, nodes)
+    drawn = sampled_environment.draw(program, goal or (), place, seed, nodes)
     graph = drawn.world.graph()
     if out is not None:
         exporting.write_release(graph, out)
@@ -156,7 +156,7 @@ def realism(
     Example:
       python cli.py environment realism release.zip --out realism
     """
-    from hearth.pipelines import realism as report
+    from hearth.analysis import distribution as report
 
     found = _homes(home, homes)
     theirs, their_states = report.observed(source, found.knowledge, limit)
@@ -192,7 +192,7 @@ def diversity(
     Example:
       python cli.py environment diversity watch_tv.txt --home maple --samples 1000
     """
-    from hearth.pipelines import realism as report
+    from hearth.analysis import distribution as report
 
     found = _homes([home], homes)
     found.names()
@@ -223,7 +223,7 @@ def preconditions(
       python cli.py environment preconditions release.zip --class cup --class sauce_pan --out data_out
       python cli.py environment preconditions release.zip --drawing bars.svg
     """
-    from hearth.pipelines import realism as report
+    from hearth.analysis import distribution as report
 
     names = classes or ["cup", "sauce_pan"]
     groups = {"programs": report.of_programs(source, inputs.read_knowledge(None), names, limit)}
@@ -244,7 +244,7 @@ def preconditions(
 
 
 def _svg(path: Path, text: str) -> None:
-    from hearth.schemas.errors import HearthError
+    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
     if path.suffix != ".svg":
@@ -260,7 +260,7 @@ def _bars(group: str, counts: Any) -> None:
 
 
 def _homes(names: list[str] | None, folder: Path | None) -> AllHomes:
-    from hearth.pipelines.library import Homes
-    from hearth.pipelines.settings import Settings
+    from hearth.pipelines.engine.build_homes import Homes
+    from hearth.pipelines.engine.settings import Settings
 
     return Homes(Settings(homes=tuple(names or ()), homes_folder=str(folder) if folder else None))

@@ -35,10 +35,10 @@ def export(
     Example:
       python cli.py export data_out --format nl --out words
     """
-    from hearth.exports.reading import Wanted
-    from hearth.exports.registry import COUNTED
-    from hearth.exports.registry import export as exported
-    from hearth.pipelines.dataset import Dataset
+    from hearth.datasets.dataset import Dataset
+    from hearth.datasets.export.batches import Wanted
+    from hearth.datasets.export.formats import COUNTED
+    from hearth.datasets.export.formats import export as exported
 
     number = exported(Dataset.open(dataset), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"

@@ -12,9 +12,9 @@ import typer
 from hearth.commands import options, output
 
 if TYPE_CHECKING:
-    from hearth.schemas.errors import Diagnostic
+    from hearth.homes.from_graph.graph_layout import LaidOut
+    from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.graph import EnvironmentGraph
-    from hearth.simulation.homes.graph_layout import LaidOut
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -33,9 +33,9 @@ def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> No
     Example:
       python cli.py home list --homes my_homes
     """
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
 
-    rows = [{"home": name, **_figures(_graph(name, homes))} for name in catalog.names(homes)]
+    rows = [{"home": name, **_figures(_graph(name, homes))} for name in library.names(homes)]
     if as_json:
         output.emit({"homes": rows})
         return
@@ -65,9 +65,9 @@ def show(
     """
     graph = _graph(home, homes)
     if out is not None:
-        from hearth.simulation.homes import plan_drawing
+        from hearth.homes import drawing
 
-        plan_drawing.write(_layout(home, homes), out)
+        drawing.write(_layout(home, homes), out)
     rooms = _rooms(graph)
     if as_json:
         output.emit({"home": home, **_figures(graph), "contents": rooms, "drawing": out})
@@ -98,13 +98,13 @@ def lint(
       python cli.py home lint TrimmedTestScene1_graph.json
       python cli.py home lint TrimmedTestScene1_graph.json --layout
     """
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import catalog
-    from hearth.simulation.homes.lint import lint as check
+    from hearth.homes import library
+    from hearth.homes.lint import lint as check
+    from hearth.kb.loading.load import default
 
     graph = _graph(home, homes)
     faults = check(graph, default(), file=home if Path(home).suffix else "")
-    laid = catalog.laid_out(home, default(), homes) if layout else None
+    laid = library.laid_out(home, default(), homes) if layout else None
     if as_json:
         told = {"home": home, "faults": faults, "by_code": _codes(faults)}
         output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
@@ -156,14 +156,14 @@ def convert(
       python cli.py home convert my_homes/oak.yaml my_homes/oak.ids.csv
       python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import catalog, exporting
+    from hearth.homes import exporting, library
+    from hearth.kb.loading.load import default
 
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(catalog.laid_out(home, default(), homes).graph if layout else graph, out)
+        written = exporting.write_release(library.laid_out(home, default(), homes).graph if layout else graph, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -183,10 +183,10 @@ def generate(
     Example:
       python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import exporting
-    from hearth.simulation.homes.generate import generate as draw_up
-    from hearth.simulation.homes.scene import scene
+    from hearth.homes import exporting
+    from hearth.homes.procedural.generate import generate as draw_up
+    from hearth.homes.scene_graph import scene
+    from hearth.kb.loading.load import default
 
     layout = draw_up(rooms, seed, default())
     if out is not None:
@@ -216,9 +216,9 @@ def edit(
     Example:
       python cli.py home edit maple --add apple:inside:137 --move 144:on:150 --set 137:OPEN --out mine.json
     """
-    from hearth.commands.edits import edited
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import exporting
+    from hearth.commands.home_edits import edited
+    from hearth.homes import exporting
+    from hearth.kb.loading.load import default
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
                         knowledge=default(), name=home)  # fmt: skip
@@ -244,14 +244,14 @@ def stats(
       python cli.py home stats --homes release_homes
       python cli.py home stats --generated 1000
     """
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import catalog
-    from hearth.simulation.homes.generate import generate as draw_up
-    from hearth.simulation.homes.scene import scene
-    from hearth.simulation.homes.statistics import beside, of_homes
+    from hearth.homes import library
+    from hearth.homes.procedural.generate import generate as draw_up
+    from hearth.homes.scene_graph import scene
+    from hearth.homes.statistics import beside, of_homes
+    from hearth.kb.loading.load import default
 
-    known, ours = default(), catalog.names()
-    theirs = [name for name in catalog.names(homes) if name not in ours] if homes else []
+    known, ours = default(), library.names()
+    theirs = [name for name in library.names(homes) if name not in ours] if homes else []
     groups = {
         "ours": of_homes((_graph(name, None) for name in ours), known),
         "generated": of_homes(
@@ -272,17 +272,17 @@ def stats(
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
+    from hearth.kb.loading.load import default
 
-    return catalog.graph_of(home, default()) if Path(home).suffix else catalog.load_graph(home, default(), homes)
+    return library.graph_of(home, default()) if Path(home).suffix else library.load_graph(home, default(), homes)
 
 
 def _layout(home: str, homes: Path | None) -> Any:
-    from hearth.kb.loading import default
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
+    from hearth.kb.loading.load import default
 
-    return catalog.layout_of(home, default()) if Path(home).suffix else catalog.load_layout(home, default(), homes)
+    return library.layout_of(home, default()) if Path(home).suffix else library.load_layout(home, default(), homes)
 
 
 def _figures(graph: EnvironmentGraph) -> dict[str, Any]:

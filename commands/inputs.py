@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from hearth.kb.knowledge import Knowledge
     from hearth.schemas.program import Program
-    from hearth.simulation.home import Home
+    from hearth.simulation.world.home import Home
 
 
 def paths(sources: Sequence[Path] | None) -> list[str]:
@@ -27,7 +27,7 @@ def read_knowledge(overlay: Path | None) -> Knowledge:
     Raises:
         HearthError: every fault of the user's files.
     """
-    from hearth.kb.loading import default, load
+    from hearth.kb.loading.load import default, load
 
     return load(overlay=overlay) if overlay else default()
 
@@ -39,9 +39,9 @@ def read_program(file: Path, known: Knowledge) -> Program:
         HearthError: every fault of the file.
     """
     from hearth.kb import grammar
-    from hearth.schemas.errors import Diagnostic, HearthError
+    from hearth.schemas.decoding import decode
+    from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.schemas.syntax import parse_program
-    from hearth.schemas.text import decode
 
     data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
     text = decode(data, str(file))
@@ -60,9 +60,9 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     Raises:
         HearthError: UNKNOWN_HOME, or what is wrong with the file.
     """
-    from hearth.simulation.home import Home
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
+    from hearth.simulation.world.home import Home
 
     if graph is not None:
-        return Home.from_graph(catalog.graph_of(graph, known), graph.stem, known)
-    return Home.from_graph(catalog.load_graph(name, known, homes), name, known)
+        return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
+    return Home.from_graph(library.load_graph(name, known, homes), name, known)

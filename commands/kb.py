@@ -11,7 +11,7 @@ from hearth.commands import options, output
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
-    from hearth.kb.compare import Comparison
+    from hearth.kb.tools.compare import Comparison
 
 app = typer.Typer(
     name="kb",
@@ -33,9 +33,9 @@ def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: option
     Example:
       python cli.py kb show fridge
     """
-    from hearth.kb.find import unknown
-    from hearth.kb.show import about_object
-    from hearth.schemas.errors import HearthError
+    from hearth.kb.tools.find import unknown
+    from hearth.kb.tools.show import about_object
+    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     thing = known.object_class(name)
@@ -55,9 +55,9 @@ def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> 
     Example:
       python cli.py kb action Open
     """
-    from hearth.kb.find import unknown
-    from hearth.kb.show import about_action
-    from hearth.schemas.errors import HearthError
+    from hearth.kb.tools.find import unknown
+    from hearth.kb.tools.show import about_action
+    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     found = known.action(name)
@@ -89,8 +89,8 @@ def find(
     Example:
       python cli.py kb find --can Grab --in fridge
     """
-    from hearth.kb.find import Query
-    from hearth.kb.find import find as find_objects
+    from hearth.kb.tools.find import Query
+    from hearth.kb.tools.find import find as find_objects
 
     query = Query(tuple(can or ()), on, inside, near, room, tuple(has or ()), tuple(may_be or ()), kind)
     found = find_objects(read_knowledge(kb), query)
@@ -116,9 +116,9 @@ def path(
     Example:
       python cli.py kb path spectacles book
     """
-    from hearth.kb.find import unknown
-    from hearth.kb.paths import path as chain
-    from hearth.schemas.errors import HearthError
+    from hearth.kb.tools.find import unknown
+    from hearth.kb.tools.paths import path as chain
+    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     try:
@@ -142,8 +142,8 @@ def lint(kb: options.Kb = None, as_json: options.Json = False) -> None:
     Example:
       python cli.py kb lint --kb my_knowledge
     """
-    from hearth.kb.lint import CHECKS
-    from hearth.kb.lint import lint as contradictions
+    from hearth.kb.consistency import CHECKS
+    from hearth.kb.consistency import lint as contradictions
 
     found = contradictions(read_knowledge(kb))
     if as_json:
@@ -172,7 +172,7 @@ def diff(
     Example:
       python cli.py kb diff ../shared/real/kb
     """
-    from hearth.kb.compare import compare, rejection
+    from hearth.kb.tools.compare import compare, rejection
 
     known = read_knowledge(kb)
     found = compare(known, other)
@@ -202,9 +202,9 @@ def mine(
     Example:
       python cli.py kb mine data_out
     """
-    from hearth.kb.mine import as_lines
-    from hearth.kb.mine import mine as propose
-    from hearth.kb.published import programs
+    from hearth.kb.tools.mine import as_lines
+    from hearth.kb.tools.mine import mine as propose
+    from hearth.kb.tools.published_programs import programs
 
     found = propose(programs(dataset), read_knowledge(kb), least, confidence)
     if as_json:
@@ -233,7 +233,7 @@ def export(
     Example:
       python cli.py kb export pddl --to domain.pddl
     """
-    from hearth.kb.export import export as write
+    from hearth.kb.tools.export import export as write
 
     text = write(read_knowledge(kb), form, to)
     if text:

@@ -9,7 +9,7 @@ from typing import Any, TextIO
 
 import typer
 
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 
 OK = 0
 """Done; rejected records are reported, not fatal."""

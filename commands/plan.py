@@ -30,9 +30,9 @@ def plan(
     Example:
       python cli.py plan data_out --problems 20
     """
-    from hearth.commands.waiting import bar
-    from hearth.exports.planning import agreement
-    from hearth.pipelines.dataset import Dataset
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.dataset import Dataset
+    from hearth.datasets.export.planning import agreement
 
     with bar("problems") as seen:
         found = agreement(Dataset.open(dataset), problems, workers, seen)

@@ -27,7 +27,7 @@ def query(dataset: options.Dataset, sql: Sql, rows: Rows = 100, as_json: options
     """
     import sys
 
-    from hearth.pipelines.dataset import Dataset
+    from hearth.datasets.dataset import Dataset
 
     text = sys.stdin.read() if sql == "-" else sql
     columns, found = Dataset.open(dataset).rows(text, rows + 1 if rows and not as_json else None)

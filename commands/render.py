@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hearth.kb.knowledge import Knowledge
-    from hearth.rendering.snapshots import Snapshot
-    from hearth.rendering.visibility import Looked
+    from hearth.rendering.cameras.visibility import Looked
+    from hearth.rendering.film.snapshots import Snapshot
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
 
@@ -76,13 +76,13 @@ def program(
       python cli.py render-program watch_tv.txt --home maple --out pictures
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
     """
-    from hearth.kb.loading import default
-    from hearth.rendering.laid import laid
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
+    from hearth.kb.loading.load import default
+    from hearth.rendering.scene.laid_out import laid
 
     known = default()
     execution = _execution(file, home, homes, seed, known)
-    place = laid(catalog.load_graph(home, known, homes), home, known)
+    place = laid(library.load_graph(home, known, homes), home, known)
     graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
     taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
@@ -130,8 +130,8 @@ def _snapshots(
     taken: Taken,
     modalities: list[str],
 ) -> dict[str, Any]:
-    from hearth.rendering.contact import caption
-    from hearth.rendering.snapshots import TOP, snapshots
+    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
     how = {"size": taken.size, "quality": quality, "seed": taken.seed, "hour": taken.hour}
@@ -156,11 +156,11 @@ def _videos(
 ) -> dict[str, Any]:
     import orjson
 
-    from hearth.rendering.contact import caption
-    from hearth.rendering.player import page
-    from hearth.rendering.snapshots import play
-    from hearth.rendering.variation import drawn
-    from hearth.rendering.video import record
+    from hearth.rendering.film.contact import caption
+    from hearth.rendering.film.player import page
+    from hearth.rendering.film.snapshots import play
+    from hearth.rendering.film.video import record
+    from hearth.rendering.scene.variation import drawn
 
     variation = drawn(taken.seed, taken.title) if taken.vary else None
     staged = play(execution, graph, known, seed=taken.seed, hour=taken.hour, variation=variation)
@@ -179,8 +179,8 @@ def _videos(
 
 
 def _sheet(out: Path, frames: list[Any], title: str) -> str:
-    from hearth.rendering.contact import contact_sheet
-    from hearth.rendering.png import encode
+    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.png import encode
 
     path = out / "sheet.png"
     path.write_bytes(encode(contact_sheet(frames, title)))
@@ -195,9 +195,9 @@ def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> No
     Example:
       python cli.py render-sheet --out models.png
     """
-    from hearth.rendering.png import encode
-    from hearth.rendering.sheet import entries
-    from hearth.rendering.sheet import sheet as draw
+    from hearth.rendering.film.png import encode
+    from hearth.rendering.models.sheet import entries
+    from hearth.rendering.models.sheet import sheet as draw
 
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
@@ -218,8 +218,8 @@ def visible(
     Example:
       python cli.py render-visible --count 30 --seed 7
     """
-    from hearth.commands.waiting import bar, watched
-    from hearth.rendering.visibility import shares
+    from hearth.commands.progress_line import bar, watched
+    from hearth.rendering.cameras.visibility import shares
 
     found, missed, programs = [], [], 0
     with bar("programs looked at") as seen:
@@ -245,21 +245,21 @@ def visible(
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[Looked]]]:
     """Programs that run, drawn by the seed, each in the next of our homes; with what can be seen of each."""
+    from hearth.analysis.coverage import Script, scripts
     from hearth.grounding.trial import attempt
-    from hearth.pipelines.rehearsal import Script, scripts
-    from hearth.rendering.snapshots import play
-    from hearth.rendering.visibility import looks
+    from hearth.homes import library
+    from hearth.rendering.cameras.visibility import looks
+    from hearth.rendering.film.snapshots import play
     from hearth.schemas.failures import Failure
     from hearth.schemas.rng import rng
-    from hearth.simulation.home import Home
-    from hearth.simulation.homes import catalog
+    from hearth.simulation.world.home import Home
 
-    known, names = inputs.read_knowledge(None), catalog.names()
+    known, names = inputs.read_knowledge(None), library.names()
     read = [script.program for script in scripts(inputs.paths(sources), known) if isinstance(script, Script)]
     rng(seed, "visible", "").shuffle(read)
     for number, program in enumerate(read):
         name = names[number % len(names)]
-        graph = catalog.load_graph(name, known)
+        graph = library.load_graph(name, known)
         trial = attempt(program, Home.from_graph(graph, name, known), seed)
         if isinstance(trial, Failure) or not trial.execution.executable:
             continue
@@ -271,7 +271,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
 
 def _execution(file: Path, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.trial import attempt
-    from hearth.schemas.errors import HearthError
+    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
 
     trial = attempt(inputs.read_program(file, known), inputs.read_home(home, None, homes, known), seed)
@@ -283,9 +283,9 @@ def _execution(file: Path, home: str, homes: Path | None, seed: int, known: Know
 def _write(out: Path, shot: Snapshot, modalities: list[str]) -> list[str]:
     import orjson
 
+    from hearth.rendering.film.png import encode
+    from hearth.rendering.film.snapshots import TOP
     from hearth.rendering.modalities import PICTURES
-    from hearth.rendering.png import encode
-    from hearth.rendering.snapshots import TOP
 
     view = TOP if shot.camera.name == TOP else "auto"
     names = []

@@ -12,10 +12,10 @@ from hearth.commands import options, output
 from hearth.commands.inputs import read_home, read_knowledge, read_program
 
 if TYPE_CHECKING:
-    from hearth.grounding.perturbing import Chances
     from hearth.kb.knowledge import Knowledge
-    from hearth.pipelines.augmenting import Augmented, Pair
-    from hearth.pipelines.repairing import Attempt
+    from hearth.repair.loop import Attempt
+    from hearth.repair.perturb import Chances
+    from hearth.repair.variants import Augmented, Pair
     from hearth.schemas.program import Program, Step
 
 Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of what is perturbed and of the environments.")]
@@ -40,13 +40,14 @@ def repair(
     """Perturb what a program relies on, and show how it is repaired.
 
     Prints what was made otherwise, then each failure with its repair, then the repaired program. Kinds of perturbation
-    are those of augment.yaml: open, on, plugged, free, at_reach, ... The status is 1 if a program can't be repaired.
+    are those of perturbations.yaml: open, on, plugged, free, at_reach, ...
+    The status is 1 if a program can't be repaired.
 
     \b
     Example:
       python cli.py repair watch_tv.txt --home maple --seed 3 --perturb free --perturb on
     """
-    from hearth.pipelines.augmenting import Options, augment
+    from hearth.repair.variants import Options, augment
     from hearth.schemas.failures import Failure
 
     known = read_knowledge(kb)
@@ -73,15 +74,15 @@ def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
 
 
 def _chances(kinds: list[str] | None) -> Chances | None:
-    """Only the kinds asked for, all of them wherever they apply; those of augment.yaml when none are.
+    """Only the kinds asked for, all of them wherever they apply; those of perturbations.yaml when none are.
 
     Raises:
         HearthError: UNKNOWN_ID, with the kinds there are.
     """
     if not kinds:
         return None
-    from hearth.grounding.perturbing import PERTURBATIONS, Chances
-    from hearth.schemas.errors import HearthError
+    from hearth.repair.perturb import PERTURBATIONS, Chances
+    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
     unknown = [kind for kind in kinds if kind not in PERTURBATIONS]

@@ -10,7 +10,7 @@ import typer
 from hearth.commands import options, output
 
 if TYPE_CHECKING:
-    from hearth.pipelines.replay import Replayed
+    from hearth.analysis.release_replay import Replayed
 
 Release = Annotated[Path, typer.Argument(metavar="RELEASE", help="The release, as its zip file or a folder.")]
 Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Stop after N programs.")]
@@ -37,9 +37,9 @@ def replay(
     """
     from itertools import islice
 
-    from hearth.commands.waiting import bar, watched
-    from hearth.kb.loading import default
-    from hearth.pipelines.replay import replay as run_all
+    from hearth.analysis.release_replay import replay as run_all
+    from hearth.commands.progress_line import bar, watched
+    from hearth.kb.loading.load import default
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     found = islice(run_all(release, default(), DEFAULT if default_rules else REPLAY), limit)

@@ -27,9 +27,9 @@ def report(
     Example:
       python cli.py report data_out --out report_out
     """
-    from hearth.commands.waiting import bar
-    from hearth.pipelines.dataset import Dataset
-    from hearth.report.write import write_report
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.dataset import Dataset
+    from hearth.datasets.report.write import write_report
 
     with bar("shares of programs told") as seen:
         programs = write_report(Dataset.open(dataset), out, workers, seen)

@@ -13,14 +13,14 @@ from hearth.commands.inputs import read_home, read_knowledge, read_program
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from hearth.grounding.stances import Stance
     from hearth.grounding.trial import Trial
     from hearth.schemas.change import Change
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
-    from hearth.simulation.home import Home
+    from hearth.simulation.motion.base_pose import Stance
     from hearth.simulation.rules import Rules
-    from hearth.simulation.world import World
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
 
 Seed = Annotated[int, typer.Option("--seed", metavar="N", help="For what has to be added to the home.")]
 AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and leave its states as they are.")]
@@ -94,13 +94,13 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
 
 def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[Stance, ...], ...]:
     """How the character stands for each step; nothing in homes without geometry."""
-    from hearth.grounding.stances import stances
-    from hearth.simulation.homes import catalog
-    from hearth.simulation.navigation import Ways
+    from hearth.homes import library
+    from hearth.simulation.motion.base_pose import stances
+    from hearth.simulation.motion.navigation import Ways
 
-    if place.name not in catalog.names(homes) or place.node(place.agents[0]).box is None:
+    if place.name not in library.names(homes) or place.node(place.agents[0]).box is None:
         return ()
-    return stances(trial.execution, Ways(catalog.load_layout(place.name, place.knowledge, homes).floor))
+    return stances(trial.execution, Ways(library.load_layout(place.name, place.knowledge, homes).floor))
 
 
 def _stance(stance: Stance) -> str:
@@ -152,7 +152,7 @@ def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
 
 
 def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, Any]:
-    from hearth.pipelines.rows import change_row
+    from hearth.datasets.format.codecs import change_row
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
 

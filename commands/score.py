@@ -14,7 +14,7 @@ from hearth.commands import inputs, options, output
 if TYPE_CHECKING:
     from hearth.scoring.bootstrap import Interval
     from hearth.scoring.evaluate import Options, Scored, Summary
-    from hearth.scoring.lcs import LcsScore
+    from hearth.scoring.metrics.lcs import LcsScore
     from hearth.scoring.predictions import Pair
 
 app = typer.Typer(
@@ -79,7 +79,7 @@ def lcs(
     """
     from hearth.scoring.bootstrap import intervals
     from hearth.scoring.evaluate import lcs_of
-    from hearth.scoring.lcs import LEVELS, lcs_signature
+    from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
 
     pairs = read_pairs(file, references)
@@ -156,8 +156,8 @@ def program(
     """
     from functools import partial
 
-    from hearth.pipelines.judging import read_line
     from hearth.scoring import environments
+    from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import Options, evaluate
     from hearth.scoring.predictions import read_pairs
     from hearth.simulation.rules import DEFAULT, REPLAY
@@ -259,9 +259,9 @@ def dataset(
     Example:
       python cli.py score dataset data_out mine.jsonl --split activities --by activity
     """
-    from hearth.commands.waiting import bar
-    from hearth.pipelines.dataset import Dataset
-    from hearth.pipelines.judging import judge
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.dataset import Dataset
+    from hearth.scoring.dataset_scores import judge
     from hearth.scoring.evaluate import Options
 
     how = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
@@ -288,9 +288,9 @@ def baselines(
     Example:
       python cli.py score baselines data_out
     """
-    from hearth.pipelines.baselines import THESIS, Result
-    from hearth.pipelines.baselines import baselines as run
-    from hearth.pipelines.dataset import Dataset
+    from hearth.datasets.dataset import Dataset
+    from hearth.scoring.baselines import THESIS, Result
+    from hearth.scoring.baselines import baselines as run
 
     found = run(Dataset.open(folder), split, seed)
     if as_json:
@@ -321,8 +321,8 @@ def graphs(
     Example:
       python cli.py score graphs mine.json theirs.json --nodes 41,65
     """
-    from hearth.scoring.files import final_graph, node_ids
-    from hearth.scoring.graph_f1 import f1_signature, score
+    from hearth.scoring.graph_files import final_graph, node_ids
+    from hearth.scoring.metrics.graph_f1 import f1_signature, score
 
     ours, theirs = node_ids(nodes)
     found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value)

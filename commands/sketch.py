@@ -11,10 +11,10 @@ from hearth.commands import options, output
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
+    from hearth.analysis.coverage import Script
+    from hearth.analysis.sketch_evaluation import Judgement
     from hearth.kb.knowledge import Knowledge
-    from hearth.pipelines.rehearsal import Script
-    from hearth.pipelines.sketch_judging import Judgement
-    from hearth.simulation.home import Home
+    from hearth.simulation.world.home import Home
 
 Sources = Annotated[list[Path], typer.Argument(metavar="SOURCE...", help="Programs, in any form that is read.")]
 Judge = Annotated[
@@ -44,9 +44,9 @@ def sketch(
       python cli.py sketch watch_tv.txt
       python cli.py sketch release.zip --judge sketch_annotation.json --disagreements
     """
-    from hearth.pipelines.rehearsal import scripts
-    from hearth.pipelines.rejects import Reject
-    from hearth.schemas.errors import HearthError
+    from hearth.analysis.coverage import scripts
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.storage.rejects import Reject
 
     known = read_knowledge(kb)
     found = list(scripts(map(str, sources), known))
@@ -61,16 +61,16 @@ def sketch(
 
 
 def _homes(folder: Path | None, known: Knowledge) -> list[Home]:
-    from hearth.pipelines.sketching import ENVIRONMENTS
-    from hearth.simulation.home import Home
-    from hearth.simulation.homes import catalog
+    from hearth.homes import library
+    from hearth.repair.sketch import ENVIRONMENTS
+    from hearth.simulation.world.home import Home
 
-    names = catalog.names(folder)[:ENVIRONMENTS]
-    return [Home.from_graph(catalog.load_graph(name, known, folder), name, known) for name in names]
+    names = library.names(folder)[:ENVIRONMENTS]
+    return [Home.from_graph(library.load_graph(name, known, folder), name, known) for name in names]
 
 
 def _show(programs: list[Script], places: list[Home], known: Knowledge, seed: int, as_json: bool) -> None:
-    from hearth.pipelines.sketching import sketch as inferred
+    from hearth.repair.sketch import sketch as inferred
     from hearth.schemas.syntax import print_step
 
     told = []
@@ -93,8 +93,8 @@ def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None
 def _judge(
     file: Path, programs: list[Script], places: list[Home], known: Knowledge, seed: int, *, as_json: bool, every: bool
 ) -> None:
-    from hearth.pipelines.sketch_judging import annotated, judge
-    from hearth.schemas.errors import HearthError
+    from hearth.analysis.sketch_evaluation import annotated, judge
+    from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
     if not file.is_file():

@@ -16,8 +16,8 @@ def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: opti
     Example:
       python cli.py verify data_out
     """
-    from hearth.commands.waiting import bar
-    from hearth.pipelines.verify import verify as checked
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.verify import verify as checked
 
     with bar("shares run again") as seen:
         found = checked(dataset, workers, seen)

@@ -15,11 +15,11 @@ from operator import and_
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.simulation import rows
-from hearth.simulation.bits import indices
 from hearth.simulation.engine import act, together
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.world import World
 
 MAX_ACTS = 20_000
 """Steps tried before a binding is given up."""

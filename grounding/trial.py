@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.grounding.base import prepared
 from hearth.grounding.binding import Binding, bind
-from hearth.grounding.sampling import Environment, sample
-from hearth.grounding.together import sample_together
+from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.multi_agent import sample_together
+from hearth.grounding.environments.sampling import Environment, sample
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.env import with_agents
-from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import print_object

@@ -6,16 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, lru_cache
 
-from hearth.grounding.conditions import Preconditions
-from hearth.grounding.perturbing import Chances, Perturbation
-from hearth.grounding.sampling import Environment
-from hearth.pipelines.augmenting import Augmented, Options, Pair, augment, default_chances
-from hearth.pipelines.cases import environment_of, rerun, run_row
-from hearth.pipelines.library import Homes
-from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.repairing import Attempt, successes
-from hearth.pipelines.rows import (
+from hearth.datasets.format.cases import environment_of, rerun, run_row
+from hearth.datasets.format.codecs import (
     condition_rows,
     conditions_of,
     environment_row,
@@ -24,10 +16,16 @@ from hearth.pipelines.rows import (
     program_of,
     step_rows,
 )
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.sketching import ENVIRONMENTS, Keep, inherited, sketch
-from hearth.pipelines.stage import Job, Output, Plan, Stage
-from hearth.pipelines.surroundings import knowledge_used, overlays
+from hearth.grounding.environments.sampling import Environment
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job, Output, Plan, Stage
+from hearth.repair.loop import Attempt, successes
+from hearth.repair.perturb import Chances, Perturbation
+from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
+from hearth.repair.variants import Augmented, Options, Pair, augment, default_chances
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -37,11 +35,13 @@ from hearth.schemas.structs import DifferenceRow, PerturbationRow, RepairRow
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED, TRIED
 from hearth.simulation.engine import Execution
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+from hearth.storage.manifest import read_manifest
+from hearth.storage.rejects import Reject
 
 THESIS = 0.7
-"""The probability of perturbing a precondition (thesis 5.5.4), to which augment.yaml's are relative."""
+"""The probability of perturbing a precondition (thesis 5.5.4), to which perturbations.yaml's are relative."""
 
 ALLOWANCE = 1.3
 """Pairs made for one program that is wanted: some turn out duplicates, some rely on too little to be perturbed."""

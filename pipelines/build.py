@@ -10,20 +10,20 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from hearth.pipelines.engines import engine as make_engine
-from hearth.pipelines.estimates import foretold
-from hearth.pipelines.lock import locked
-from hearth.pipelines.manifest import Manifest, read_manifest
-from hearth.pipelines.parts import Counts
-from hearth.pipelines.progress import Progress
-from hearth.pipelines.run import REJECTS, run_stage
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.stages import STAGES, stage
-from hearth.pipelines.stores import fetched, working
-from hearth.pipelines.surroundings import kept_knowledge
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.pipelines.engine.context import kept_knowledge
+from hearth.pipelines.engine.engines import engine as make_engine
+from hearth.pipelines.engine.estimates import foretold
+from hearth.pipelines.engine.progress import Progress
+from hearth.pipelines.engine.runner import REJECTS, run_stage
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stages import STAGES, stage
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import RejectedRow
+from hearth.storage.lock import locked
+from hearth.storage.manifest import Manifest, read_manifest
+from hearth.storage.partitions import Counts
+from hearth.storage.stores import fetched, working
 
 CORPUS = ("crowd/descriptions.csv", "crowd/programs.csv")
 """The embedded corpus, in `data_raw`."""

@@ -5,27 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypedDict
 
-from hearth.pipelines.described import Described
-from hearth.pipelines.duplicates import Copies, pasted
-from hearth.pipelines.files import value_digest
-from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
+from hearth.pipelines.crowd.copied_answers import Copies, pasted
+from hearth.pipelines.crowd.known_descriptions import Described
+from hearth.pipelines.crowd.repeated import Repeated
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.sources import labelled, salt
+from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
+from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
 from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.repeated import Repeated
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.sources import labelled, salt
-from hearth.pipelines.stage import BATCH, Job, Partition, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.tables import INGESTED
+from hearth.storage.files import value_digest
+from hearth.storage.rejects import Reject
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
     crowd.NAME: crowd.scan,
     text.NAME: text.scan,
-    spoken.NAME: spoken.scan,
-    TEXTS: spoken.scan_list,
+    plans.NAME: plans.scan,
+    TEXTS: plans.scan_list,
     ours.NAME: ours.scan,
     LISTED: ours.scan_list,
     DOCUMENT: ours.scan_document,
@@ -39,7 +39,7 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
     text.NAME: lambda item, salt: [text.read(item)],
-    spoken.NAME: lambda item, salt: [spoken.read(item)],
+    plans.NAME: lambda item, salt: [plans.read(item)],
     ours.NAME: lambda item, salt: ours.read(item),
     published.NAME: lambda item, salt: published.read(item),
     sketches.NAME: lambda item, salt: [sketches.read(item)],
@@ -48,7 +48,7 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
 }
 """What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
 
-WEIGHTS = {text.NAME: 1, spoken.NAME: 4, ours.NAME: 4, release.NAME: 256, scenes.NAME: 1024}
+WEIGHTS = {text.NAME: 1, plans.NAME: 4, ours.NAME: 4, release.NAME: 256, scenes.NAME: 1024}
 """What a record counts towards filling a partition, by what it brings; others count `_USUAL`."""
 
 _USUAL = 64

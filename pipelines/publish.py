@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from hearth.pipelines.cases import difference_on_replay
-from hearth.pipelines.library import Homes
-from hearth.pipelines.naming import STAMP, activity_id, split_of
-from hearth.pipelines.publishing import finish
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.stage import Job, Stage
-from hearth.pipelines.surroundings import knowledge_used, overlays
+from hearth.datasets.format.cases import difference_on_replay
+from hearth.datasets.format.ids import STAMP, activity_id, split_of
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.final_tables import finish
+from hearth.pipelines.engine.stage import Job, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row
 from hearth.schemas.tables import TABLES
+from hearth.storage.rejects import Reject
 
 PER_CASE = ("programs", "environments", "executions", "repairs")
 """Tables whose rows come from one case each; the others need all of them."""

@@ -7,22 +7,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.pipelines.cases import rerun
-from hearth.pipelines.files import value_digest, write_bytes
-from hearth.pipelines.library import Homes
-from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import READ_BATCH, read_rows
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Partition, Plan, Stage
-from hearth.pipelines.surroundings import knowledge_used, overlays
+from hearth.datasets.format.cases import rerun
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.rows import CaseRow, FilmedRow, RenderedRow
 from hearth.schemas.structs import PinholeRow, TrackRow
 from hearth.schemas.tables import FILMED, RENDERED
+from hearth.storage.files import value_digest, write_bytes
+from hearth.storage.manifest import read_manifest
+from hearth.storage.partitions import READ_BATCH, read_rows
 
 if TYPE_CHECKING:
-    from hearth.rendering.camera import Camera
-    from hearth.rendering.laid import Laid
-    from hearth.rendering.snapshots import Snapshot
+    from hearth.rendering.cameras.camera import Camera
+    from hearth.rendering.film.snapshots import Snapshot
+    from hearth.rendering.scene.laid_out import Laid
     from hearth.simulation.engine import Execution
 
 AUTO = "auto"
@@ -45,19 +45,19 @@ class Context(NamedTuple):
 
     def home(self, name: str) -> Laid:
         """A home with geometry, which is made if it has none; once a process."""
-        from hearth.rendering.laid import laid
-        from hearth.simulation.homes import catalog
+        from hearth.homes import library
+        from hearth.rendering.scene.laid_out import laid
 
         if name not in self.laid:
-            graph = catalog.load_graph(name, self.homes.knowledge, self.job.settings.homes_folder)
+            graph = library.load_graph(name, self.homes.knowledge, self.job.settings.homes_folder)
             self.laid[name] = laid(graph, name, self.homes.knowledge)
         return self.laid[name]
 
 
 def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow]]:
     """One row for each picture of a case, and one for its film, if it is filmed."""
-    from hearth.rendering.png import encode
-    from hearth.rendering.snapshots import snapshots
+    from hearth.rendering.film.png import encode
+    from hearth.rendering.film.snapshots import snapshots
 
     job, place = context.job, context.home(case["home"])
     home = place.graph
@@ -80,9 +80,9 @@ FILM_SIZE, FILM_RATE = (320, 240), 15.0
 
 def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) -> FilmedRow:
     """Write a film, as webm: browsers play that, and not the mp4 that OpenCV writes."""
-    from hearth.rendering.snapshots import play
-    from hearth.rendering.variation import drawn
-    from hearth.rendering.video import record
+    from hearth.rendering.film.snapshots import play
+    from hearth.rendering.film.video import record
+    from hearth.rendering.scene.variation import drawn
 
     name, job, home = case["execution_id"], context.job, place.graph
     folder = f"{FILMS}/{_folder(name)}"

@@ -9,20 +9,17 @@ from typing import NamedTuple
 
 import pyarrow.parquet as pq
 
-from hearth.grounding.conditions import Preconditions
-from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import sample
+from hearth.datasets.format.cases import difference_of, environment_of, run_row
+from hearth.datasets.format.codecs import bindings_of, change_of, condition_rows, graph_of, named, program_of
+from hearth.datasets.format.shared_homes import common, write_home
+from hearth.grounding.environments.sampling import sample
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.grounding.preconditions.infer import infer
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.cases import difference_of, environment_of, run_row
-from hearth.pipelines.derived import common, write_home
-from hearth.pipelines.library import DERIVED, Homes
-from hearth.pipelines.manifest import read_manifest
-from hearth.pipelines.parts import read_rows
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import bindings_of, change_of, condition_rows, graph_of, named, program_of
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Job, Plan, Stage
-from hearth.pipelines.surroundings import knowledge_used, overlays
+from hearth.pipelines.engine.build_homes import DERIVED, Homes
+from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
@@ -30,9 +27,12 @@ from hearth.schemas.rows import CaseRow, GroundingRow, RunRow, ValidatedRow
 from hearth.schemas.structs import ConditionRow, DifferenceRow, GraphRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
 from hearth.simulation.rules import REPLAY, RULES, Rules
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+from hearth.storage.manifest import read_manifest
+from hearth.storage.partitions import read_rows
+from hearth.storage.rejects import Reject
 
 SHARED_BY = 32
 """Start graphs that are compared to find out what a home is where only environments of it are known."""

@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from hearth.datasets.format.codecs import binding_rows, named, step_rows, warning_row
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines import lint, special
-from hearth.pipelines.readers import spoken
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import binding_rows, named, step_rows, warning_row
-from hearth.pipelines.spoken import parse_spoken
-from hearth.pipelines.stage import Job, Plan, Stage
-from hearth.pipelines.surroundings import keep_knowledge, knowledge, knowledge_used, overlays
-from hearth.schemas.errors import Diagnostic
+from hearth.kb.language.plans import parse_spoken
+from hearth.pipelines.checks import programs, special
+from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_used, overlays
+from hearth.pipelines.engine.stage import Job, Plan, Stage
+from hearth.pipelines.readers import plans
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program
 from hearth.schemas.rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
+from hearth.storage.rejects import Reject
 
 
 def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
     """Check one program, and each of its groundings; a grounding at fault is refused alone."""
-    check = checked_words if record["origin"] == spoken.NAME else checked
+    check = checked_words if record["origin"] == plans.NAME else checked
     program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
     if faults:
         return [Reject(faults)]
@@ -33,9 +33,9 @@ def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject
     told = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    start = lint.already(program, groundings, record["conditions"] or (), known)
-    found = [*lint.findings(told, known), *lint.undeclared(told, record, known), *start]
-    warnings = (*warnings, *(lint.diagnostic(each, told, record["place"]) for each in found))
+    start = programs.already(program, groundings, record["conditions"] or (), known)
+    found = [*programs.findings(told, known), *programs.undeclared(told, record, known), *start]
+    warnings = (*warnings, *(programs.diagnostic(each, told, record["place"]) for each in found))
     row: ValidatedRow = {
         **named(record),
         "title": told.title,
@@ -67,7 +67,9 @@ def checked(
     if not faults:
         faults = grammar.affordances(program, known, place, source)
     if not faults:
-        faults = tuple(lint.diagnostic(each, program, place, source) for each in lint.contradictions(program, known))
+        faults = tuple(
+            programs.diagnostic(each, program, place, source) for each in programs.contradictions(program, known)
+        )
     faults = tuple(sorted((expanded.placed(fault) for fault in faults), key=lambda f: (f.line, f.column)))
     lines = tuple(expanded.original(line) for line in program.lines)
     program = replace(program, lines=lines)
@@ -89,7 +91,7 @@ def checked_words(
     heard = parse_spoken(text, before, place, known)
     faults = heard.faults or grammar.affordances(heard.program, known, place)
     # Words lose instances: what is switched on twice may be two things, so that this is only a warning here.
-    twice = (lint.diagnostic(each, heard.program, place) for each in lint.contradictions(heard.program, known))
+    twice = (programs.diagnostic(each, heard.program, place) for each in programs.contradictions(heard.program, known))
     warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place), *twice)
     return heard.program, faults, () if faults else warnings
 

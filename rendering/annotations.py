@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering.camera import Camera, point_of
-from hearth.rendering.figure import Figure, figure_mesh
-from hearth.rendering.maps import extents
-from hearth.rendering.models import draw
-from hearth.rendering.shot import Shot
-from hearth.rendering.things import Thing
+from hearth.rendering.cameras.camera import Camera, point_of
+from hearth.rendering.models.looks import draw
+from hearth.rendering.people.figure import Figure, figure_mesh
+from hearth.rendering.rays.maps import extents
+from hearth.rendering.rays.shot import Shot
+from hearth.rendering.scene.instances import Thing
 from hearth.schemas.graph import Point
 
 

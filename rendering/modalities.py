@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering import maps, shading
 from hearth.rendering.annotations import boxes, camera_of, poses
 from hearth.rendering.arrays import Image
-from hearth.rendering.camera import Camera
-from hearth.rendering.fine import fine
-from hearth.rendering.flow import flow_of
-from hearth.rendering.scene import Scene
-from hearth.rendering.shot import Shot, draft, everywhere, shoot
-from hearth.rendering.threads import each
-from hearth.schemas.errors import HearthError
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.rays import maps, shading
+from hearth.rendering.rays.fine import fine
+from hearth.rendering.rays.flow import flow_of
+from hearth.rendering.rays.shot import Shot, draft, everywhere, shoot
+from hearth.rendering.rays.threads import each
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 QUALITIES = ("draft", "fine")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 
 _FORM = "write [Action] <object> (1), with `|` between the agents of one tick"

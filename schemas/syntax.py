@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from hearth.schemas.blocks import STEP, Splitter
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.malformed import explain, special
 from hearth.schemas.program import ObjectRef, Program, Step

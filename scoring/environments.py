@@ -6,12 +6,12 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
+from hearth.homes.library import graph_of, load_graph
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.scoring.predictions import Pair
-from hearth.simulation.home import Home
-from hearth.simulation.homes.catalog import graph_of, load_graph
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 Environments = Callable[[Pair], World | None]
 """Gives the world a pair's programs start in, or None when none is known."""

@@ -11,20 +11,21 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Program
-from hearth.scoring import executability as running
-from hearth.scoring import goals, parse
 from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
-from hearth.scoring.executability import ErrorClass, Executability, executability
-from hearth.scoring.goals import Satisfaction, goal_of, satisfaction
-from hearth.scoring.graph_f1 import FAILED, GraphScore, MatchBy, Scope, f1_signature, named
-from hearth.scoring.graph_f1 import score as graph_score
-from hearth.scoring.lcs import LcsScore, lcs_signature, score_pairs
-from hearth.scoring.parse import Parsability, parsability
+from hearth.scoring.lines import Lines
+from hearth.scoring.metrics import executability as running
+from hearth.scoring.metrics import goals
+from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
+from hearth.scoring.metrics.goals import Satisfaction, goal_of, satisfaction
+from hearth.scoring.metrics.graph_f1 import FAILED, GraphScore, MatchBy, Scope, f1_signature, named
+from hearth.scoring.metrics.graph_f1 import score as graph_score
+from hearth.scoring.metrics.lcs import LcsScore, lcs_signature, score_pairs
+from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
+from hearth.scoring.metrics.parsability import Parsability, parsability
 from hearth.scoring.predictions import Pair
-from hearth.scoring.reading import Lines
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.world import World
+from hearth.simulation.world.world import World
 
 NO_LCS = LcsScore(0.0, 0.0, 0.0)
 
@@ -140,7 +141,7 @@ def signatures(options: Options) -> dict[str, str]:
     """What each family of scores is, exactly."""
     return {
         **{f"lcs_{level}": lcs_signature(level, options.instances) for level in ("step", "action", "object")},
-        "parsable": parse.SIGNATURE,
+        "parsable": PARSABLE,
         "executable": running.SIGNATURE,
         "f1": f1_signature(options.match, options.scope),
         "goal": goals.SIGNATURE,

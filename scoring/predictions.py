@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.reading import Lines, Reader, Source, read
-from hearth.scoring.rows import Named, Row, rows_of, source_of
+from hearth.scoring.lines import Lines, Reader, Source, read
+from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
 
 SHOWN = 20
 """Faults of one kind that are listed; the rest are counted."""

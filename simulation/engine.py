@@ -10,7 +10,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.world import World
+from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 from hearth.schemas.change import Change
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
-from hearth.simulation.bits import indices
-from hearth.simulation.edit import edit, free_id
-from hearth.simulation.home import Home
-from hearth.simulation.legal import Legal, legal
+from hearth.simulation.actions.legal import Legal, legal
+from hearth.simulation.observation.views import Deed, View, view
 from hearth.simulation.rules import DEFAULT, Rules
-from hearth.simulation.views import Deed, View, view
-from hearth.simulation.world import World
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import edit, free_id
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Env:
         partial: whether agents see only what is around them.
         world: as it is now.
         ticks: what happened since `reset`.
-        eyes: what takes pictures for `observe` (`hearth.rendering.eyes.Eyes`); none at first.
+        eyes: what takes pictures for `observe` (`hearth.rendering.cameras.sensor.Eyes`); none at first.
     """
 
     world: World
@@ -104,7 +104,7 @@ class Env:
         self._check(agent)
         if modalities:
             if self.eyes is None:
-                remedy = "env.eyes = hearth.rendering.eyes.Eyes(graph, knowledge)"
+                remedy = "env.eyes = hearth.rendering.cameras.sensor.Eyes(graph, knowledge)"
                 raise HearthError.of(Code.NOT_RENDERED, "the environment has no eyes", suggestion=remedy)
             return self.eyes(self, agent, modalities)
         return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))

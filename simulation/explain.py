@@ -9,12 +9,12 @@ from hearth.kb.formula import And, Formula, Or, Some, Term
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID, STATES
-from hearth.simulation import rows
-from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices, lowest
-from hearth.simulation.nodes import states_of
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)

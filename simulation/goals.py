@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from hearth.schemas.change import Change
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
 from hearth.simulation.holds import Candidates, candidates
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 _RELATIONS = frozenset({*RELATIONS, HOLDS})
 

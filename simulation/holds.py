@@ -11,11 +11,11 @@ from typing import Any, NamedTuple, TypeVar
 
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, RELATION_OF, STATE_OF, Key, Literal, Name
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
-from hearth.simulation import rows
-from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices, mask_of
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 T = TypeVar("T", bound=Key | Name)
 

@@ -10,14 +10,19 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from hearth.kb.loading import default
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
+from hearth.homes import library
+from hearth.kb.loading.load import default
+from hearth.simulation.world.home import Home
 
 settings.register_profile("hearth", derandomize=True, deadline=None, max_examples=50)
 settings.load_profile("hearth")
 
 ROOT = Path(__file__).resolve().parents[1]
+
+# `python -m pytest` puts the checkout first in the path, where `datasets` would hide the library of that name.
+OWN = [str(ROOT / "tests"), str(ROOT / "benchmarks")]
+sys.path[:] = [*OWN, *(entry for entry in sys.path if Path(entry or ".").resolve() != ROOT)]
+pytest_plugins = ["builds"]
 sys.path.append(str(ROOT / "tests"))  # for `oracles`
 
 
@@ -37,7 +42,7 @@ def knowledge():
 
 @pytest.fixture(scope="session")
 def maple(knowledge):
-    return Home.from_graph(catalog.load_graph("maple", default()), "maple", knowledge)
+    return Home.from_graph(library.load_graph("maple", default()), "maple", knowledge)
 
 
 @pytest.fixture(scope="session")

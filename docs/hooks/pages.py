@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("schemas", "kb", "simulation", "grounding", "rendering", "scoring", "pipelines", "exports", "report")
+PACKAGES = (
+    "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
+    "pipelines", "analysis",
+)  # fmt: skip
 
 
 def commands() -> str:
@@ -33,7 +36,7 @@ def _helps(words: str, command: Any) -> Iterator[tuple[str, str]]:
 
 def actions() -> str:
     """Every action that is known."""
-    from hearth.kb.loading import default
+    from hearth.kb.loading.load import default
 
     lines = [
         "# Actions",
@@ -53,7 +56,7 @@ def actions() -> str:
 
 def objects() -> str:
     """Every class of objects that is known."""
-    from hearth.kb.loading import default
+    from hearth.kb.loading.load import default
 
     lines = ["# Objects", "", "Classes, what they can be and do; `hearth kb show NAME` tells all of one."]
     lines += ["", "| class | category | properties |", "|---|---|---|"]
@@ -78,7 +81,7 @@ def tables() -> str:
 
 def failures() -> str:
     """Every failure code, and what repairs do about it."""
-    from hearth.pipelines.handlers.registry import HANDLERS, UNREPAIRABLE
+    from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
     from hearth.schemas.failures import Code
 
     lines = [

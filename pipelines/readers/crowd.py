@@ -10,14 +10,14 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, Place, fault_of, lines, record, refused
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.topics import no_activity
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name
+from hearth.storage.rejects import Reject
 
 NAME = "crowd"
 

@@ -8,8 +8,8 @@ from typing import Any
 import orjson
 
 from hearth.pipelines.readers.item import LARGEST_FILE, Place, opened, size_of
-from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject
 
 _LOOKS_JSON = re.compile(r"""\s*(?:\{\s*["}]|\[\s*(?:["\{\[\]\d-]|$))""")
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from hearth.pipelines.readers.document import parsed
 from hearth.pipelines.readers.item import Place, fault_of, pieces
-from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject
 
 LONGEST_ENTRY = 16_000_000
 """Characters that one entry may have."""

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from hearth.pipelines.readers.packed import DamagedError, Place, raw, size_of
-from hearth.pipelines.rejects import Reject
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import ConditionRow, QuantityRow
+from hearth.storage.archives import DamagedError, Place, raw, size_of
+from hearth.storage.rejects import Reject
 
 LONGEST_LINE = 1_000_000
 """Characters kept of a line while reading; what is longer is refused, and its length still told."""

@@ -6,19 +6,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from hearth.pipelines.readers import spoken
+from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
-from hearth.pipelines.readers.packed import leaves
 from hearth.pipelines.readers.text import header
-from hearth.pipelines.rejects import Reject
 from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
+from hearth.storage.archives import leaves
+from hearth.storage.rejects import Reject
 
 NAME = "records"
 
@@ -51,7 +51,7 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
     if isinstance(value, Reject):
         return refused(place, value, line=line)
     if isinstance(value, str):
-        return spoken.checked(value, 1, f"{spoken.NAME}:{name}", name)
+        return plans.checked(value, 1, f"{plans.NAME}:{name}", name)
     if not isinstance(value, dict):
         kind = type(value).__name__
         return refused(
@@ -91,7 +91,7 @@ def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
         kind,
         words["title"] or title,
         words["description"] or description,
-        origin=spoken.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
+        origin=plans.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
         description_id=words["description_id"] or "",
         scene=words["scene"],
         worker=words["worker"],

@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hearth.pipelines.files import read_json
+from hearth.datasets.format.codecs import program_of
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.item import DamagedError, Item, refused
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import program_of
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import print_lines
+from hearth.storage.files import read_json
+from hearth.storage.rejects import Reject
 
 NAME = "published"
 

@@ -8,15 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from hearth.pipelines.files import walk
-from hearth.pipelines.readers import crowd, ours, published, release, scenes, sketches, spoken, text
+from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, DamagedError, Place, lines, opened, size_of
-from hearth.pipelines.readers.packed import GZIP, ZSTD, Member, members, refusal_of
-from hearth.pipelines.rejects import Reject
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.archives import GZIP, ZSTD, Member, members, refusal_of
+from hearth.storage.files import walk
+from hearth.storage.rejects import Reject
 
 _MAGIC: dict[bytes, str] = {
     b"\x89PNG": "a PNG picture",
@@ -135,7 +135,7 @@ def _told(path: Place, place: str) -> Recognised:
         return _refused(path, place, "a table whose first line names none of a batch's columns", Code.BAD_TABLE)
     if suffix in _JSON and told:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
-    return Recognised(path, place, spoken.NAME if told and spoken.looks_spoken(told) else text.NAME)
+    return Recognised(path, place, plans.NAME if told and plans.looks_spoken(told) else text.NAME)
 
 
 def _json(path: Place, place: str, told: list[str]) -> Recognised:

@@ -10,20 +10,20 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.files import file_digest, walk
+from hearth.datasets.format.codecs import change_row, node_row
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, record, refused
-from hearth.pipelines.readers.packed import archive, leaves, members, refusal_of
 from hearth.pipelines.readers.text import header
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import change_row, node_row
 from hearth.schemas.change import Parts, difference
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, read_node
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import ChangeRow, ConditionRow, GraphRow
-from hearth.schemas.text import decode
 from hearth.schemas.vocabulary import STATE_ID
+from hearth.storage.archives import archive, leaves, members, refusal_of
+from hearth.storage.files import file_digest, walk
+from hearth.storage.rejects import Reject
 
 NAME = "release"
 

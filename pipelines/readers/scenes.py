@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import PurePath
 
+from hearth.datasets.format.codecs import graph_row
 from hearth.pipelines.readers.document import document
 from hearth.pipelines.readers.item import Item, Place, record, refused, suffixless
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.rows import graph_row
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import NodeRow
 from hearth.schemas.vocabulary import OPPOSITE
+from hearth.storage.rejects import Reject
 
 NAME = "scenes"
 

@@ -14,9 +14,9 @@ from hearth.simulation.actions.common import (
     need_state,
     not_in_state,
 )
-from hearth.simulation.agent import Agent
-from hearth.simulation.states import CLOSED, OFF, ON, OPEN, PLUGGED_IN, PLUGGED_OUT
-from hearth.simulation.world import World
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.states import CLOSED, OFF, ON, OPEN, PLUGGED_IN, PLUGGED_OUT
+from hearth.simulation.world.world import World
 
 
 def _of_pair(state: int, code: Code) -> Check:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Check, able, becomes, checked, close, free_hand, refuse
-from hearth.simulation.agent import Agent
-from hearth.simulation.states import CLEAN
-from hearth.simulation.world import World
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.states import CLEAN
+from hearth.simulation.world.world import World
 
 
 def _need_tool(world: World, agent: Agent, o: int, action: str) -> Failure | None:

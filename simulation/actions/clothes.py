@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Check, able, checked, held, refuse
-from hearth.simulation.agent import Agent
 from hearth.simulation.rules import Rules
-from hearth.simulation.world import World
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.world import World
 
 
 def _need_worn(world: World, agent: Agent, o: int, action: str) -> Failure | None:

@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import STATES
-from hearth.simulation import rows
-from hearth.simulation.agent import Agent
+from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.situation import Situation
-from hearth.simulation.states import OPEN, with_state
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.states import OPEN, with_state
+from hearth.simulation.world.world import World
 
 Rule = Callable[[World, int, int, int, Rules], World | Failure]
 """(world, agent number, index of the first object, of the second, rules) -> the next world, or why not.

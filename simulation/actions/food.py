@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation import rows
 from hearth.simulation.actions.common import (
     Action,
     Check,
@@ -18,12 +17,13 @@ from hearth.simulation.actions.common import (
     need_holding,
     refuse,
 )
-from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices, mask_of
-from hearth.simulation.moved import INSIDE, add
+from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.situation import Situation
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.moved import INSIDE, add
+from hearth.simulation.world.world import World
 
 
 def _need_food(world: World, agent: Agent, o: int, action: str) -> Failure | None:

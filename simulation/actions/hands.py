@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation import moved as kinds
-from hearth.simulation import origins, rows
+from hearth.simulation.actions import origins
 from hearth.simulation.actions.common import (
     Action,
     Check,
@@ -22,12 +21,14 @@ from hearth.simulation.actions.common import (
     refuse,
     some,
 )
-from hearth.simulation.agent import Agent
-from hearth.simulation.moved import add, lift
+from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.situation import Situation
-from hearth.simulation.states import OPEN
-from hearth.simulation.world import World
+from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.moved import add, lift
+from hearth.simulation.world.states import OPEN
+from hearth.simulation.world.world import World
 
 
 def _need_nobody_else(world: World, agent: Agent, o: int, action: str) -> Failure | None:

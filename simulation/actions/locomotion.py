@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation import doors, rows
+from hearth.simulation.actions import doors
 from hearth.simulation.actions.common import Action, Masks, need_close, refuse, some
-from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices
-from hearth.simulation.moved import NOTHING, carry
+from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.situation import Situation
-from hearth.simulation.states import LYING, SITTING
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.moved import NOTHING, carry
+from hearth.simulation.world.states import LYING, SITTING
+from hearth.simulation.world.world import World
 
 
 def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:

@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-from hearth.simulation.actions import (
-    appliances,
-    cleaning,
-    clothes,
-    food,
-    hands,
-    locomotion,
-    moving,
-    posture,
-    senses,
-)
+from hearth.simulation.actions import appliances, cleaning, clothes, food, hands, locomotion, moving, posture, senses
 from hearth.simulation.actions.common import Action
 
 ACTIONS: dict[str, Action] = {

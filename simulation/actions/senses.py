@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation import rows
 from hearth.simulation.actions.common import (
     Action,
     Masks,
@@ -18,12 +17,13 @@ from hearth.simulation.actions.common import (
     refuse,
     some,
 )
-from hearth.simulation.agent import Agent
-from hearth.simulation.bits import indices, mask_of
+from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
-from hearth.simulation.situation import Situation
-from hearth.simulation.states import LYING, ON, SITTING
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.states import LYING, ON, SITTING
+from hearth.simulation.world.world import World
 
 
 def watch(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:

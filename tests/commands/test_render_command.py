@@ -9,7 +9,7 @@ pytest.importorskip("open3d")
 from typer.testing import CliRunner
 
 from hearth.commands.render import app
-from hearth.rendering import png
+from hearth.rendering.film import png
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ def test_sketches_of_other_programs_are_no_judges(tmp_path):
 
 
 def test_people_are_compared_step_by_step(tmp_path):
-    from hearth.pipelines.sketch_judging import Counts
+    from hearth.analysis.sketch_evaluation import Counts
 
     counts = Counts()
     counts.add((True, True, False), (True, False, True))

@@ -5,8 +5,8 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 OFFICE = (
     Node(1, "home_office", "Rooms"),

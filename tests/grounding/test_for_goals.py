@@ -2,13 +2,13 @@
 
 import pytest
 
-from hearth.grounding.for_goals import sample_for_goal
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.grounding.environments.for_goals import sample_for_goal
+from hearth.homes.lint import lint
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
-from hearth.simulation.homes.lint import lint
 
 PLATES = Literal.of("ON", "plate", "kitchen_table")
 GOALS = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.grounding.preconditions import infer
+from hearth.grounding.preconditions.infer import infer
 from hearth.kb import grammar
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER

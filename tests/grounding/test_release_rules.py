@@ -2,8 +2,8 @@
 
 import pytest
 
-from hearth.grounding.preconditions import at_odds, infer
-from hearth.grounding.release_rules import by_rules, compare
+from hearth.grounding.preconditions.infer import at_odds, infer
+from hearth.grounding.preconditions.release_rules import by_rules, compare
 from hearth.kb import grammar
 from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.syntax import parse_program

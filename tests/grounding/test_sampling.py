@@ -5,23 +5,23 @@ import zipfile
 import orjson
 import pytest
 
-from hearth.grounding.base import prepared
-from hearth.grounding.checking import unmet
-from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import Size, sample
-from hearth.grounding.soundness import unsound
+from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.sampling import Size, sample
+from hearth.grounding.environments.soundness import unsound
+from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.infer import infer
+from hearth.homes import library
+from hearth.homes.lint import lint
 from hearth.kb import grammar
-from hearth.kb.loading import default, load
+from hearth.kb.loading.load import default, load
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
-from hearth.simulation.edit import extended
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.lint import lint
-from hearth.simulation.world import World
+from hearth.simulation.world.edit import extended
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 BREAKFAST = """Breakfast
 Milk from the fridge.
@@ -184,7 +184,7 @@ def test_a_thing_that_belongs_nowhere_is_named(maple, tmp_path):
         "9900,zither,Props,instrument,GRABBABLE,,,0.6 0.1 0.3,strings on a box,,ours\n"
     )
     known = load(overlay=tmp_path)
-    home = Home.from_graph(catalog.load_graph("maple", default()), "maple", known)
+    home = Home.from_graph(library.load_graph("maple", default()), "maple", known)
     failure = sample(read("Zither\nFind it.\n\n\n[Walk] <zither> (1)\n", known), home, 0)
     assert (failure.code, failure.names) == (Code.NO_PLACE, ("zither",))
     assert "placements.csv" in failure.expected

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from hearth.grounding.sampling import Size, sample
+from hearth.grounding.environments.sampling import Size, sample
 from hearth.schemas.syntax import parse_program
 
 TEXTS = [
@@ -14,11 +14,11 @@ TEXTS = [
 
 CODE = """
 import hashlib
-from hearth.kb.loading import default
-from hearth.grounding.sampling import Size, sample
+from hearth.kb.loading.load import default
+from hearth.grounding.environments.sampling import Size, sample
 from hearth.schemas.syntax import parse_program
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
+from hearth.simulation.world.home import Home
+from hearth.homes import library as catalog
 maple = Home.from_graph(catalog.load_graph("maple", default()), "maple", default())
 found = [sample(parse_program(text)[0], maple, 3, "x", size=size)[0]
          for text in TEXTS for size in (Size(), Size.about(290))]

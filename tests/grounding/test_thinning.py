@@ -3,17 +3,17 @@
 import pyarrow as pa
 import pytest
 
-from hearth.grounding.base import prepared
-from hearth.grounding.preconditions import infer
-from hearth.grounding.sampling import Size, sample
-from hearth.kb.loading import default
-from hearth.pipelines.cases import environment_of, home_of
+from hearth.datasets.format.cases import environment_of, home_of
+from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.sampling import Size, sample
+from hearth.grounding.preconditions.infer import infer
+from hearth.homes import library
+from hearth.homes.lint import lint
+from hearth.kb.loading.load import default
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import CASE
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.lint import lint
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 TEA = """Tea
 A cup of it.
@@ -29,7 +29,7 @@ A cup of it.
 
 @pytest.fixture(scope="module")
 def willow(knowledge):
-    return Home.from_graph(catalog.load_graph("willow", default()), "willow", knowledge)
+    return Home.from_graph(library.load_graph("willow", default()), "willow", knowledge)
 
 
 @pytest.mark.parametrize("name", ["maple", "willow"])

@@ -2,10 +2,10 @@
 
 import pytest
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.homes.plans.layout import read
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.homes.layout import read
 
 KITCHEN = "home: x\nrooms:\n- name: kitchen\n  at: [0, 0]\n  size: [4, 4]\n"
 

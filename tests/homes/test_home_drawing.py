@@ -4,14 +4,14 @@ import xml.etree.ElementTree as Xml
 
 import pytest
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
-from hearth.simulation.homes import catalog, plan_drawing
+from hearth.homes import drawing, library
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 
 
 def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
-    layout = catalog.load_layout("maple", default())
-    plan_drawing.write(layout, tmp_path / "plan.svg")
+    layout = library.load_layout("maple", default())
+    drawing.write(layout, tmp_path / "plan.svg")
     root = Xml.parse(tmp_path / "plan.svg").getroot()
     texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
     assert {room.name for room in layout.plan.rooms} <= set(texts)
@@ -23,19 +23,19 @@ def test_the_svg_shows_every_room_and_piece_of_furniture(tmp_path):
 
 
 def test_everything_drawn_lies_within_the_drawing():
-    layout = catalog.load_layout("willow", default())
-    area = plan_drawing.bounds(layout)
-    assert all(area.contains(shape.rect) for shape in plan_drawing.shapes(layout))
+    layout = library.load_layout("willow", default())
+    area = drawing.bounds(layout)
+    assert all(area.contains(shape.rect) for shape in drawing.shapes(layout))
 
 
 def test_the_png_is_the_same_each_time(tmp_path):
-    layout = catalog.load_layout("maple", default())
+    layout = library.load_layout("maple", default())
     for name in ("one.png", "two.png"):
-        plan_drawing.write(layout, tmp_path / name)
+        drawing.write(layout, tmp_path / name)
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
     assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_other_formats_are_refused(tmp_path):
     with pytest.raises(HearthError, match="UNSUPPORTED_FILE"):
-        plan_drawing.write(catalog.load_layout("maple", default()), tmp_path / "plan.gif")
+        drawing.write(library.load_layout("maple", default()), tmp_path / "plan.gif")

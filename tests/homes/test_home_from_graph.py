@@ -6,16 +6,16 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.homes import library
+from hearth.homes.from_graph.graph_layout import lay_out
+from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.from_graph.rooms import DOOR_WALL, packed
+from hearth.homes.geometry import Rect, footprint, intrusion
+from hearth.homes.plans.floor import stands_on_floor
+from hearth.homes.plans.shell import interior, shared_wall
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.floor import stands_on_floor
-from hearth.simulation.homes.geometry import Rect, footprint, intrusion
-from hearth.simulation.homes.graph_layout import lay_out
-from hearth.simulation.homes.graph_measured import has_geometry, measured
-from hearth.simulation.homes.graph_rooms import DOOR_WALL, packed
-from hearth.simulation.homes.shell import interior, shared_wall
 
 THINGS = {
     1: ("bedroom", "Rooms"), 2: ("kitchen", "Rooms"), 3: ("bathroom", "Rooms"), 4: ("character", "Characters"),
@@ -129,7 +129,7 @@ QUICK = (1, 4)
 
 @pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(1, 8)])
 def test_the_releases_homes_can_be_walked_in(real_data, number):
-    found = catalog.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
+    found = library.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
     assert min(reached(found.layout)) > 50
     assert [n for n in found.graph.nodes if n.box is None] == []
     said = {r: sum(e.relation == r for e in found.graph.edges) for r in ("ON", "INSIDE", "CLOSE", "FACING")}

@@ -2,14 +2,14 @@
 
 import pytest
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.generate import generate
-from hearth.simulation.homes.layout import read
-from hearth.simulation.homes.lint import lint
-from hearth.simulation.homes.scene import scene
-from hearth.simulation.homes.writing import plan_text
+from hearth.homes import library
+from hearth.homes.lint import lint
+from hearth.homes.plans.layout import read
+from hearth.homes.plans.writing import plan_text
+from hearth.homes.procedural.generate import generate
+from hearth.homes.scene_graph import scene
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 
 KITCHENS = {"kitchen", "dining_room", "home_office"}
 
@@ -59,7 +59,7 @@ def test_other_numbers_of_rooms_are_refused(rooms):
 
 @pytest.mark.parametrize("name", ["maple", "larch"])
 def test_designed_plans_are_written_and_read_back_too(name):
-    layout = catalog.load_layout(name, default())
+    layout = library.load_layout(name, default())
     again = read(plan_text(layout.plan), "", default())
     assert [(t.name, t.box, t.yaw, t.on, t.inside) for t in again.things] == [
         (t.name, t.box, t.yaw, t.on, t.inside) for t in layout.things

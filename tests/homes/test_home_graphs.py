@@ -10,12 +10,12 @@ from pathlib import Path
 import orjson
 import pytest
 
-from hearth.kb.loading import default
+from hearth.homes import exporting, library, relations
+from hearth.homes.plans.layout import read
+from hearth.homes.scene_graph import every_thing, node_ids, scene
+from hearth.kb.loading.load import default
 from hearth.schemas.graph import edge_set, from_release, to_release
 from hearth.schemas.vocabulary import FIRST_ADDED_ID
-from hearth.simulation.homes import catalog, exporting, relations
-from hearth.simulation.homes.layout import read
-from hearth.simulation.homes.scene import every_thing, node_ids, scene
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "homes"
 SEVEN = ("birch", "cedar", "juniper", "larch", "maple", "rowan", "willow")
@@ -25,7 +25,7 @@ RELEASE_DENSITY = 18.33
 
 @pytest.fixture(params=SEVEN)
 def graph(request):
-    return catalog.load_graph(request.param, default())
+    return library.load_graph(request.param, default())
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +135,7 @@ def test_one_character_stands_in_a_room_with_empty_hands(graph):
 
 
 def test_there_are_enough_things_and_as_many_relations_as_in_the_release():
-    graphs = [catalog.load_graph(name, default()) for name in SEVEN]
+    graphs = [library.load_graph(name, default()) for name in SEVEN]
     assert sum(len(graph.nodes) for graph in graphs) / len(graphs) >= 350
     density = sum(len(graph.edges) / len(graph.nodes) for graph in graphs) / len(graphs)
     assert 0.8 * RELEASE_DENSITY <= density <= 1.2 * RELEASE_DENSITY
@@ -151,12 +151,12 @@ def test_the_release_is_as_dense_as_we_say(real_data):
 
 @pytest.mark.parametrize("name", SEVEN)
 def test_every_node_of_a_designed_home_has_a_fixed_id(name):
-    layout = catalog.load_layout(name, default())
+    layout = library.load_layout(name, default())
     things = [thing.name for thing in every_thing(layout)]
     assert len(set(things)) == len(things)
     assert set(things) == set(layout.plan.ids), "run `home convert NAME data_raw/homes/NAME.ids.csv`"
     assert max(layout.plan.ids.values()) < FIRST_ADDED_ID
-    graph = catalog.load_graph(name, default())
+    graph = library.load_graph(name, default())
     assert [node.id for node in graph.nodes] == sorted(layout.plan.ids.values())
 
 
@@ -164,14 +164,14 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
     path = tmp_path / "hut.yaml"
     text = (GOLDEN / "hut.yaml").read_text()
     path.write_text(text)
-    exporting.write_ids(catalog.layout_of(path, default()), tmp_path / "hut.ids.csv")
-    before = catalog.graph_of(path, default())
-    catalog._layout.cache_clear()
-    catalog._scene.cache_clear()
+    exporting.write_ids(library.layout_of(path, default()), tmp_path / "hut.ids.csv")
+    before = library.graph_of(path, default())
+    library._layout.cache_clear()
+    library._scene.cache_clear()
     path.write_text(
         text.replace("furniture:\n      - couch", "furniture:\n      - plant: {corner: northwest}\n      - couch")
     )
-    after = catalog.graph_of(path, default())
+    after = library.graph_of(path, default())
     old = {node.id: node.class_name for node in before.nodes}
     new = {node.id: node.class_name for node in after.nodes}
     assert {number: new[number] for number in old} == old
@@ -180,17 +180,17 @@ def test_ids_stay_when_something_is_added_first(tmp_path):
 
 
 def test_a_graph_goes_to_the_releases_layout_and_back_without_loss(tmp_path):
-    graph = catalog.load_graph("maple", default())
+    graph = library.load_graph("maple", default())
     exporting.write_release(graph, tmp_path / "copy.json")
-    copy = catalog.load_graph("copy", default(), tmp_path)
+    copy = library.load_graph("copy", default(), tmp_path)
     assert copy == graph
-    assert "copy" in catalog.names(tmp_path)
+    assert "copy" in library.names(tmp_path)
 
 
 def test_the_releases_own_homes_are_read_and_written_without_loss(real_data):
     for path in sorted((real_data / "homes").glob("*_graph.json")):
         data = orjson.loads(path.read_bytes())
-        graph = catalog.load_graph(path.stem, default(), real_data / "homes")
+        graph = library.load_graph(path.stem, default(), real_data / "homes")
         again = from_release(to_release(graph))
         assert again == graph
         assert edge_set(graph.edges) == {(e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"]}
@@ -200,12 +200,12 @@ def test_the_releases_own_homes_are_read_and_written_without_loss(real_data):
 def test_the_order_of_hashing_changes_nothing():
     code = (
         "import hashlib, orjson, sys; from hearth.schemas.graph import to_release;"
-        "from hearth.kb.loading import default;"
-        "from hearth.simulation.homes import catalog, plan_drawing;"
-        "graph = orjson.dumps(to_release(catalog.load_graph('larch', default())));"
+        "from hearth.kb.loading.load import default;"
+        "from hearth.homes import drawing, library;"
+        "graph = orjson.dumps(to_release(library.load_graph('larch', default())));"
         # scipy would cost every process ten homes' loading.
         "assert 'scipy' not in sys.modules;"
-        "drawing = plan_drawing.svg(catalog.load_layout('larch', default())).encode();"
+        "drawing = drawing.svg(library.load_layout('larch', default())).encode();"
         "print(hashlib.sha256(graph + drawing).hexdigest())"
     )
     found = set()

@@ -8,26 +8,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.floor import stands_on_floor
-from hearth.simulation.homes.geometry import bottom, footprint, intrusion, top
-from hearth.simulation.homes.layout import read
-from hearth.simulation.homes.shell import interior
+from hearth.homes import library
+from hearth.homes.geometry import bottom, footprint, intrusion, top
+from hearth.homes.plans.floor import stands_on_floor
+from hearth.homes.plans.layout import read
+from hearth.homes.plans.shell import interior
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 
-HOMES = catalog.names()
+HOMES = library.names()
 SEVEN = ("birch", "cedar", "juniper", "larch", "maple", "rowan", "willow")
 ROOMS = {"bathroom", "bedroom", "dining_room", "entrance_hall", "home_office", "kids_bedroom", "kitchen", "living_room"}
 
 
 @pytest.fixture(params=SEVEN)
 def layout(request):
-    return catalog.load_layout(request.param, default())
+    return library.load_layout(request.param, default())
 
 
 def test_there_are_seven_homes_of_four_to_seven_rooms_that_differ():
-    plans = [catalog.load_layout(name, default()).plan for name in SEVEN]
+    plans = [library.load_layout(name, default()).plan for name in SEVEN]
     assert set(SEVEN) <= set(HOMES)
     assert all(4 <= len(plan.rooms) <= 7 for plan in plans)
     assert {len(plan.rooms) for plan in plans} == {4, 5, 6, 7}
@@ -147,7 +147,7 @@ def test_whatever_is_put_anywhere_does_not_overlap_or_stick_out(where, items):
 @settings(max_examples=25)
 @given(st.randoms(use_true_random=False))
 def test_a_spoilt_plan_is_read_or_refused_but_never_breaks(pick):
-    lines = catalog._file("maple", None).read_text().splitlines()
+    lines = library._file("maple", None).read_text().splitlines()
     for _ in range(pick.randint(1, 4)):
         i = pick.randrange(len(lines))
         kind = pick.randrange(4)

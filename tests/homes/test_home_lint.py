@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from hearth.kb.loading import default
+from hearth.homes import library
+from hearth.homes.lint import CHECKS, lint
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
-from hearth.simulation.homes import catalog
-from hearth.simulation.homes.lint import CHECKS, lint
 
 ROOM, CHARACTER, CUP, FRIDGE, BOX = 1, 2, 3, 4, 5
 NODES = (
@@ -98,9 +98,9 @@ def test_sound_graphs_have_no_faults():
     assert lint(with_edges((CUP, "INSIDE", BOX), (CUP, "INSIDE", FRIDGE), (BOX, "INSIDE", FRIDGE)), default()) == ()
 
 
-@pytest.mark.parametrize("name", catalog.names())
+@pytest.mark.parametrize("name", library.names())
 def test_our_homes_lint_clean(name):
-    assert lint(catalog.load_graph(name, default()), default()) == ()
+    assert lint(library.load_graph(name, default()), default()) == ()
 
 
 def test_every_check_is_tried():
@@ -109,12 +109,12 @@ def test_every_check_is_tried():
 
 
 def view_of(graph):
-    from hearth.simulation.homes.lint import View
+    from hearth.homes.lint import View
 
     return View(graph, default())
 
 
 def test_the_releases_homes_have_the_faults_they_are_known_for(real_data):
-    faults = lint(catalog.load_graph("TrimmedTestScene1_graph", default(), real_data / "homes"), default())
+    faults = lint(library.load_graph("TrimmedTestScene1_graph", default(), real_data / "homes"), default())
     assert {fault.code for fault in faults} == {Code.CONDITION_UNMET, Code.LOOP}
     assert any("curtain (23) INSIDE curtain (24)" in fault.message for fault in faults)

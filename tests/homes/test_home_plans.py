@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.homes.plans.layout import read
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.simulation.homes.layout import read
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "homes"
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hearth.simulation.homes import raster
+from hearth.homes.plans import raster
 
 ndimage = pytest.importorskip("scipy.ndimage")
 

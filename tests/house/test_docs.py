@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hearth import cli
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES
 

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-TABLES = ("simulation/actions/", "simulation/moves.py", "rendering/gestures.py")
+TABLES = ("simulation/actions/", "simulation/motion/moves.py", "rendering/people/gestures.py")
 """The table of actions, that of the moves by metres, and the gesture of each action."""
 
 MANY = 3
@@ -44,7 +44,7 @@ def test_no_code_lists_actions(knowledge):
         for file in files()
         for line, actions in listed((ROOT / file).read_text("utf-8"), names)
     ]
-    assert not found, "make it a group (kb/groups.py, `groups:` in kb/actions.yaml):\n" + "\n".join(found)
+    assert not found, "make it a group (kb/groups.py, `groups:` in kb/data/actions.yaml):\n" + "\n".join(found)
 
 
 @pytest.mark.parametrize(

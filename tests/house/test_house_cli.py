@@ -10,7 +10,7 @@ import typer
 from typer.testing import CliRunner
 
 from hearth import __version__, cli
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 ROOT = Path(__file__).resolve().parents[2]

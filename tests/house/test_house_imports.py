@@ -11,8 +11,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = {
-    "schemas": 0, "kb": 1, "simulation": 2, "grounding": 3, "rendering": 4, "scoring": 4, "pipelines": 5,
-    "exports": 6, "report": 6, "commands": 7,
+    "schemas": 0, "storage": 1, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
+    "datasets": 6, "scoring": 7, "pipelines": 8, "analysis": 9, "commands": 10,
 }  # fmt: skip
 """Packages by layer: each may import those below it and itself."""
 

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from hearth.pipelines.dependencies import files_of
-from hearth.pipelines.stages import STAGES
+from hearth.pipelines.engine.dependencies import files_of
+from hearth.pipelines.engine.stages import STAGES
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDERS = ("schemas", "kb", "simulation", "grounding", "rendering", "pipelines", "data_raw")
+FOLDERS = (
+    "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "pipelines",
+    "data_raw",
+)  # fmt: skip
 FILES = ("Makefile", "setup.sh", "requirements.lock", "pyproject.toml", "version.py", "cli.py")
 NAMES = list(STAGES)
 
@@ -109,8 +112,8 @@ def test_make_runs_all_stages_in_order_ends_with_the_funnel_and_then_does_nothin
         ("data_raw/crowd/programs.csv", "ingest"),
         ("data_raw/crowd/descriptions.csv", "ingest"),
         ("data_raw/homes/maple.yaml", "sample"),
-        ("kb/actions.yaml", "validate"),
-        ("rendering/looks.yaml", "render"),
+        ("kb/data/actions.yaml", "validate"),
+        ("rendering/models/looks.yaml", "render"),
         ("pipelines/publish.py", "publish"),
         ("setup.sh", None),
     ],

@@ -10,10 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("schemas", "kb", "simulation", "grounding", "rendering", "scoring", "pipelines", "commands", "data_raw")
+PACKAGES = (
+    "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
+    "pipelines", "analysis", "commands", "data_raw",
+)  # fmt: skip
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out")
 ENDINGS = {".py", ".yaml", ".csv", ".sql"}
 
@@ -70,7 +73,7 @@ def installed(wheel, tmp_path_factory):
 
 
 def test_it_is_imported_from_where_it_was_installed(installed, tmp_path):
-    code = "import hearth, hearth.kb.loading as kb; print(hearth.__file__); print(len(kb.default().actions))"
+    code = "import hearth, hearth.kb.loading.load as kb; print(hearth.__file__); print(len(kb.default().actions))"
     file, actions = run(installed / "python", "-c", code, cwd=tmp_path).split()
     assert Path(file).is_relative_to(installed.parent)
     assert int(actions) == len(default().actions)

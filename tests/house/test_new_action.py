@@ -17,11 +17,11 @@ BASH = re.compile(r"^```bash\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 TITLED = re.compile(r'^```text title="([^"]+)"\n(.*?)^```$', re.DOTALL | re.MULTILINE)
 
 LEGAL = """
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.env import Env
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
+from hearth.simulation.world.home import Home
+from hearth.homes import library as catalog
 
 env = Env(partial=False)
 env.reset(Home.from_graph(catalog.load_graph("maple", default()), "maple", default()))

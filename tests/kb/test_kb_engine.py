@@ -14,9 +14,9 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
 from hearth.simulation.rules import REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 ME, ROOM, OTHER_ROOM, TABLE, BOX, SEAT, GUEST = 1, 2, 3, 4, 5, 6, 7
 KNIFE, TOOL, PAN, THING = 8, 9, 10, 20

@@ -245,6 +245,6 @@ def test_every_failure_of_a_check_that_can_be_mended_has_a_repair(knowledge):
 
 
 def test_repairs_and_handlers_are_for_the_same_failures(knowledge):
-    from hearth.pipelines.handlers.registry import HANDLERS
+    from hearth.repair.handlers.registry import HANDLERS
 
     assert {repair.code for repair in knowledge.repairs.values()} == set(HANDLERS)

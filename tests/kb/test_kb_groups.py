@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from hearth.kb.groups import DECLARED, DERIVED
-from hearth.kb.loading import load
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import load
+from hearth.schemas.diagnostics import HearthError
 
 OPEN_ANEW = """
 Open:

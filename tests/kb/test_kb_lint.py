@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.kb.lint import CHECKS, lint
-from hearth.kb.loading import load
+from hearth.kb.consistency import CHECKS, lint
+from hearth.kb.loading.load import load
 
 HEADER = "id,name,category,hypernym,properties,states,rooms,size,gloss,same_as,source\n"
 PLACES = "object,relation,destination,room,weight,evidence\n"

@@ -22,7 +22,7 @@ from hearth.kb.formula import (
     parse_formula,
     predicates,
 )
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.literals import Literal
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import hearth.kb
-from hearth.kb.loading import FILES, load
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import FILES, load
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
-OURS = Path(hearth.kb.__file__).parent
+OURS = Path(hearth.kb.__file__).parent / "data"
 OBJECT_HEADER = "id,name,category,hypernym,properties,states,rooms,size,gloss,same_as,source\n"
 
 

@@ -6,10 +6,10 @@ import json
 
 import pytest
 
-from hearth.kb.compare import compare
-from hearth.kb.mine import as_lines, mine
-from hearth.kb.published import programs
-from hearth.schemas.errors import HearthError
+from hearth.kb.tools.compare import compare
+from hearth.kb.tools.mine import as_lines, mine
+from hearth.kb.tools.published_programs import programs
+from hearth.schemas.diagnostics import HearthError
 
 READ = [
     ("Walk", ["bedroom"]),
@@ -110,7 +110,7 @@ def test_ours_does_not_differ_from_itself(knowledge):
 
     import hearth.kb
 
-    assert compare(knowledge, Path(hearth.kb.__file__).parent).differences == ()
+    assert compare(knowledge, Path(hearth.kb.__file__).parent / "data").differences == ()
 
 
 def test_what_is_not_the_release_is_bad_input(knowledge, tmp_path):

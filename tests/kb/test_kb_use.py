@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb import views
-from hearth.kb.document import action_table
-from hearth.kb.export import export
-from hearth.kb.find import Query, find
-from hearth.kb.paths import path
-from hearth.kb.pddl import domain
-from hearth.kb.phrases import hear, say
-from hearth.kb.show import about_action, about_object
-from hearth.schemas.errors import HearthError
+from hearth.kb.language.phrases import hear, say
+from hearth.kb.tools import views
+from hearth.kb.tools.action_table import action_table
+from hearth.kb.tools.export import export
+from hearth.kb.tools.find import Query, find
+from hearth.kb.tools.paths import path
+from hearth.kb.tools.pddl import domain
+from hearth.kb.tools.show import about_action, about_object
+from hearth.schemas.diagnostics import HearthError
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden/kb"
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.pipelines.duplicates import Copies, pasted
+from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.readers.item import Item
 
 WORDS = "Walk to the kitchen and open the fridge. Take the milk out and pour yourself a glass of it."

@@ -10,23 +10,23 @@ import orjson
 import pytest
 
 import hearth
-from hearth.exports.pddl import tasks
-from hearth.exports.planning import helpful
-from hearth.exports.reading import Wanted
-from hearth.exports.registry import FORMATS, export
-from hearth.kb.loading import default, digest
-from hearth.pipelines.baselines import Example, random_sampling
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.diff import compare
+from hearth.datasets.export.batches import Wanted
+from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.planning import helpful
+from hearth.datasets.export.problems import tasks
+from hearth.datasets.format.cases import rerun
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.datasets.report.write import write_report
+from hearth.datasets.verify import StoredHomes, verify
+from hearth.kb.loading.load import default, digest
 from hearth.pipelines.build import build
-from hearth.pipelines.cases import rerun
-from hearth.pipelines.compare import compare
-from hearth.pipelines.dataset import Dataset
-from hearth.pipelines.judging import judge
-from hearth.pipelines.stored_cases import stored_cases
-from hearth.pipelines.verify import StoredHomes, verify
-from hearth.report.write import write_report
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import print_lines
+from hearth.scoring.baselines import Example, random_sampling
+from hearth.scoring.dataset_scores import judge
 from hearth.scoring.evaluate import summarise
 
 OVERLAY = {

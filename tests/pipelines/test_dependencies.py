@@ -4,8 +4,8 @@ import ast
 
 import pytest
 
-from hearth.pipelines import dependencies
-from hearth.pipelines.dependencies import ROOT, code_digest, files_of, imports
+from hearth.pipelines.engine import dependencies
+from hearth.pipelines.engine.dependencies import ROOT, code_digest, files_of, imports
 
 MODULES = sorted(path for package in ROOT.glob("*/__init__.py") for path in package.parent.rglob("*.py"))
 STAGES = ("ingest", "validate", "sample", "augment", "render", "publish")
@@ -37,26 +37,28 @@ def data_of(stage):
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_a_stage_depends_on_itself_and_on_the_schemas(stage):
-    assert {f"pipelines/{stage}.py", "pipelines/stage.py", "schemas/tables.py"} <= files_of(f"hearth.pipelines.{stage}")
+    assert {f"pipelines/{stage}.py", "pipelines/engine/stage.py", "schemas/tables.py"} <= files_of(
+        f"hearth.pipelines.{stage}"
+    )
 
 
 def test_data_files_count_with_the_modules_that_name_them():
     knowledge = {
-        path.relative_to(ROOT).as_posix() for path in (ROOT / "kb").iterdir() if path.suffix in (".csv", ".yaml")
+        path.relative_to(ROOT).as_posix() for path in (ROOT / "kb/data").iterdir() if path.suffix in (".csv", ".yaml")
     }
     homes = {path.relative_to(ROOT).as_posix() for path in (ROOT / "data_raw/homes").glob("*.[yc][as][mv]*")}
     assert len(knowledge) > 10 and len(homes) > 10
     assert data_of("sample") == knowledge | homes
-    assert data_of("augment") == data_of("sample") | {"pipelines/augment.yaml"}
-    assert data_of("publish") == data_of("sample") | {"pipelines/catalog.sql"}
-    models = {path.relative_to(ROOT).as_posix() for path in (ROOT / "rendering/meshes").glob("*.yaml")}
+    assert data_of("augment") == data_of("sample") | {"repair/perturbations.yaml"}
+    assert data_of("publish") == data_of("sample") | {"datasets/format/catalog.sql"}
+    models = {path.relative_to(ROOT).as_posix() for path in (ROOT / "rendering/models").glob("*.yaml")}
     assert len(models) > 10
-    assert data_of("render") == data_of("sample") | models | {"rendering/looks.yaml", "rendering/pictures.yaml"}
-    assert {"data_raw/crowd/special_blocks.yaml", "pipelines/off_topic.yaml"} <= data_of("validate")
+    assert data_of("render") == data_of("sample") | models
+    assert {"data_raw/crowd/special_blocks.yaml", "pipelines/crowd/off_topic.yaml"} <= data_of("validate")
 
 
 def test_only_rendering_depends_on_rendering():
-    drawn = [stage for stage in STAGES if "rendering/rays.py" in files_of(f"hearth.pipelines.{stage}")]
+    drawn = [stage for stage in STAGES if "rendering/rays/casting.py" in files_of(f"hearth.pipelines.{stage}")]
     assert drawn == ["render"]
 
 

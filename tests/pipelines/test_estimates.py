@@ -9,12 +9,12 @@ from collections import namedtuple
 import pytest
 
 from hearth.pipelines.build import build
-from hearth.pipelines.estimates import estimate, foretold
-from hearth.pipelines.parts import Counts
-from hearth.pipelines.progress import JsonLines
-from hearth.pipelines.settings import Settings
-from hearth.schemas.errors import HearthError
+from hearth.pipelines.engine.estimates import estimate, foretold
+from hearth.pipelines.engine.progress import JsonLines
+from hearth.pipelines.engine.settings import Settings
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.partitions import Counts
 
 
 def test_a_target_bounds_what_is_augmented():

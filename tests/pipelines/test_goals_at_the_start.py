@@ -2,8 +2,8 @@
 
 import pytest
 
-from hearth.kb.loading import default
-from hearth.pipelines.lint import already
+from hearth.kb.loading.load import default
+from hearth.pipelines.checks.programs import already
 from hearth.schemas.syntax import parse_program
 
 TELEVISION = {"name": "television", "instance": 1}

@@ -10,17 +10,17 @@ import zipfile
 import pyarrow as pa
 import pytest
 
-from hearth.exports.release import stem
-from hearth.pipelines import fuzzing, ratings
+from hearth.analysis import mutated_input, ratings
+from hearth.analysis.spreadsheet_cells import cell_said, safe_cell
+from hearth.analysis.synthesis import load
+from hearth.datasets.export.release_layout import stem
+from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers.crowd import PROGRAMS
 from hearth.pipelines.readers.recognise import recognise
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.sheets import cell_said, safe_cell
-from hearth.pipelines.sources import labelled
-from hearth.pipelines.synthesis import load
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.program import Program
+from hearth.storage.rejects import Reject
 
 PROGRAM = "Nap\nOn it.\n\n[Walk] <bed> (1)\n"
 
@@ -90,10 +90,10 @@ def packed(tmp_path, name, data, form):
 
 @pytest.mark.parametrize("form", [".gz", ".zst", ".zip"])
 @pytest.mark.parametrize(
-    "name", [name for name in fuzzing.SEEDS if not name.endswith((".zip", ".gz", ".zst", ".parquet"))]
+    "name", [name for name in mutated_input.SEEDS if not name.endswith((".zip", ".gz", ".zst", ".parquet"))]
 )
 def test_every_reader_reads_packed_files_in_place(tmp_path, name, form):
-    data = fuzzing.SEEDS[name]()
+    data = mutated_input.SEEDS[name]()
     plain = tmp_path / name
     plain.write_bytes(data)
     path = packed(tmp_path, name, data, form)

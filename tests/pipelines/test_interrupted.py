@@ -11,17 +11,17 @@ import time
 
 import pytest
 
-from hearth.pipelines.run import run_stage
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.workers import Workers
-from hearth.schemas.errors import HearthError
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.workers import Workers
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 DEADLY = """
 import os, signal
 import pyarrow as pa
 from pathlib import Path
-from hearth.pipelines.stage import Partition, Stage
+from hearth.pipelines.engine.stage import Partition, Stage
 
 DEAD = Path(__file__).with_name("dead")
 
@@ -60,7 +60,7 @@ def test_a_worker_that_is_killed_is_named_and_its_partition_made_again(tmp_path,
 ORPHANS = """
 import os, sys, time
 from pathlib import Path
-from hearth.pipelines.spread import spread
+from hearth.storage.parallel import spread
 
 def work(name):
     Path(name).write_text(str(os.getpid()))

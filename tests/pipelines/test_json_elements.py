@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hearth.pipelines.readers import elements, item
-from hearth.pipelines.rejects import Reject
 from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject
 
 TEXT = st.text('ab"\\[]{},: \né', max_size=5)
 VALUES = st.recursive(

@@ -3,8 +3,9 @@
 import pytest
 
 from hearth.kb import grammar
-from hearth.kb.loading import default
-from hearth.pipelines import lint, topics
+from hearth.kb.loading.load import default
+from hearth.pipelines.checks import programs
+from hearth.pipelines.crowd import topics
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program, print_step
 
@@ -17,7 +18,7 @@ def program(text, title="", description=""):
 
 def test_switched_on_twice():
     steps = "[SwitchOn] <tv> (1)\n[SwitchOn] <tv> (2)\n[SwitchOn] <tv> (1)\n[SwitchOff] <tv> (1)\n[SwitchOn] <tv> (1)\n"
-    (found,) = lint.contradictions(program(steps), default())
+    (found,) = programs.contradictions(program(steps), default())
     assert (found.code, found.step, found.remove) == ("CONTRADICTION", 2, True)
 
 
@@ -32,14 +33,14 @@ def test_switched_on_twice():
     ],
 )
 def test_used_from_afar(knowledge, steps, missing):
-    found = list(lint.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
+    found = list(programs.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
     assert [(one.step, print_step(one.before[0])) for one in found] == missing
 
 
 def test_a_program_that_does_nothing():
-    found = lint.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"), default())
+    found = programs.without_effect(program("[Walk] <bed> (1)\n[Find] <cup> (1)\n"), default())
     assert [one.code for one in found] == ["NO_EFFECT"]
-    assert not list(lint.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n"), default()))
+    assert not list(programs.without_effect(program("[Walk] <bed> (1)\n[Lie] <bed> (1)\n"), default()))
 
 
 @pytest.mark.parametrize(
@@ -82,21 +83,21 @@ def test_texts_that_are_no_activity(text, kind):
 
 
 def test_going_is_an_effect_where_the_title_says_so():
-    assert not list(lint.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
+    assert not list(programs.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
 
 
 def test_lamps_and_what_hardly_goes_without_are_within_reach(knowledge):
     for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
-        assert not list(lint.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
+        assert not list(programs.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
 
 
 def test_what_was_declared(knowledge):
     given = program("[Walk] <kitchen> (1)\n[Walk] <table> (1)\n[Grab] <cup> (1)\n[Wash] <teeth> (1)\n")
     row = {"rooms": [{"name": "bedroom", "quantity": 1}], "props": [{"name": "cup", "quantity": 2}]}
-    told = [one.message for one in lint.undeclared(given, row, knowledge)]
+    told = [one.message for one in programs.undeclared(given, row, knowledge)]
     assert len(told) == 3
     assert "table" in told[0] and "cup" in told[1] and "kitchen" in told[2]
-    assert not list(lint.undeclared(given, {"rooms": [], "props": None}, knowledge))
+    assert not list(programs.undeclared(given, {"rooms": [], "props": None}, knowledge))
 
 
 def test_through_validate(write, built):

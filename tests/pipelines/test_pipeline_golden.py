@@ -13,8 +13,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.pipelines.rows import program_of
-from hearth.pipelines.stages import STAGES
+from hearth.datasets.format.codecs import program_of
+from hearth.pipelines.engine.stages import STAGES
 from hearth.schemas.syntax import print_lines
 
 REFRESH = "HEARTH_REFRESH=1 python -m pytest tests/pipelines/test_pipeline_golden.py"

@@ -7,12 +7,12 @@ import zipfile
 
 import pytest
 
+from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers import crowd
 from hearth.pipelines.readers.recognise import recognise
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.sources import labelled
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
+from hearth.storage.rejects import Reject
 
 HEADER = "HITId,WorkerId,AssignmentStatus,Input.scene,Answer.title,Answer.description"
 PROGRAM = "Watch TV\nFrom the sofa.\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n"

@@ -11,11 +11,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.pipelines import fuzzing
+from hearth.analysis import mutated_input
+from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
-from hearth.pipelines.readers import packed
-from hearth.pipelines.rejects import Reject
-from hearth.pipelines.sources import labelled
+from hearth.storage import archives
+from hearth.storage.rejects import Reject
 
 PROGRAM = "Watch TV\nFrom the sofa.\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n"
 SPOKEN = "Task: Drink milk\nStep 1: Walk to fridge\nStep 2: Grab milk"
@@ -166,7 +166,7 @@ def test_a_packed_file_that_breaks_off_keeps_what_came_before(write):
 
 
 def test_a_bomb_is_refused(write, monkeypatch):
-    monkeypatch.setattr(packed, "_HARMLESS", 100_000)
+    monkeypatch.setattr(archives, "_HARMLESS", 100_000)
     bomb = gzip.compress(b"a\n" * 2_000_000)
     found = read(write("bomb.txt.gz", bomb))
     assert codes(found) == ["FILE_TOO_LARGE"] and "bomb" in found[0].diagnostics[0].message
@@ -176,7 +176,7 @@ def test_a_bomb_is_refused(write, monkeypatch):
 
 
 def test_a_bomb_in_a_zip_and_a_path_leaving_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(packed, "_HARMLESS", 100_000)
+    monkeypatch.setattr(archives, "_HARMLESS", 100_000)
     path = tmp_path / "evil.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("bomb.txt", b"a\n" * 2_000_000)
@@ -189,7 +189,7 @@ def test_a_bomb_in_a_zip_and_a_path_leaving_it(tmp_path, monkeypatch):
 
 
 def test_a_lying_directory_does_not_help_a_bomb(tmp_path, monkeypatch):
-    monkeypatch.setattr(packed, "_HARMLESS", 100_000)
+    monkeypatch.setattr(archives, "_HARMLESS", 100_000)
     path = tmp_path / "liar.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("bomb.txt", b"a\n" * 2_000_000)
@@ -203,13 +203,13 @@ def test_a_lying_directory_does_not_help_a_bomb(tmp_path, monkeypatch):
 
 
 def test_a_batch_with_its_first_line_only_says_so(write):
-    (found,) = read(write("batch.csv", fuzzing.SEEDS["descriptions.csv"]().decode().splitlines()[0] + "\n\n"))
+    (found,) = read(write("batch.csv", mutated_input.SEEDS["descriptions.csv"]().decode().splitlines()[0] + "\n\n"))
     assert (found.code, found.diagnostics[0].line) == ("EMPTY", 1)
 
 
 def test_a_dataset_whose_programs_lack_a_column_names_it(tmp_path):
-    table = pq.read_table(pa.BufferReader(fuzzing.SEEDS[fuzzing.DATASET]())).drop_columns(["title"])
+    table = pq.read_table(pa.BufferReader(mutated_input.SEEDS[mutated_input.DATASET]())).drop_columns(["title"])
     out = pa.BufferOutputStream()
     pq.write_table(table, out)
-    (found,) = read(fuzzing.placed(tmp_path, fuzzing.DATASET, out.getvalue().to_pybytes()))
+    (found,) = read(mutated_input.placed(tmp_path, mutated_input.DATASET, out.getvalue().to_pybytes()))
     assert found.code == "DAMAGED_FILE" and "title" in found.diagnostics[0].message

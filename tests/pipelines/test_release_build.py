@@ -6,7 +6,7 @@ import pytest
 
 import hearth
 from hearth.pipelines.build import build
-from hearth.pipelines.stages import STAGES
+from hearth.pipelines.engine.stages import STAGES
 
 STORED = "SELECT count(*), count(*) FILTER (reproduces) FROM executions WHERE rules = 'replay'"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.pipelines.files import file_digest
+from hearth.storage.files import file_digest
 
 
 @pytest.fixture(scope="module")

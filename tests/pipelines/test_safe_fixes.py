@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.cli import app
-from hearth.pipelines.fixes import difference, fixed, only_near
+from hearth.pipelines.checks.fixes import difference, fixed, only_near
 
 HEAD = "Watch TV\nOn the sofa.\n\n\n"
 

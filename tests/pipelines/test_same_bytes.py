@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.pipelines.stages import STAGES
+from hearth.pipelines.engine.stages import STAGES
 
 BUILD = """
 import sys

@@ -11,15 +11,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.pipelines import run as runner
-from hearth.pipelines.lock import locked
-from hearth.pipelines.parts import Counts
-from hearth.pipelines.rejects import INTERNAL_ERROR, Reject
-from hearth.pipelines.run import run_stage
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.stage import Partition, Stage
-from hearth.schemas.errors import HearthError
+from hearth.pipelines.engine import runner
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Partition, Stage
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.lock import locked
+from hearth.storage.partitions import Counts
+from hearth.storage.rejects import INTERNAL_ERROR, Reject
 
 SCHEMA = pa.schema([("program_id", pa.string()), ("number", pa.int32()), ("half", pa.int32())])
 

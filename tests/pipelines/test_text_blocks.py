@@ -3,10 +3,10 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hearth.pipelines.readers import blocks as subject
+from hearth.pipelines.crowd.repeated import Repeated
+from hearth.pipelines.crowd.seen import Tally, digest
+from hearth.pipelines.readers import text_blocks as subject
 from hearth.pipelines.readers.item import Item
-from hearth.pipelines.repeated import Repeated
-from hearth.pipelines.tally import Tally, digest
 from hearth.schemas.blocks import STEP, Splitter
 
 LINES = (
@@ -93,7 +93,7 @@ def test_ids_of_text_are_known_again_whichever_comes_first():
 
 
 def test_only_recent_answers_are_kept_to_compare_with():
-    from hearth.pipelines.duplicates import Copies
+    from hearth.pipelines.crowd.copied_answers import Copies
 
     words = "Walk to the kitchen and open the fridge. Take the milk out and pour a glass of it."
     others = [f"{'other words said here'.replace(' ', f' {n} ')} and some more of them {n}" for n in range(4)]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from hearth.pipelines.settings import Settings
-from hearth.pipelines.tiers import TIERS, tiered
-from hearth.schemas.errors import HearthError
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.tiers import TIERS, tiered
+from hearth.schemas.diagnostics import HearthError
 
 PLAIN = {"seed": 0, "limit": None, "homes_each": 0, "variants": 3, "target": 0, "pictures": 3, "videos": 1}
 

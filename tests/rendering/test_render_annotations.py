@@ -7,17 +7,17 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.rendering import png
 from hearth.rendering.annotations import camera_of, described, seen, skeletons
-from hearth.rendering.camera import look_at
-from hearth.rendering.figure import BODIES, Figure
-from hearth.rendering.flow import flow, flow_of
-from hearth.rendering.meshes.look import Look
-from hearth.rendering.models import Model
-from hearth.rendering.scene import Scene
-from hearth.rendering.shot import shoot
-from hearth.rendering.skeleton import Stance
-from hearth.rendering.things import Thing
+from hearth.rendering.cameras.camera import look_at
+from hearth.rendering.film import png
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import Model
+from hearth.rendering.people.figure import BODIES, Figure
+from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.rays.flow import flow, flow_of
+from hearth.rendering.rays.shot import shoot
+from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.scene import Scene
 
 W, H = 80, 60
 CAMERA = look_at("test", (0, 0, 0), (0, 0, 1), W, H)

@@ -8,12 +8,12 @@ import pytest
 
 pytest.importorskip("open3d", exc_type=ImportError)
 
-from hearth.kb.loading import default
-from hearth.rendering.camera import look_at
-from hearth.rendering.laid import laid
-from hearth.rendering.variation import PLAIN, drawn, scattered
-from hearth.rendering.video import Writer
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.rendering.cameras.camera import look_at
+from hearth.rendering.film.video import Writer
+from hearth.rendering.scene.laid_out import laid
+from hearth.rendering.scene.variation import PLAIN, drawn, scattered
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
 TABLE = Node(1, "table", "Furniture", ("SURFACES",), box=Box((0, 0.37, 0), (1.2, 0.74, 0.8)))
@@ -78,9 +78,9 @@ def test_chance_is_the_same_for_the_same_seed_and_is_told():
 
 def test_a_stage_goes_on_after_a_full_disk(tmp_path, monkeypatch):
     from hearth.pipelines import render as rendering
-    from hearth.pipelines.run import run_stage
-    from hearth.pipelines.settings import Settings
-    from hearth.pipelines.stages import stage
+    from hearth.pipelines.engine.runner import run_stage
+    from hearth.pipelines.engine.settings import Settings
+    from hearth.pipelines.engine.stages import stage
 
     program = tmp_path / "bed.txt"
     program.write_text("Rest\nLie down.\n\n[Walk] <bed> (1)\n")

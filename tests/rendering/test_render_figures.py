@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hearth.rendering.figure import BODIES, Figure, figure_mesh
-from hearth.rendering.skeleton import FOREARM, SHIN, THIGH, UPPER_ARM, Stance, joints, two_bones
+from hearth.rendering.people.figure import BODIES, Figure, figure_mesh
+from hearth.rendering.people.skeleton import FOREARM, SHIN, THIGH, UPPER_ARM, Stance, joints, two_bones
 
 HEIGHT = 1.7
 STANCES = {

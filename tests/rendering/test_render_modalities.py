@@ -5,16 +5,16 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.loading import default
-from hearth.rendering import png
-from hearth.rendering.camera import look_at, top_view
-from hearth.rendering.meshes.look import Look
+from hearth.kb.loading.load import default
+from hearth.rendering.cameras.camera import look_at, top_view
+from hearth.rendering.film import png
 from hearth.rendering.modalities import render
-from hearth.rendering.models import Model
-from hearth.rendering.scene import Scene
-from hearth.rendering.staging import scene_of
-from hearth.rendering.things import Thing
-from hearth.schemas.errors import HearthError
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import Model
+from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.prepared import scene_of
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
 W, H = 80, 60
@@ -164,7 +164,7 @@ def test_an_empty_scene_is_sky():
 def test_without_open3d_it_is_said_what_to_install(monkeypatch):
     import builtins
 
-    from hearth.rendering import rays
+    from hearth.rendering.rays import casting
 
     real = builtins.__import__
 
@@ -177,9 +177,9 @@ def test_without_open3d_it_is_said_what_to_install(monkeypatch):
         return load
 
     for error, remedy in ((ModuleNotFoundError("open3d"), "pip install"), (OSError("libusb"), "libusb-1.0-0")):
-        rays.engine.cache_clear()
+        casting.engine.cache_clear()
         monkeypatch.setattr(builtins, "__import__", missing(error))
         with pytest.raises(HearthError, match=remedy):
-            rays.engine()
+            casting.engine()
         monkeypatch.undo()
-    rays.engine.cache_clear()
+    casting.engine.cache_clear()

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 import yaml
 
-from hearth.rendering import pictures
-from hearth.rendering.meshes import catalog
-from hearth.rendering.meshes.catalog import ENTRY, FAMILIES, RECIPES
-from hearth.rendering.meshes.expressions import MATH, Scope, text_of
-from hearth.rendering.meshes.interpreter import Interpreter
-from hearth.rendering.meshes.look import Look
-from hearth.rendering.meshes.mesh import join
-from hearth.rendering.meshes.primitives import KNOWN, names_of
-from hearth.rendering.models import Model, draw
-from hearth.schemas.errors import HearthError
+from hearth.rendering.models import catalog, pictures
+from hearth.rendering.models.catalog import ENTRY, FAMILIES, RECIPES
+from hearth.rendering.models.expressions import MATH, Scope, text_of
+from hearth.rendering.models.interpreter import Interpreter
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.mesh import join
+from hearth.rendering.models.primitives import KNOWN, names_of
+from hearth.schemas.diagnostics import HearthError
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "models.json"
 REFRESH = "if the models are right: HEARTH_REFRESH=1 python -m pytest tests/rendering/test_render_models.py"
@@ -118,7 +117,7 @@ BOX = {"box": [["0", "h / 2", "0"], ["w", "h", "d"]], "paint": "OAK"}
 def test_a_fault_names_file_model_and_expression(entry, message):
     with pytest.raises(HearthError, match=re.escape(message)) as caught:
         drawn(entry)
-    assert caught.value.diagnostics[0].file == "rendering/meshes/seats.yaml"
+    assert caught.value.diagnostics[0].file == "rendering/models/seats.yaml"
 
 
 def test_a_shape_gets_what_it_takes():
@@ -137,7 +136,7 @@ def test_an_entry_is_read_from_top_to_bottom():
 
 
 def test_a_picture_is_its_strokes_in_order():
-    scope = Scope("rendering/pictures.yaml", "flag", frozenset(MATH))
+    scope = Scope("rendering/models/pictures.yaml", "flag", frozenset(MATH))
     flag = np.zeros((pictures.SIDE, pictures.SIDE, 3), np.uint8)
     halves = {"for": "k in range(3)", "when": "k", "fill": ["0", "0", "1", "0.25 * k", ["k", "0", "9"]]}
     pictures._paint([{"ground": ["5", "6", "7"]}, {"for": "n in (1, 1)", "all": [halves]}], flag, dict(MATH), scope)

@@ -9,18 +9,18 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.loading import default
-from hearth.rendering.motion import frames, spans
-from hearth.rendering.player import page
-from hearth.rendering.routes import path, ways_of
-from hearth.rendering.snapshots import play
-from hearth.rendering.video import Writer, film, record, times
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.rendering.film.player import page
+from hearth.rendering.film.snapshots import play
+from hearth.rendering.film.video import Writer, film, record, times
+from hearth.rendering.people.motion import frames, spans
+from hearth.rendering.scene.routes import path, ways_of
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 PROGRAM = "Put it away\nOn the table\n\n\n[Walk] <cup> (1)\n[Grab] <cup> (1)\n[Walk] <table> (1)\n" \
     "[PutBack] <cup> (1) <table> (1)\n[Sit] <chair> (1)\n[StandUp]\n"  # fmt: skip

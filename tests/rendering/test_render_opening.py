@@ -7,18 +7,18 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.loading import default
-from hearth.rendering.meshes.catalog import RECIPES
-from hearth.rendering.meshes.look import Look
-from hearth.rendering.motion import OPENING, frames, spans, swinging
-from hearth.rendering.snapshots import play
-from hearth.rendering.staging import stage
-from hearth.rendering.things import placed
+from hearth.kb.loading.load import default
+from hearth.rendering.film.snapshots import play
+from hearth.rendering.models.catalog import RECIPES
+from hearth.rendering.models.look import Look
+from hearth.rendering.people.motion import OPENING, frames, spans, swinging
+from hearth.rendering.scene.instances import placed
+from hearth.rendering.scene.prepared import stage
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 ROOM, ME, FRIDGE, HALL, JAMB, DOOR, FLOOR = range(1, 8)
 FPS = 20.0

@@ -5,8 +5,8 @@ import shutil
 import numpy as np
 import pytest
 
-from hearth.rendering.player import page
-from hearth.rendering.video import Writer
+from hearth.rendering.film.player import page
+from hearth.rendering.film.video import Writer
 
 STEPS = [
     {"tick": 0, "steps": [], "start": 0.0, "end": 1.0},

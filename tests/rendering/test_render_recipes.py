@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hearth.kb.loading import default
-from hearth.rendering.meshes.catalog import RECIPES
-from hearth.rendering.meshes.look import Look
-from hearth.rendering.models import FALLBACK, Model, choice_of, draw, looks, model_of, without_recipe
+from hearth.kb.loading.load import default
+from hearth.rendering.models.catalog import RECIPES
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import FALLBACK, Model, choice_of, draw, looks, model_of, without_recipe
 
 BEYOND = 0.08
 """Metres that handles, taps, sills and door frames may reach beyond their box."""

@@ -4,16 +4,16 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.loading import default
-from hearth.rendering.contact import caption, contact_sheet
-from hearth.rendering.places import Places, whereabouts
-from hearth.rendering.snapshots import moments, snapshots
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.rendering.film.contact import caption, contact_sheet
+from hearth.rendering.film.snapshots import moments, snapshots
+from hearth.rendering.scene.places import Places, whereabouts
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 PROGRAM = """Put the cup away
 On the table, then sit down

@@ -8,17 +8,17 @@ import pytest
 
 pytest.importorskip("open3d")
 
-from hearth.kb.loading import default
-from hearth.rendering.motion import frames, spans
-from hearth.rendering.snapshots import play
-from hearth.rendering.video import Director, agent_of
-from hearth.rendering.visibility import looks, shares
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.rendering.cameras.visibility import looks, shares
+from hearth.rendering.film.snapshots import play
+from hearth.rendering.film.video import Director, agent_of
+from hearth.rendering.people.motion import frames, spans
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 ROOM, ME, YOU, CHAIR, BOX, CUP = range(1, 7)
 FPS = 8.0

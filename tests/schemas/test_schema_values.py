@@ -7,16 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.loading import default
-from hearth.pipelines.rows import node_of, node_row
+from hearth.datasets.format.codecs import node_of, node_row
+from hearth.kb.loading.load import default
 from hearth.schemas import vocabulary
-from hearth.schemas.errors import Diagnostic, HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, edge_set, from_release, read_node, to_release
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import derive, rng
 from hearth.schemas.syntax import parse_program
-from hearth.simulation.home import Home
+from hearth.simulation.world.home import Home
 
 GRAPH = {
     "trimmed_nodes": [7],

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import MAX_LINE, parse_program, parse_programs, parse_steps
 

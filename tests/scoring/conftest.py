@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden/score"
 

@@ -1,9 +1,9 @@
 import pytest
 
 from hearth.scoring.evaluate import METRICS, Options, by_field, evaluate, reference_of, signatures, summarise
-from hearth.scoring.executability import ErrorClass
+from hearth.scoring.lines import read
+from hearth.scoring.metrics.executability import ErrorClass
 from hearth.scoring.predictions import Pair
-from hearth.scoring.reading import read
 
 REFERENCE = read(["[Walk] <fridge> (1)", "[Open] <fridge> (1)"])
 

@@ -3,13 +3,13 @@ import zipfile
 
 import pytest
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.scoring.executability import ErrorClass, executability
-from hearth.scoring.reading import read
-from hearth.simulation.home import Home
+from hearth.scoring.lines import read
+from hearth.scoring.metrics.executability import ErrorClass, executability
 from hearth.simulation.rules import REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 WALK_FRIDGE, OPEN_FRIDGE = "[Walk] <fridge> (1)", "[Open] <fridge> (1)"
 WALK_CUP, GRAB_CUP = "[Walk] <cup> (1)", "[Grab] <cup> (1)"

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
-from hearth.scoring.alignment import Problem
-from hearth.scoring.counts import Match, Matches, Prf
-from hearth.scoring.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
-from hearth.scoring.views import views_of
-from hearth.simulation.bits import indices
+from hearth.scoring.metrics.alignment import Problem
+from hearth.scoring.metrics.counts import Match, Matches, Prf
+from hearth.scoring.metrics.final_graph import views_of
+from hearth.scoring.metrics.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
+from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act, run
-from hearth.simulation.legal import legal
+from hearth.simulation.world.bits import indices
 
 CLASSES = {9: "character", 1: "kitchen", 10: "table", 11: "table", 20: "cup", 21: "cup", 22: "cup", 30: "plate"}
 CATEGORIES = {1: "Rooms", 9: "Characters"}

@@ -4,10 +4,10 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from hearth.schemas.errors import HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.scoring.lines import read
 from hearth.scoring.predictions import SHOWN, Pair, read_pairs
-from hearth.scoring.reading import read
 
 WALK = read(["[Walk] <sofa> (1)"])
 

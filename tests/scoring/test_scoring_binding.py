@@ -1,6 +1,6 @@
 from hearth.schemas.syntax import parse_program, print_lines
-from hearth.scoring.binding import bind
-from hearth.scoring.views import Nodes
+from hearth.scoring.metrics.final_graph import Nodes
+from hearth.scoring.predicted_nodes import bind
 
 
 def bound(text, flat, knowledge, reference=None):

@@ -3,7 +3,7 @@ import pytest
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
-from hearth.scoring.goals import goal_of, satisfaction
+from hearth.scoring.metrics.goals import goal_of, satisfaction
 from hearth.simulation.engine import run
 
 BOTH_CUPS = """[Walk] <cup> (1.20)

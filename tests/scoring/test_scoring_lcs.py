@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.lcs import LEVELS, LcsScore, items, lcs_signature, matrix, score, score_pairs, similarity
-from hearth.scoring.reading import read
+from hearth.scoring.lines import read
+from hearth.scoring.metrics.lcs import LEVELS, LcsScore, items, lcs_signature, matrix, score, score_pairs, similarity
 
 refs = st.builds(
     ObjectRef, st.sampled_from(["cup", "coffee_table", "tv"]), st.integers(1, 2), st.sampled_from([None, 7])

@@ -1,8 +1,8 @@
 import pytest
 
 from hearth.schemas.failures import Code
-from hearth.scoring.parse import parsability
-from hearth.scoring.reading import read
+from hearth.scoring.lines import read
+from hearth.scoring.metrics.parsability import parsability
 
 
 @pytest.mark.parametrize(

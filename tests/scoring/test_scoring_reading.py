@@ -1,10 +1,10 @@
 import pytest
 
-from hearth.schemas.errors import Diagnostic
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.reading import read, steps_of
+from hearth.scoring.lines import read, steps_of
 
 WALK = Step("Walk", (ObjectRef("sofa"),))
 SIT = Step("Sit", (ObjectRef("sofa"),))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from hypothesis import strategies as st
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.vocabulary import STATES

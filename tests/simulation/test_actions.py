@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 from small_worlds import bound_step, node
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 THINGS = {
     "kitchen": ((), "", ""),

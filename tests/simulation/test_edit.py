@@ -5,16 +5,16 @@ import random
 import pytest
 from small_worlds import bound_step, node, random_graph, random_step
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import OPPOSITE, STATES
-from hearth.simulation.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT
-from hearth.simulation.world import World
+from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 def kitchen() -> Home:

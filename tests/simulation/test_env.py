@@ -5,15 +5,15 @@ from dataclasses import replace
 import pytest
 from small_worlds import bound_step, node
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.simulation.engine import act, run, tick
 from hearth.simulation.env import Env, with_agents
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 KITCHEN, BEDROOM, A, FRIDGE, CUP, TABLE, BED, JUICE, SHELF, DOOR = range(1, 11)
 NODES = {

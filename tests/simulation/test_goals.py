@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -13,8 +13,8 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
-from hearth.simulation.home import Home
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 THINGS = ("GRABBABLE", "MOVABLE")
 GRAPH = EnvironmentGraph(

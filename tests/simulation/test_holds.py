@@ -10,22 +10,22 @@ from hypothesis import strategies as st
 from oracles.holds import Plain
 from small_worlds import random_graph
 
-from hearth.grounding.checking import unmet
-from hearth.grounding.conditions import Condition, Preconditions
-from hearth.kb.loading import default
+from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.homes import library
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
-from hearth.scoring.goals import satisfaction
-from hearth.simulation.bits import indices
+from hearth.scoring.metrics.goals import satisfaction
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
 from hearth.simulation.holds import BINARY, UNARY, candidates, holds
-from hearth.simulation.home import Home
-from hearth.simulation.homes import catalog
-from hearth.simulation.world import World
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 KNOWLEDGE = default()
 STEPS = 12
@@ -42,7 +42,7 @@ def with_guest(graph: EnvironmentGraph) -> EnvironmentGraph:
 
 
 HOMES = [
-    Home.from_graph(with_guest(catalog.load_graph(name, KNOWLEDGE)), name, KNOWLEDGE)
+    Home.from_graph(with_guest(library.load_graph(name, KNOWLEDGE)), name, KNOWLEDGE)
     for name in ("maple", "cedar", "willow")
 ] + [Home.from_graph(random_graph(random.Random(seed), characters=2), "", KNOWLEDGE) for seed in range(24)]
 GRAPHS = [World.start(home).graph() for home in HOMES]

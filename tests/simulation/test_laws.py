@@ -5,17 +5,17 @@ from __future__ import annotations
 from hypothesis import given, settings
 from small_worlds import graphs, homes_and_steps
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.change import encode
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import act, run
-from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT
-from hearth.simulation.snapshot import export, restore
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.snapshot import export, restore
+from hearth.simulation.world.world import World
 
 law = settings(derandomize=True, deadline=None, max_examples=60)
 

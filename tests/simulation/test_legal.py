@@ -5,26 +5,17 @@ import random
 import pytest
 from small_worlds import arity, bound_step, random_graph, random_step
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
-from hearth.simulation import reach, rows
-from hearth.simulation.actions import (
-    appliances,
-    cleaning,
-    clothes,
-    food,
-    hands,
-    locomotion,
-    moving,
-    posture,
-    senses,
-)
+from hearth.simulation.actions import appliances, cleaning, clothes, food, hands, locomotion, moving, posture, senses
+from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
-from hearth.simulation.legal import legal
+from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world import rows
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 def some_world(rng: random.Random, characters: int, rules) -> tuple[World, list]:

@@ -5,18 +5,18 @@ from itertools import pairwise
 
 import pytest
 
-from hearth.kb.loading import default
+from hearth.homes import library
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.homes import catalog
-from hearth.simulation.moves import Located, do, located
-from hearth.simulation.navigation import Pose, Ways, along, distance_to, heading, length
-from hearth.simulation.world import World
+from hearth.simulation.motion.moves import Located, do, located
+from hearth.simulation.motion.navigation import Pose, Ways, along, distance_to, heading, length
+from hearth.simulation.world.world import World
 
 
 @pytest.fixture(scope="module")
 def ways():
-    return Ways(catalog.load_layout("maple", default()).floor)
+    return Ways(library.load_layout("maple", default()).floor)
 
 
 @pytest.fixture

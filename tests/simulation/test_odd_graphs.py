@@ -7,17 +7,17 @@ import random
 import pytest
 from small_worlds import bound_step, node, random_graph
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, to_release
-from hearth.simulation import building
+from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
-from hearth.simulation.legal import legal
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world import building
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 BASE = (node(1, "kitchen"), node(2, "bedroom"), node(3, "character"), node(4, "cup"), node(5, "fridge"))
 

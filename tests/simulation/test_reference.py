@@ -10,12 +10,12 @@ from oracles.world import Options
 from oracles.world import World as PlainWorld
 from small_worlds import random_graph, random_step
 
-from hearth.kb.loading import default
+from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
 from hearth.simulation.rules import DEFAULT, REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 def agree(seed: int, steps: int = 30) -> int:

@@ -14,9 +14,9 @@ from hearth.kb import grammar
 from hearth.schemas.graph import from_release
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
-from hearth.simulation.home import Home
 from hearth.simulation.rules import REPLAY
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 def cases(folder, knowledge, every: int = 1):

@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hearth.kb.loading import default
-from hearth.schemas.errors import HearthError
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
-from hearth.simulation.home import Home
-from hearth.simulation.snapshot import export, restore
-from hearth.simulation.world import World
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.snapshot import export, restore
+from hearth.simulation.world.world import World
 
 GRAPH = EnvironmentGraph(
     (

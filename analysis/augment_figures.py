@@ -1,0 +1,156 @@
+"""What augmenting gave: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.manifest import TIMING, read_manifest
+
+THESIS: dict[str, dict[str, float | None]] = {
+    "collected": {"programs": 2807, "average_length": 13.26, "average_nodes": None, "average_edges": None},
+    "executable": {"programs": 1387, "average_length": 9.61, "average_nodes": 289, "average_edges": 4393},
+    "augmented": {"programs": 27284, "average_length": 18.58, "average_nodes": 290, "average_edges": 4305},
+    "all": {"programs": 32761, "average_length": 18.79, "average_nodes": 289, "average_edges": 4319},
+}
+"""Table 5.1. Its parts do not add up: 1,387 + 27,284 is 28,671, not 32,761."""
+
+SHOWN_CLASSES = ("cup", "sauce_pan")
+"""The classes whose conditions figure 5-4 shows."""
+
+
+def outcome(folder: Path) -> dict[str, Any]:
+    """Pairs of a program and a perturbed environment that were tried, and what became of them, by code.
+
+    Raises:
+        HearthError: MISSING_FILE, when the stage has not been run.
+    """
+    import orjson
+    import pyarrow.parquet as pq
+
+    manifest = read_manifest(folder)
+    if manifest is None:
+        raise HearthError.of(Code.MISSING_FILE, "nothing was augmented here", file=str(folder))
+    rejects = pq.read_table(folder / "rejects.parquet", columns=["code", "message", "fault"]).to_pylist()
+    idle = sum(row["code"] == Code.UNPERTURBED and "where" not in row["message"] for row in rejects)
+    codes = Counter(row["code"] for row in rejects if row["fault"] == 0)
+    codes[str(Code.UNPERTURBED)] -= idle
+    programs = manifest.counts.rows[""]
+    tried = programs + codes.total()
+    given_up = sum(codes[str(code)] for code in GIVEN_UP)
+    return {
+        "executions": manifest.counts.records_in,
+        "nothing_to_perturb": idle,
+        "pairs_tried": tried,
+        "repaired": programs + codes[str(Code.DUPLICATE)],
+        "repaired_share": round(1 - given_up / tried, 4) if tried else None,
+        "rejected": dict(sorted((+codes).items(), key=lambda each: (-each[1], each[0]))),
+        "programs_out": programs,
+        "seconds": orjson.loads((folder / TIMING).read_bytes())["seconds"],
+    }
+
+
+GIVEN_UP = (Code.NO_HANDLER, Code.HANDLER_ERROR, Code.LOOP, Code.TOO_MANY_TRIES, Code.GOAL_LOST)
+"""Why a pair was not repaired; the others were, or needed no repair, or could not be drawn."""
+
+LENGTHS = (5, 10, 15, 20, 25, 30, 40, 50)
+"""Upper ends of the classes in which lengths are counted."""
+
+_GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NULL", "all": "true"}
+
+
+def figures(dataset: Path) -> dict[str, Any]:
+    """What table 5.1 and figure 5-4 show, of a published dataset, beside the thesis.
+
+    Returns:
+        `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`: programs by length before and
+        after augmenting; `conditions`: for each class of `SHOWN_CLASSES`, how often each condition names it before and
+        after, as shares; `near_duplicates`: pairs of one parent's children in one home with the same steps;
+        `executable_share`: of the programs that were valid, those with an environment in which they run.
+
+    Raises:
+        HearthError: MISSING_FILE, when no dataset is there.
+    """
+    from hearth.datasets.dataset import Dataset
+
+    data = Dataset.open(dataset)
+    return {
+        "table": {name: {"ours": _row(data, name), "thesis": thesis} for name, thesis in THESIS.items()},
+        "lengths": {name: _lengths(data, name) for name in ("executable", "augmented")},
+        "conditions": {name: _conditions(data, name) for name in SHOWN_CLASSES},
+        "near_duplicates": _near_duplicates(data),
+        "executable_share": _share(data),
+        "bytes_a_program": _bytes(dataset, data),
+    }
+
+
+def _row(data: Any, group: str) -> dict[str, float | None]:
+    """One column of table 5.1; nodes and edges as the executions' environments have them."""
+    if group == "collected":
+        (found,) = data.rows("SELECT records_through FROM ledger WHERE stage = 'validate'")[1]
+        return {"programs": found[0], "average_length": None, "average_nodes": None, "average_edges": None}
+    where = _GROUPS[group]
+    query = f"""
+        SELECT count(DISTINCT p.program_id), avg(len(p.steps)),
+               avg(h.nodes + len(v.added_nodes) - len(v.removed_nodes)),
+               avg(h.edges + len(v.added) - len(v.removed))
+        FROM programs p JOIN executions e USING (program_id) JOIN environments v USING (environment_id)
+             JOIN homes h ON h.home = e.home
+        WHERE e.executable AND p.{where}""".replace("p.true", "true")
+    programs, length, nodes, edges = data.rows(query)[1][0]
+    rounded = {"average_length": length, "average_nodes": nodes, "average_edges": edges}
+    return {"programs": programs, **{name: round(value, 2) if value else None for name, value in rounded.items()}}
+
+
+def _lengths(data: Any, group: str) -> dict[str, int]:
+    """Programs by length, in classes named by their upper end; the last is open."""
+    rows = data.rows(f"SELECT len(steps), count(*) FROM programs WHERE {_GROUPS[group]} GROUP BY 1")[1]
+    found = dict.fromkeys([*(f"up to {end}" for end in LENGTHS), "more"], 0)
+    for length, count in rows:
+        end = next((end for end in LENGTHS if length <= end), None)
+        found["more" if end is None else f"up to {end}"] += count
+    return found
+
+
+def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
+    """How often each condition of the start names a class first: shares of all that do, before and after."""
+    found: dict[str, dict[str, float]] = {}
+    for label, where in (("before", "IS NULL"), ("after", "IS NOT NULL")):
+        query = f"""
+            WITH told AS (SELECT unnest(v.conditions) AS c FROM environments v JOIN programs p USING (program_id)
+                          WHERE p.parent_id {where})
+            SELECT c.name, count(*) FROM told WHERE c.objects[1].name = $name GROUP BY 1 ORDER BY 2 DESC, 1"""
+        rows = data.rows(query, name=name)[1]
+        total = sum(count for _, count in rows) or 1
+        for condition, count in rows:
+            found.setdefault(condition, {"before": 0.0, "after": 0.0})[label] = round(count / total, 4)
+    return found
+
+
+def _near_duplicates(data: Any) -> int:
+    """Augmented programs that have the steps of a sibling in the same home, or of their parent."""
+    query = """
+        WITH child AS (SELECT DISTINCT p.program_id, p.parent_id, e.home, p.steps
+                       FROM programs p JOIN executions e USING (program_id) WHERE p.parent_id IS NOT NULL),
+             told AS (SELECT program_id, parent_id, home,
+                             list_transform(steps, lambda s: {'a': s.action, 'o': s.objects, 'g': s.agent}) AS said
+                      FROM child)
+        SELECT count(*) - count(DISTINCT (parent_id, home, said)) FROM told"""
+    return int(data.rows(query)[1][0][0])
+
+
+def _share(data: Any) -> float | None:
+    """Programs that run somewhere, of all that are valid."""
+    rows = dict(data.rows("SELECT stage, records_through FROM ledger WHERE stage IN ('validate', 'sample')")[1])
+    return round(rows["sample"] / rows["validate"], 4) if rows.get("validate") else None
+
+
+def _bytes(dataset: Path, data: Any) -> int | None:
+    """What programs, environments, executions and repairs take on disk, for each execution."""
+    tables = ("programs", "environments", "executions", "repairs")
+    size = sum(path.stat().st_size for table in tables for path in dataset.rglob(f"{table}/part-*.parquet"))
+    (count,) = data.rows("SELECT count(*) FROM executions")[1][0]
+    return round(size / count) if count else None

@@ -1,0 +1,102 @@
+"""How well faults are found in a corpus whose faults are known: precision and recall, fault by fault."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines import validate
+from hearth.pipelines.engine.sources import labelled
+from hearth.pipelines.ingest import items, read
+from hearth.schemas.rows import IngestedRow
+from hearth.storage.rejects import Reject
+
+IGNORED = frozenset({"NOT_SIMULATED"})
+"""Warnings that are no fault of whoever wrote the program."""
+
+
+@dataclass(slots=True)
+class Found:
+    """What was found: codes by record, and how many records there were."""
+
+    codes: dict[str, set[str]] = field(default_factory=dict)
+    records: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """How well one kind of fault was found."""
+
+    fault: str
+    labelled: int
+    found: int
+    codes: tuple[tuple[str, int], ...]
+
+    @property
+    def recall(self) -> float:
+        """Share of the labelled that were found, by whatever code."""
+        return self.found / self.labelled if self.labelled else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """All kinds, and everything together; `false` are records found faulty that the key says nothing about."""
+
+    scores: tuple[Score, ...]
+    false: tuple[tuple[str, int], ...]
+    precision: float
+    recall: float
+    rejected_precision: float
+
+
+def find(paths: Iterable[str], known: Knowledge) -> Found:
+    """Read and check sources as `ingest` and `validate` do; what is refused or warned of, by record."""
+    found = Found()
+    for _, item in items(labelled(paths)):
+        found.records += 1
+        name = item.record_id.rpartition(":")[2]
+        for row in read(item):
+            codes = _codes(row, known)
+            if codes:
+                found.codes.setdefault(name, set()).update(codes)
+    return found
+
+
+def _codes(row: IngestedRow | Reject, known: Knowledge) -> set[str]:
+    if isinstance(row, Reject):
+        return {f"!{fault.code}" for fault in row.diagnostics}
+    if row["kind"] != "program":
+        return set()
+    done = validate.process({**row, "groundings": None}, known)
+    refused = {f"!{fault.code}" for one in done if isinstance(one, Reject) for fault in one.diagnostics}
+    return refused or {w["code"] for one in done if not isinstance(one, Reject) for w in one["warnings"]} - IGNORED
+
+
+def read_key(path: Path) -> dict[str, str]:
+    """Record -> its fault, of a CSV with the columns HITId and fault."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        return {row["HITId"]: row["fault"] for row in csv.DictReader(file)}
+
+
+def score(found: Found, key: dict[str, str]) -> Report:
+    """Compare what was found with what is labelled. Codes of refusals begin with `!`, the others are warnings."""
+    kinds = Counter(key.values())
+    scores = []
+    for fault, count in sorted(kinds.items()):
+        hits = [found.codes[name] for name, kind in key.items() if kind == fault and name in found.codes]
+        codes = Counter(code for each in hits for code in each)
+        scores.append(Score(fault, count, len(hits), tuple(codes.most_common(3))))
+    wrong = Counter(code for name, codes in found.codes.items() if name not in key for code in codes)
+    right = sum(name in key for name in found.codes)
+    rejected = [name for name, codes in found.codes.items() if any(code.startswith("!") for code in codes)]
+    return Report(
+        tuple(scores),
+        tuple(wrong.most_common()),
+        right / max(1, len(found.codes)),
+        right / max(1, len(key)),
+        sum(name in key for name in rejected) / max(1, len(rejected)),
+    )

@@ -1,0 +1,314 @@
+"""SyntheticPrograms: programs drawn from a probabilistic grammar, each with several descriptions (thesis 4.4)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import accumulate
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rng import rng
+
+DEFAULT_COUNT = 5_193
+"""As many as the thesis's SyntheticPrograms has (table 4.1)."""
+
+FILE = Path(__file__).parent / "synthesis.yaml"
+
+_TRIES = 60
+_HANDS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Weighted:
+    """Things with weights, ready to be drawn."""
+
+    things: tuple[str, ...]
+    sums: tuple[float, ...]
+
+    @classmethod
+    def of(cls, weights: Mapping[Any, float]) -> Weighted:
+        """Those of a mapping that weigh anything."""
+        kept = {str(thing): weight for thing, weight in weights.items() if weight > 0}
+        return cls(tuple(kept), tuple(accumulate(kept.values())))
+
+    def draw(self, chance: Random) -> str:
+        """One of them."""
+        return chance.choices(self.things, cum_weights=self.sums)[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Steps that are told together: `(action, slots)`, ways to tell them, and how likely both are."""
+
+    steps: tuple[tuple[str, tuple[str, ...]], ...]
+    say: tuple[str, ...]
+    chance: float
+    told: float
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A thing that people do at home."""
+
+    name: str
+    titles: tuple[str, ...]
+    slots: Mapping[str, Weighted]
+    parts: tuple[Part, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Grammar:
+    """What programs are drawn from."""
+
+    plan: Weighted
+    weights: Weighted
+    tasks: Mapping[str, Task]
+    join: float
+    first: float
+    known: Knowledge
+
+
+@dataclass(frozen=True, slots=True)
+class Synthetic:
+    """A program as drawn: title, steps as (action, objects), and descriptions that differ."""
+
+    title: str
+    steps: tuple[tuple[str, tuple[str, ...]], ...]
+    descriptions: tuple[str, ...]
+
+    def lines(self) -> list[str]:
+        """The steps as text."""
+        return [" ".join([f"[{action}]", *(f"<{name}> (1)" for name in names)]) for action, names in self.steps]
+
+
+def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
+    """Read a grammar.
+
+    Args:
+        path: a YAML file as `synthesis.yaml`.
+        known: what actions take and what objects there are.
+        every_action: keep parts with actions beyond those that are animated (thesis 4.4).
+
+    Raises:
+        HearthError: every unknown action, object or slot, wrong number of objects and thing that does not afford it.
+    """
+    import yaml
+
+    try:
+        data = yaml.safe_load(path.read_text("utf-8"))
+        told = float(data["told"])
+        tasks = {name: _task(name, entry, told) for name, entry in data["tasks"].items()}
+        weights = {name: float(entry["weight"]) for name, entry in data["tasks"].items()}
+        plan = Weighted.of(data["plan"])
+        join, first = float(data["join"]), float(data["first"])
+    except (yaml.YAMLError, OSError, KeyError, TypeError, ValueError, AttributeError) as error:
+        message = f"no grammar of programs: {type(error).__name__} {error}"
+        suggestion = "it needs plan, join, first, told and tasks"
+        raise HearthError.of(Code.BAD_TABLE, message, file=str(path), suggestion=suggestion) from error
+    faults = [fault for task in tasks.values() for fault in _faults(task, known, str(path))]
+    if faults:
+        raise HearthError(faults)
+    kept = {name: task if every_action else _animated(task, known) for name, task in tasks.items()}
+    return Grammar(
+        plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first, known
+    )
+
+
+def _task(name: str, entry: Mapping[str, Any], told: float) -> Task:
+    slots = {slot: Weighted.of(weights) for slot, weights in entry["choose"].items()}
+    parts = tuple(
+        Part(
+            tuple((words[0], tuple(words[1:])) for words in map(str.split, part["steps"])),
+            tuple(part["say"]),
+            float(part.get("chance", 1)),
+            float(part.get("told", told)),
+        )
+        for part in entry["parts"]
+    )
+    return Task(name, tuple(entry["titles"]), slots, parts)
+
+
+def _animated(task: Task, known: Knowledge) -> Task:
+    animated = known.group("animated")
+    parts = tuple(part for part in task.parts if all(action in animated for action, _ in part.steps))
+    return Task(task.name, task.titles, task.slots, parts)
+
+
+def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
+    for part in task.parts:
+        for action, slots in part.steps:
+            found = known.actions.get(action)
+            if found is None or found.arity != len(slots):
+                code = Code.UNKNOWN_ACTION if found is None else Code.WRONG_ARITY
+                yield Diagnostic(code, f"task `{task.name}`: [{action}] of {len(slots)} objects", file, found=action)
+                continue
+            for place, slot in enumerate(slots):
+                for name in task.slots[slot].things if slot in task.slots else (slot,):
+                    if known.object_class(name) is None:
+                        message = f"task `{task.name}`: unknown object `{name}`"
+                        yield Diagnostic(Code.UNKNOWN_OBJECT, message, file, found=name)
+                    elif not known.affords(action, place, name):
+                        message = f"task `{task.name}`: [{action}] can't be done to `{name}`"
+                        yield Diagnostic(Code.NOT_AFFORDED, message, file, found=name)
+
+
+class Told(NamedTuple):
+    """A part that was drawn, the objects of its task by slot, and how they are called."""
+
+    part: Part
+    chosen: dict[str, str]
+    said: dict[str, str]
+
+
+def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
+    """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
+
+    Args:
+        count: how many.
+        seed: of everything drawn.
+        grammar: what they are drawn from.
+        descriptions: ways to tell each, at most.
+
+    Raises:
+        HearthError: EMPTY, when the grammar does not hold so many different programs.
+    """
+    seen: set[tuple[tuple[str, tuple[str, ...]], ...]] = set()
+    drawn = 0
+    while len(seen) < count:
+        if drawn >= _TRIES * count + 1_000:
+            message = f"the grammar gave {len(seen):,} different programs, not {count:,}"
+            raise HearthError.of(Code.EMPTY, message, suggestion="ask for fewer, or give it more tasks and objects")
+        chance = rng(seed, "synthesize", drawn)
+        drawn += 1
+        found = _draw(grammar, chance, descriptions)
+        if found is not None and found.steps not in seen:
+            seen.add(found.steps)
+            yield found
+
+
+def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | None:
+    """A program, or None where it could not be done: a third thing to hold, a lamp switched on twice."""
+    wanted = int(grammar.plan.draw(chance))
+    names: list[str] = []
+    while len(names) < wanted:
+        name = grammar.weights.draw(chance)
+        if name not in names:
+            names.append(name)
+    told: list[Told] = []
+    for name in names:
+        task = grammar.tasks[name]
+        chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
+        said = {slot: _spoken(name) for slot, name in chosen.items()}
+        told += [Told(part, chosen, said) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
+    steps = _steps(told, grammar.known)
+    if not steps:
+        return None
+    ways = dict.fromkeys(_tell(told, grammar, chance) for _ in range(descriptions))
+    return Synthetic(chance.choice(grammar.tasks[names[0]].titles), tuple(steps), tuple(ways))
+
+
+def _steps(told: Sequence[Told], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
+    """The steps of the parts with their objects; none where they contradict each other or hands are full."""
+    steps: list[tuple[str, tuple[str, ...]]] = []
+    made: dict[tuple[str, str], str] = {}
+    held: set[str] = set()
+    seated = False
+    for part, chosen, _ in told:
+        for action, slots in part.steps:
+            names = tuple(chosen.get(slot, slot) for slot in slots)
+            if seated and action in known.group("goes"):
+                steps.append(("StandUp", ()))
+                seated = False
+            if not _possible(action, names, made, held, known) or (action == "StandUp" and not seated):
+                return []
+            seated = action == "Sit" or (seated and action != "StandUp")
+            if not steps or steps[-1] != (action, names):
+                steps.append((action, names))
+    return steps
+
+
+def _possible(
+    action: str, names: tuple[str, ...], made: dict[tuple[str, str], str], held: set[str], known: Knowledge
+) -> bool:
+    """Whether a step can be done after the others; notes what it makes of things and hands."""
+    state = known.state_of(action) if action in known.group("operates") & known.group("animated") else ""
+    if (action == "Grab" or state in ("OPEN", "ON", "OFF")) and len(held) >= _HANDS:
+        return False
+    if state:
+        key = (known.group_of(state), names[0])
+        if made.get(key) == state or (state == "OPEN" and made.get((known.group_of("ON"), names[0])) == "ON"):
+            return False
+        made[key] = state
+    if action == "Sit":
+        # Whoever stood up again still counts as being on that seat, which has no room for two.
+        again = ("seat", names[0]) in made
+        made["seat", names[0]] = action
+        return not again
+    if action == "Grab":
+        where = made.pop(("place", names[0]), None)
+        if names[0] in held or (where is not None and made.get((known.group_of("CLOSED"), where)) == "CLOSED"):
+            return False
+        held.add(names[0])
+    elif action in known.group("puts"):
+        held.discard(names[0])
+        made["place", names[0]] = names[1]
+        return names[0] != names[1]
+    return True
+
+
+def _tell(told: Sequence[Told], grammar: Grammar, chance: Random) -> str:
+    """The parts in sentences; commonsense ones may be left out (thesis 3.3)."""
+    shown: dict[str, str] = {}
+    for each in told:
+        shown.update(each.said)
+    clauses: list[str] = []
+    for part, _, said in told:
+        if chance.random() < part.told:
+            shown.update(said)
+            clauses.append(chance.choice(part.say).format_map(shown))
+    if not clauses:
+        clauses.append(told[0].part.say[0].format_map(told[0].said))
+    start = "I " if chance.random() < grammar.first else ""
+    sentences: list[str] = []
+    while clauses:
+        words = clauses.pop(0)
+        if clauses and " and " not in words and chance.random() < grammar.join:
+            words = f"{words} and {clauses.pop(0)}"
+        sentences.append(_sentence(words, start))
+    return " ".join(sentences)
+
+
+_YOU = re.compile(r"\byou(r?)\b( are\b)?")
+
+
+def _sentence(words: str, start: str) -> str:
+    if start:
+        words = _YOU.sub(lambda m: "my" if m[1] else "I am" if m[2] else "I", words)
+    return f"{start}{words}." if start else f"{words[0].upper()}{words[1:]}."
+
+
+_SAID = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ceiling lamp"}
+
+
+@cache
+def _spoken(name: str) -> str:
+    return _SAID.get(name) or name.removeprefix("food_").replace("_", " ")
+
+
+def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:
+    """A program as a line of JSON Lines that `ingest` reads, labelled as generated."""
+    return {
+        "program_id": f"synthetic:{seed}:{number}",
+        "origin": "synthetic",
+        "title": found.title,
+        "description": found.descriptions[0],
+        "descriptions": list(found.descriptions[1:]),
+        "steps": found.lines(),
+    }

@@ -1,0 +1,70 @@
+"""`sample SOURCE`: does every program run in every home, and if not, why?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.analysis.coverage import Rehearsal, Script
+    from hearth.pipelines.engine.build_homes import Homes
+    from hearth.schemas.failures import Failure
+
+
+def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
+         as_json: bool) -> None:  # fmt: skip
+    """Rehearse and print; with `strict` the status is 1 if a pair ran neither and is not proven impossible."""
+    from itertools import islice
+
+    from hearth.analysis.coverage import rehearse, scripts
+    from hearth.commands.progress_line import bar, watched
+    from hearth.grounding.environments.sampling import Size
+    from hearth.pipelines.engine.build_homes import Homes
+    from hearth.pipelines.engine.settings import Settings
+
+    homes = Homes(Settings(**settings))
+    programs = islice(scripts(map(str, sources), homes.knowledge), limit)
+    wanted = Size() if size is None else Size.about(size)
+    with bar("programs tried") as seen:
+        found = rehearse(watched(programs, seen, limit), homes, homes.names(), settings["seed"], wanted)
+    if as_json:
+        told = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
+        output.emit({**found.summary(), **told})
+    else:
+        figures = {**found.summary(), "homes": len(found.homes)}
+        figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
+        output.figures(figures)
+        for one in (*_impossible(found, homes), *_failures(found)):
+            print(f"{one['place']} in {one['home']}: {one['message']}")
+    output.status(len(found.failed), strict=strict)
+
+
+def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
+    from hearth.analysis.coverage import ANY_HOME
+    from hearth.grounding.preconditions.infer import at_odds
+
+    for script, where, failure in found.impossible:
+        steps = at_odds(script.program, homes.knowledge) if where == ANY_HOME else (failure.tick,)
+        yield _told(script, where, failure, steps)
+
+
+def _failures(found: Rehearsal) -> Iterator[dict[str, Any]]:
+    for script, home, failure in found.failed:
+        yield _told(script, home, failure, (min(failure.tick, len(script.program.steps) - 1),))
+
+
+def _told(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
+    """Why a program does not run, with the lines of the steps that are at odds."""
+    return {
+        "program": script.program_id,
+        "place": script.place,
+        "home": home,
+        "code": str(failure.code),
+        "steps": [{"step": number + 1, "line": script.program.line(number)} for number in steps],
+        "expected": failure.expected,
+        "actual": failure.actual,
+        "message": failure.message(),
+    }

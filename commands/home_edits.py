@@ -1,0 +1,105 @@
+"""What `home edit` is told: `CLASS:on:ID`, `ID:inside:ID`, `ID:STATE`, read and done."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NoReturn
+
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code, Failure
+
+if TYPE_CHECKING:
+    from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.graph import EnvironmentGraph, Node
+
+_IDS = "`home convert HOME FILE.json` writes a home's nodes with their ids"
+
+RELATIONS = {"on": "ON", "in": "INSIDE", "inside": "INSIDE"}
+
+
+def edited(
+    graph: EnvironmentGraph,
+    *,
+    add: Sequence[str],
+    remove: Sequence[int],
+    move: Sequence[str],
+    states: Sequence[str],
+    knowledge: Knowledge,
+    name: str = "",
+) -> tuple[EnvironmentGraph, tuple[int, ...]]:
+    """A graph with things added, removed and moved and states set, and the ids of what was added.
+
+    In a home with geometry, what was added or moved stands where there is room on or in its place.
+
+    Raises:
+        HearthError: an order that cannot be read, names what there is not, or does not fit the knowledge.
+    """
+    from hearth.homes.from_graph.measured import has_geometry
+    from hearth.homes.reposing import posed
+    from hearth.simulation.world.edit import edit, free_id
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
+
+    world = World.start(Home.from_graph(graph, name, knowledge))
+    first = free_id(world.home)
+    orders = [_placing(text, "CLASS:on:ID") for text in add]
+    nodes = [_node(thing, first + k, knowledge) for k, (thing, _, _) in enumerate(orders)]
+    place = {node.id: (relation, target) for node, (_, relation, target) in zip(nodes, orders, strict=True)}
+    for thing, relation, target in (_placing(text, "ID:on:ID") for text in move):
+        place[_number(thing, thing)] = (relation, target)
+    wanted = [_state(text) for text in states]
+    _check_ids([*remove, *place, *(target for _, target in place.values()), *(node for node, _ in wanted)],
+               world.home.index.keys() | {node.id for node in nodes})  # fmt: skip
+    found = edit(world, add=nodes, remove=remove, place=place, set=wanted)
+    if isinstance(found, Failure):
+        raise HearthError(
+            Diagnostic(found.code, found.message(), suggestion="another place; `kb show CLASS` names some")
+        )
+    after = replace(found.graph(), extra=graph.extra)
+    return posed(after, place, knowledge) if has_geometry(after) else after, tuple(node.id for node in nodes)
+
+
+def _check_ids(named: Sequence[int], known: Collection[int]) -> None:
+    missing = [Diagnostic(Code.UNKNOWN_ID, f"no node has the id {node}", found=str(node), suggestion=_IDS)
+               for node in dict.fromkeys(named) if node not in known]  # fmt: skip
+    if missing:
+        raise HearthError(missing)
+
+
+def _placing(text: str, form: str) -> tuple[str, str, int]:
+    parts = text.split(":")
+    if len(parts) != 3 or parts[1].lower() not in RELATIONS:
+        _refuse(f"`{text}` says not what goes where", f"write {form}, with `on` or `inside`")
+    return parts[0], RELATIONS[parts[1].lower()], _number(parts[2], text)
+
+
+def _state(text: str) -> tuple[int, str]:
+    from hearth.schemas.vocabulary import STATES
+
+    thing, _, state = text.partition(":")
+    if state.upper() not in STATES:
+        _refuse(f"`{text}` names no state", f"write ID:STATE, with one of {', '.join(STATES)}")
+    return _number(thing, text), state.upper()
+
+
+def _number(text: str, whole: str) -> int:
+    if not text.isdigit():
+        _refuse(f"`{text}` in `{whole}` is no node id", _IDS)
+    return int(text)
+
+
+def _node(class_name: str, node_id: int, knowledge: Knowledge) -> Node:
+    from hearth.schemas.graph import Node
+
+    known = knowledge.object_class(class_name)
+    if known is None:
+        near = knowledge.suggest(class_name)
+        hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"
+        raise HearthError.of(Code.UNKNOWN_OBJECT, f"`{class_name}` is no class", suggestion=hint)
+    states = knowledge.default_states(known.name)
+    return Node(node_id, known.name, known.category, tuple(sorted(known.properties)), states)
+
+
+def _refuse(message: str, hint: str) -> NoReturn:
+    raise HearthError.of(Code.SYNTAX, message, suggestion=hint)

@@ -1,0 +1,362 @@
+"""A published dataset, opened for reading: tables, SQL, and each program with all that belongs to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hearth.datasets.format.catalog import attach
+from hearth.schemas.change import WorkingGraph, in_states
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Program
+from hearth.schemas.rows import ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.structs import ConditionRow
+from hearth.storage.manifest import FORMAT, NAME
+
+if TYPE_CHECKING:
+    import networkx
+
+    from hearth.datasets.tensors import Tensors
+    from hearth.kb.knowledge import Knowledge
+    from hearth.simulation.world.home import Home
+
+_READING = frozenset({"SELECT", "EXPLAIN"})
+
+
+class Dataset:
+    """A dataset folder.
+
+    Each table is an attribute: `ds.programs` is a DuckDB relation, with `.df()` for pandas and `.to_arrow_table()`.
+    `ds["release:..."]` is one program with its runs.
+    """
+
+    def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
+        self.folder = folder
+        self.manifest = manifest
+
+    @classmethod
+    def open(cls, path: str | Path) -> Dataset:
+        """Open a dataset, or the dataset of a build's folder; of a URL that fsspec knows, a local copy of it.
+
+        Raises:
+            HearthError: the path is no dataset, one that is not complete, or one that a newer version wrote.
+        """
+        from hearth.storage.files import read_json
+        from hearth.storage.stores import fetched
+
+        folder = fetched(path)
+        if not (folder / NAME).exists() and (folder / "publish" / NAME).exists():
+            folder = folder / "publish"
+        content = read_json(folder / NAME)
+        if not isinstance(content, dict) or content.get("stage") != "publish":
+            suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
+            raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
+        if content["format"] > FORMAT:
+            message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
+            raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
+        return cls(folder, content)
+
+    def __repr__(self) -> str:
+        return f"Dataset({str(self.folder)!r})"
+
+    @cached_property
+    def knowledge(self) -> Knowledge:
+        """What it was made with: our knowledge, and over it what the dataset carries.
+
+        Raises:
+            HearthError: what it carries is not there, is not what the manifest says, or has faults.
+        """
+        from hearth.datasets.dataset_knowledge import knowledge_of
+
+        return knowledge_of(self.folder, self.manifest)
+
+    @cached_property
+    def connection(self) -> Any:
+        """A DuckDB connection with the views and macros. It can read this folder only, and change nothing in it.
+
+        Raises:
+            HearthError: MISSING_FILE, where a table is not there.
+        """
+        return attach(self.folder, _absent(self.folder, self.manifest))
+
+    def sql(self, query: str, **parameters: Any) -> Any:
+        """A query as a DuckDB relation; `$name` in it is the parameter of that name.
+
+        Raises:
+            HearthError: SYNTAX, with DuckDB's own words, or when the query would change something.
+        """
+        import duckdb
+
+        try:
+            statements = self.connection.extract_statements(query)
+            wrong = next((s.type.name for s in statements if s.type.name not in _READING), None)
+            if wrong or len(statements) != 1:
+                what = f"{wrong} is no question" if wrong else f"{len(statements)} statements where one is expected"
+                suggestion = "ask with SELECT, FROM, DESCRIBE, SHOW or EXPLAIN"
+                raise HearthError.of(Code.SYNTAX, f"a dataset can only be read: {what}", suggestion=suggestion)
+            return self.connection.sql(query, params=parameters or None)
+        except duckdb.Error as error:
+            raise _refused(error) from error
+
+    def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
+        import duckdb
+
+        relation = self.sql(query, **parameters)
+        try:
+            found = relation if limit is None or self._explains(query) else relation.limit(limit)
+            return list(relation.columns), found.fetchall()
+        except duckdb.Error as error:
+            raise _refused(error) from error
+
+    def _explains(self, query: str) -> bool:
+        return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
+
+    def __getattr__(self, name: str) -> Any:
+        from hearth.schemas.tables import TABLES
+
+        if name not in (*TABLES, "steps", "ticks"):
+            raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
+        return self.connection.table(name)
+
+    def __len__(self) -> int:
+        return int(self.connection.sql("SELECT count(*) FROM programs").fetchall()[0][0])
+
+    def __iter__(self) -> Iterator[str]:
+        """The ids of all programs, sorted."""
+        for (program_id,) in self.connection.sql("SELECT program_id FROM programs ORDER BY program_id").fetchall():
+            yield program_id
+
+    def __contains__(self, program_id: str) -> bool:
+        return bool(self._rows("SELECT 1 FROM programs WHERE program_id = $id", program_id))
+
+    def __getitem__(self, program_id: str) -> Entry:
+        """A program with all that belongs to it.
+
+        Raises:
+            KeyError: there is none of that id.
+        """
+        found = self._rows("SELECT * FROM programs WHERE program_id = $id", program_id)
+        if not found:
+            raise KeyError(program_id)
+        rows = self._rows("SELECT * FROM executions WHERE program_id = $id ORDER BY execution_id", program_id)
+        # Asked for by literal ids, DuckDB reads only the row groups that have them; a join would read all of the table.
+        wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
+        runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
+        repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
+        sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
+        return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
+
+    def home(self, name: str) -> EnvironmentGraph:
+        """The graph of a home, from which environments differ.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        return self._homes(name).graph
+
+    def _homes(self, name: str) -> _Home:
+        known = self._built.get(name)
+        if known is None:
+            known = self._built[name] = _Home.read(self, name)
+        return known
+
+    @cached_property
+    def _built(self) -> dict[str, _Home]:
+        return {}
+
+    def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
+        """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks; see `tensors`.
+
+        A run that is shorter gives its last graph.
+
+        Raises:
+            KeyError: there is no program of that id.
+        """
+        from hearth.datasets.tensors import Moment, to_tensors
+
+        entries = [self[program_id] for program_id in program_ids]
+        moments = (
+            Moment(entry.program, run.graph(min(tick, len(run.row["ticks"]))), run.bindings())
+            for entry in entries
+            for run in entry.runs
+        )
+        return to_tensors(moments, self.rows("SELECT kind, name, id FROM vocabulary")[1])
+
+    def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Any]:
+        if not ids:
+            return {}
+        asked = {f"id{number}": name for number, name in enumerate(ids)}
+        query = f"SELECT * FROM {table} WHERE {key} IN ({', '.join(f'${name}' for name in asked)})"
+        rows = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
+        return {row[key]: row for row in rows}
+
+    def _rows(self, query: str, value: str) -> list[Any]:
+        rows: list[Any] = self.connection.sql(query, params={"id": value}).to_arrow_table().to_pylist()
+        return rows
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A program of a dataset.
+
+    Attributes:
+        row: as in the table `programs`.
+        runs: its executions.
+        repairs: how it was made from its parent, in order; empty for originals.
+        sketches: which of its steps people kept as its gist.
+    """
+
+    row: ProgramRow
+    runs: tuple[Run, ...]
+    repairs: tuple[RepairedRow, ...]
+    sketches: tuple[SketchRow, ...] = ()
+
+    @property
+    def program(self) -> Program:
+        """The program, unbound."""
+        from hearth.datasets.format.codecs import program_of
+
+        return program_of(self.row)
+
+    @property
+    def title(self) -> str:
+        """The activity as written."""
+        return self.row["title"]
+
+    @property
+    def description(self) -> str:
+        """What is done, in words."""
+        return self.row["description"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One execution of a program: its row, and the graphs it went through."""
+
+    dataset: Dataset = field(repr=False)
+    row: StoredRunRow
+
+    @property
+    def home(self) -> str:
+        """The home its environment was made from."""
+        return self.row["home"]
+
+    @property
+    def executable(self) -> bool:
+        """Whether it ran to its end."""
+        return self.row["executable"]
+
+    @property
+    def conditions(self) -> list[ConditionRow]:
+        """What had to hold at the start."""
+        return self.row["environment"]["conditions"]
+
+    def bindings(self) -> dict[tuple[str, int], int]:
+        """Which node each object of the program is."""
+        from hearth.datasets.format.codecs import bindings_of
+
+        return bindings_of(self.row["bindings"])
+
+    def graph(self, tick: int = 0) -> EnvironmentGraph:
+        """The graph after so many ticks; nodes by id, edges sorted.
+
+        Raises:
+            IndexError: the run has fewer ticks.
+        """
+        from hearth.datasets.format.codecs import change_of
+
+        ticks = self.row["ticks"]
+        if not 0 <= tick <= len(ticks):
+            raise IndexError(f"tick {tick} of a run of {len(ticks)}")
+        return self._start.copy().apply(*map(change_of, ticks[:tick])).graph()
+
+    @property
+    def start(self) -> EnvironmentGraph:
+        """The graph before the first tick."""
+        return self.graph(0)
+
+    @property
+    def final(self) -> EnvironmentGraph:
+        """The graph after the last tick that was done."""
+        return self.graph(len(self.row["ticks"]))
+
+    def release_json(self, tick: int = 0) -> dict[str, Any]:
+        """The graph as the release writes it."""
+        from hearth.schemas.graph import to_release
+
+        return to_release(self.graph(tick))
+
+    def networkx(self, tick: int = 0) -> networkx.MultiDiGraph:
+        """The graph for networkx: a node has its class and states, an edge's key is its relation."""
+        import networkx
+
+        found: networkx.MultiDiGraph = networkx.MultiDiGraph()
+        graph = self.graph(tick)
+        for node in graph.nodes:
+            told = {"class_name": node.class_name, "category": node.category, "states": list(node.states)}
+            found.add_node(node.id, **told, properties=list(node.properties))
+        found.add_edges_from((edge.source, edge.target, edge.relation) for edge in graph.edges)
+        return found
+
+    @cached_property
+    def _start(self) -> WorkingGraph:
+        from hearth.datasets.format.codecs import environment_change
+
+        change = environment_change(self.row["environment"])
+        added = tuple(in_states(node, node.states) for node in change.added_nodes)
+        return self.dataset._homes(self.home).working.copy().apply(replace(change, added_nodes=added))
+
+
+class _Home(NamedTuple):
+    """A home as it is published, and one whose nodes have their states sorted, for runs to start from."""
+
+    graph: EnvironmentGraph
+    working: WorkingGraph
+
+    @classmethod
+    def read(cls, dataset: Dataset, name: str) -> _Home:
+        from hearth.datasets.format.codecs import edges_of, node_of
+
+        nodes = tuple(map(node_of, dataset._rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
+        if not nodes:
+            raise KeyError(name)
+        edges = set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
+        working = WorkingGraph((in_states(node, node.states) for node in nodes), edges)
+        return cls(EnvironmentGraph(nodes, tuple(sorted(edges))), working)
+
+
+def _absent(folder: Path, content: dict[str, Any]) -> list[str]:
+    """The tables that a dataset never had, because an earlier version wrote it.
+
+    Raises:
+        HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
+            DuckDB's words.
+    """
+    from hearth.schemas.tables import TABLES
+
+    missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
+    published = {name.partition("/")[0] for name in content["files"]}
+    lost = [f"`{table}`" for table in missing if table in published]
+    if lost:
+        message = f"it has no table {', '.join(lost)}; it was written by {content['version']}"
+        remedy = "fetch the dataset again, or publish it again with this version"
+        raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
+    return missing
+
+
+def _refused(error: Exception) -> HearthError:
+    message = str(error).split("\n\n", 1)[0]
+    return HearthError.of(Code.SYNTAX, message)
+
+
+def world_of(run: Run) -> Home:
+    """The home that a run starts in, for the engine."""
+    from hearth.simulation.world.home import Home
+
+    return Home.from_graph(run.start, run.home, run.dataset.knowledge)

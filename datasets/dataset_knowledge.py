@@ -1,0 +1,80 @@
+"""With which knowledge a dataset was made: its manifest says so, and what was laid over ours lies beside the tables."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.loading.load import digest, files_of, laid_over
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.files import write_bytes
+
+FOLDER = "knowledge"
+"""Where a dataset, and the stage that others get their knowledge from, have the files that were laid over ours."""
+
+FIELD = "knowledge"
+"""Of a manifest: `base`, the digest of our files, and `overlay`, null or the digest of the user's and, in a dataset,
+the path of their copy within it. Datasets from before the field were made with ours."""
+
+
+def copy_overlay(overlay: str | None, folder: Path) -> None:
+    """Copy the files of the user's knowledge into a folder, and drop those of an earlier build."""
+    target = folder / FOLDER
+    files = {path.name: path.read_bytes() for path in files_of(Path(overlay))} if overlay else {}
+    shutil.rmtree(target, ignore_errors=True)
+    for name, data in files.items():
+        target.mkdir(exist_ok=True)
+        write_bytes(target / name, data)
+
+
+def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
+    """The manifest's field: which knowledge a stage used, and where in its folder the overlay's copy is, if any."""
+    over = {"sha256": digest(Path(overlay))} if overlay else None
+    if over and (folder / FOLDER).exists():
+        over["path"] = FOLDER
+    return {FIELD: {"base": digest(), "overlay": over}}
+
+
+def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
+    """The knowledge that a dataset was made with: ours, and over it what the dataset carries.
+
+    Raises:
+        HearthError: BAD_JSON, where the manifest's field is not as `made_with` writes it; MISSING_FILE or DAMAGED_FILE,
+            where the overlay's files are not those that the manifest says; every fault of these files.
+    """
+    said = manifest.get(FIELD)
+    if said is None:
+        return laid_over(None)
+    try:
+        overlay = said["overlay"]
+        path, wanted = (folder / overlay["path"], overlay["sha256"]) if overlay else (None, "")
+    except (TypeError, KeyError) as error:
+        message = f"the manifest does not say which knowledge: {type(error).__name__} {error}"
+        raise HearthError.of(Code.BAD_JSON, message, file=str(folder)) from error
+    if path is not None:
+        _check(path, wanted, folder)
+    return laid_over(path)
+
+
+def _check(path: Path, wanted: str, folder: Path) -> None:
+    again = "fetch or publish the dataset again"
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise HearthError.of(Code.DAMAGED_FILE, f"its knowledge lies outside: `{path}`", file=str(folder))
+    if not path.is_dir():
+        raise HearthError.of(Code.MISSING_FILE, "the knowledge it was made with", file=str(path), suggestion=again)
+    if digest(path) != wanted:
+        message = "other files of knowledge than the manifest says"
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion=again)
+
+
+def other_base(manifest: dict[str, Any]) -> str:
+    """A sentence where a dataset was made with another base than this version of Hearth has; else ""."""
+    said = manifest.get(FIELD)
+    base = said.get("base") if isinstance(said, dict) else None
+    if not base or base == digest():
+        return ""
+    made = f"the knowledge of Hearth {manifest.get('version')} ({str(base)[:8]})"
+    return f"it was made with {made}, which differs from ours ({digest()[:8]})"

@@ -1,0 +1,71 @@
+"""What exporters read: programs, and runs with their programs, a batch in memory at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.datasets.dataset import Dataset, Run
+from hearth.schemas.rows import ProgramRow
+
+_BATCH = 128
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which programs to export.
+
+    Attributes:
+        programs: their ids; empty for all.
+        limit: at most so many; None for all.
+    """
+
+    programs: tuple[str, ...] = ()
+    limit: int | None = None
+
+    def chosen(self) -> tuple[str, dict[str, Any]]:
+        """SQL that selects their ids, and its parameters."""
+        asked = {f"id{number}": name for number, name in enumerate(self.programs)}
+        where = f" WHERE program_id IN ({', '.join(f'${name}' for name in asked)})" if asked else ""
+        limit = f" LIMIT {int(self.limit)}" if self.limit is not None else ""
+        return f"SELECT program_id FROM programs{where} ORDER BY program_id{limit}", asked
+
+
+def programs(dataset: Dataset, wanted: Wanted) -> Iterator[ProgramRow]:
+    """Rows of `programs`, sorted by id."""
+    chosen, asked = wanted.chosen()
+    yield from stream(dataset, f"SELECT * FROM programs SEMI JOIN ({chosen}) USING (program_id)"
+                                " ORDER BY program_id", asked)  # fmt: skip
+
+
+def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[ProgramRow, Run]]:
+    """Each execution with its program's row, sorted by the ids of both."""
+    chosen, asked = wanted.chosen()
+    query = f"""SELECT p AS program, e AS run, v AS environment
+        FROM executions e JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
+        WHERE e.program_id IN ({chosen}) ORDER BY e.program_id, e.execution_id"""
+    for row in stream(dataset, query, asked):
+        run: Any = {**row["run"], "environment": row["environment"]}
+        yield row["program"], Run(dataset, run)
+
+
+def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
+    """The rows of a query."""
+    # A cursor of its own: a connection has one open result, and homes are read meanwhile.
+    with dataset.connection.cursor() as cursor:
+        for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):
+            yield from batch.to_pylist()
+
+
+def file_name(text: str) -> str:
+    """An id as the name of a file on every system, still readable: other characters become `%` and their code."""
+    return "".join(char if char.isascii() and (char.isalnum() or char in "-_.+@") else f"%{ord(char):02x}"
+                   for char in text)  # fmt: skip
+
+
+def write(path: Path, data: bytes) -> None:
+    """Write a file, making its folder."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)

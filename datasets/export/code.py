@@ -1,0 +1,76 @@
+"""`code`: programs as Python functions, as planners are prompted with."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.export.batches import Wanted, programs, write
+from hearth.datasets.format.codecs import program_of
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import ProgramRow
+
+
+def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """One module, `programs.py`: a function a program, a call a step, objects as `'cup_1'`.
+
+    Returns:
+        how many programs.
+    """
+    used: set[str] = set()
+    actions: set[str] = set()
+    functions = []
+    for row in programs(dataset, wanted):
+        program = program_of(row)
+        actions.update(call_name(step.action) for step in program.steps)
+        functions.append("\n".join(_function(row, program, _unused(_identifier(row["title"]), used))))
+    names = ", ".join(sorted(actions))
+    head = f'"""Programs of a household dataset: one function each."""\n\nfrom actions import {names or "walk"}\n'
+    write(to / "programs.py", "\n\n".join((head, *functions)).encode() + b"\n")
+    return len(functions)
+
+
+def call_name(action: str) -> str:
+    """`SwitchOn` -> `switch_on`; Python's own words get an underscore."""
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", action).lower()
+    return f"{name}_" if keyword.iskeyword(name) else name
+
+
+def _function(row: ProgramRow, program: Program, name: str) -> Iterator[str]:
+    yield f"def {name}():"
+    yield f"    # {row['program_id']}"
+    for line in f"{program.title}. {program.description}".strip().splitlines():
+        yield f"    # {line}".rstrip()
+    for step in program.steps:
+        yield f"    {_call(step)}"
+    if not program.steps:
+        yield "    pass"
+
+
+def _call(step: Step) -> str:
+    given = [repr(_object(ref)) for ref in step.objects]
+    given += [f"agent={step.agent}"] if step.agent else []
+    given += ["together=True"] if step.joins else []
+    given += [f"{_identifier(name)}={value!r}" for name, value in step.modifiers]
+    return f"{call_name(step.action)}({', '.join(given)})"
+
+
+def _object(ref: ObjectRef) -> str:
+    return f"{ref.name}_{ref.instance}"
+
+
+def _identifier(text: str) -> str:
+    name = "_".join(re.findall(r"[a-z0-9]+", text.lower())) or "untitled"
+    return f"do_{name}" if name[0].isdigit() or keyword.iskeyword(name) else name
+
+
+def _unused(name: str, used: set[str]) -> str:
+    number, found = 1, name
+    while found in used:
+        number += 1
+        found = f"{name}_{number}"
+    used.add(found)
+    return found

@@ -1,0 +1,57 @@
+"""Every form a dataset can be exported in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.export.batches import Wanted
+from hearth.datasets.export.code import code
+from hearth.datasets.export.graphs import graphml, node_link
+from hearth.datasets.export.json_lines import jsonl
+from hearth.datasets.export.problems import pddl
+from hearth.datasets.export.release_layout import release
+from hearth.datasets.export.triples import rdf
+from hearth.datasets.export.words import nl
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+FORMATS: dict[str, Callable[[Dataset, Path, Wanted], int]] = {
+    "release": release,
+    "nl": nl,
+    "jsonl": jsonl,
+    "code": code,
+    "networkx": node_link,
+    "graphml": graphml,
+    "rdf": rdf,
+    "pddl": pddl,
+}
+"""Writes a dataset, or some of its programs, into a folder; returns how many things were written."""
+
+COUNTED = {
+    "release": "execution",
+    "jsonl": "line",
+    "networkx": "execution",
+    "graphml": "execution",
+    "pddl": "problem",
+}
+"""What a form counts, where that is not programs."""
+
+
+def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) -> int:
+    """Write a dataset in one of `FORMATS` into a folder.
+
+    Raises:
+        HearthError: the form is unknown, a program asked for is not there, or the folder is not empty.
+    """
+    if form not in FORMATS:
+        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is no form", suggestion=f"one of {', '.join(FORMATS)}")
+    wanted = wanted or Wanted()
+    missing = [name for name in wanted.programs if name not in dataset]
+    if missing:
+        raise HearthError.of(Code.UNKNOWN_ID, f"no program `{missing[0]}` in this dataset", file=str(dataset.folder))
+    if to.exists() and (not to.is_dir() or any(to.iterdir())):
+        message, remedy = "there is something already", "name a new or empty folder"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)
+    return FORMATS[form](dataset, to, wanted)

@@ -1,0 +1,62 @@
+"""`networkx` and `graphml`: the graphs a run starts and ends with, for other tools."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.export.batches import Wanted, file_name, runs, write
+
+if TYPE_CHECKING:
+    import networkx
+
+
+def node_link(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """`EXECUTION.start.json` and `.final.json`, in networkx's node-link form.
+
+    Returns:
+        how many executions.
+    """
+    import networkx
+    import orjson
+
+    def written(graph: networkx.MultiDiGraph) -> bytes:
+        return orjson.dumps(networkx.node_link_data(graph, edges="edges"))
+
+    return _each(dataset, to, wanted, "json", written)
+
+
+def graphml(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """`EXECUTION.start.graphml` and `.final.graphml`; lists as words with spaces between.
+
+    Returns:
+        how many executions.
+    """
+    import networkx
+
+    def written(graph: networkx.MultiDiGraph) -> bytes:
+        flat: networkx.MultiDiGraph = networkx.MultiDiGraph()
+        for node, told in graph.nodes(data=True):
+            flat.add_node(node, **{name: _plain(value) for name, value in told.items()})
+        for source, target, relation in graph.edges(keys=True):
+            flat.add_edge(source, target, key=relation, relation=relation)
+        return "\n".join(networkx.generate_graphml(flat)).encode() + b"\n"
+
+    return _each(dataset, to, wanted, "graphml", written)
+
+
+def _plain(value: object) -> str:
+    return " ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _each(
+    dataset: Dataset, to: Path, wanted: Wanted, suffix: str, written: Callable[[networkx.MultiDiGraph], bytes]
+) -> int:
+    number = 0
+    for number, (_, run) in enumerate(runs(dataset, wanted), 1):  # noqa: B007 - the last number is the count
+        name = file_name(run.row["execution_id"])
+        write(to / f"{name}.start.{suffix}", written(run.networkx(0)))
+        write(to / f"{name}.final.{suffix}", written(run.networkx(len(run.row["ticks"]))))
+    return number

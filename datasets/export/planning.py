@@ -1,0 +1,198 @@
+"""Do a planner and the engine agree? Problems solved by Fast Downward, and the plans run here.
+
+Three things make the search short, besides the pruning of `exports.pddl`: actions that cannot help are left out, those
+that change nothing and those that do what others do (`dispensable`); so are actions for which the problem has no
+objects; and things must be CLOSE themselves, where the engine also takes what is near something that is.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import chdir
+from dataclasses import dataclass
+from itertools import islice
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.export.batches import Wanted
+from hearth.datasets.export.planning_domain import OMITTED, TO_DOOR, planning_domain
+from hearth.datasets.export.problems import Task, object_names, problem, tasks
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.engine import run
+from hearth.storage.parallel import Seen, spread, unseen
+
+LIMIT = 60
+"""Seconds of search a problem."""
+
+STEP = 61
+"""Every how many-th execution is asked, so that a few hundred come from all over a dataset."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of one problem.
+
+    Attributes:
+        task: the problem.
+        status: the planner's word.
+        plan: the plan as our steps; None without one.
+        ran: the engine did all of it.
+        reached: and the goal held at its end.
+        failure: why not.
+    """
+
+    task: Task
+    status: str
+    plan: tuple[Step, ...] | None = None
+    ran: bool = False
+    reached: bool = False
+    failure: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """How planner and engine agree.
+
+    Attributes:
+        problems: problems parsed and given to the planner.
+        solved: of them, those that it found a plan for.
+        ran: plans that the engine does to their end.
+        reached: plans after which the goal holds.
+        statuses: the planner's words for those without a plan.
+        objects: things in a problem on average, and in the home it is cut from.
+        steps: steps of a plan on average.
+        disagreements: a line each.
+    """
+
+    problems: int
+    solved: int
+    ran: int
+    reached: int
+    statuses: dict[str, int]
+    objects: tuple[float, float]
+    steps: float
+    disagreements: tuple[str, ...]
+
+
+def agreement(dataset: Dataset, problems: int, workers: int = 1, seen: Seen = unseen) -> Agreement:
+    """Solve problems from all over a dataset in so many processes and run the plans; `seen` is told how many of them.
+
+    Raises:
+        HearthError: MISSING_FILE, when unified-planning or Fast Downward is not installed.
+    """
+    return summary(list(spread(solve, list(chosen(dataset, problems)), workers, seen)))
+
+
+def chosen(dataset: Dataset, problems: int) -> Iterator[Task]:
+    """So many tasks, one a program: of every `STEP`-th program first, then of those after them."""
+    names = list(dataset)
+    apart = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
+    found = (task for start in range(0, len(apart), ASKED) for task in _firsts(dataset, apart[start : start + ASKED]))
+    return islice(found, problems)
+
+
+ASKED = 32
+"""Programs that a dataset is asked for at once: asking for one takes as long."""
+
+
+def _firsts(dataset: Dataset, names: list[str]) -> Iterator[Task]:
+    """The first task of each program that has any, in the order of the names."""
+    found: dict[str, Task] = {}
+    for task in tasks(dataset, Wanted(tuple(names))):
+        found.setdefault(task.program_id, task)
+    yield from (found[name] for name in names if name in found)
+
+
+def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
+    """Actions a plan never needs, and those that do what they do wherever it can be done.
+
+    Facing something is only needed for what changes nothing.
+    """
+    variants = [knowledge.actions[name] for name in sorted(knowledge.group("variant"))]
+    plain = [action for action in knowledge.actions.values() if action.name not in knowledge.group("variant")]
+    same = {v.name: tuple(a.name for a in plain if a.effects == v.effects) for v in variants}
+    return {**same, "TurnTo": ()}
+
+
+def helpful(task: Task) -> tuple[str, ...]:
+    """The actions a plan may need: those that change something, and for which the problem has objects."""
+    home = task.world.home
+    there = sum(1 << home.index[node] for node in task.objects)
+    spare = dispensable(home.knowledge)
+    return tuple(
+        name
+        for name, action in sorted(home.knowledge.actions.items())
+        if action.executed
+        and action.effects
+        and name not in spare
+        and name not in OMITTED
+        and all(home.able(name, position) & there for position in range(action.arity))
+    )
+
+
+def solve(task: Task) -> Outcome:
+    """Parse a problem with unified-planning, solve it with Fast Downward, run the plan in the engine."""
+    try:
+        from unified_planning.engines import PlanGenerationResultStatus
+        from unified_planning.io import PDDLReader
+        from unified_planning.shortcuts import OneshotPlanner, get_environment
+    except ImportError as error:
+        remedy = "pip install unified-planning up-fast-downward"
+        raise HearthError.of(Code.MISSING_FILE, f"no planner here: {error}", suggestion=remedy) from None
+    get_environment().credits_stream = None
+    parsed = PDDLReader().parse_problem_string(
+        planning_domain(task.world.home.knowledge, helpful(task), loose=False), problem(task)
+    )
+    options = {"fast_downward_search_time_limit": f"{LIMIT}s"}
+    # Fast Downward writes its `output.sas` where it is started: two at once would read each other's.
+    with OneshotPlanner(name="fast-downward", params=options) as planner, TemporaryDirectory() as own, chdir(own):
+        result = planner.solve(parsed)
+    status = PlanGenerationResultStatus(result.status).name
+    return Outcome(task, status) if result.plan is None else executed(task, status, steps_of(task, result.plan))
+
+
+def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
+    """A plan of unified-planning as steps bound to nodes."""
+    nodes = {name: node for node, name in object_names(task).items()}
+    home = task.world.home
+    actions = {name.lower(): name for name in home.knowledge.actions} | {TO_DOOR.lower(): "Walk"}
+    steps = []
+    for each in plan.actions:
+        _, *given = (nodes[str(argument)] for argument in each.actual_parameters)
+        refs = tuple(ObjectRef(home.classes[home.index[node]], 1, node) for node in given)
+        steps.append(Step(actions[each.action.name.lower()], refs))
+    return tuple(steps)
+
+
+def executed(task: Task, status: str, plan: tuple[Step, ...]) -> Outcome:
+    """What the engine makes of a plan."""
+    execution = run(task.world, Program(steps=plan))
+    failure = execution.failure.message() if execution.failure else ""
+    return Outcome(task, status, plan, not failure, not failure and task.reached(execution.final), failure)
+
+
+def summary(outcomes: list[Outcome]) -> Agreement:
+    """Counts, and where they disagree."""
+    solved = [outcome for outcome in outcomes if outcome.plan is not None]
+    wrong = [outcome for outcome in solved if not outcome.reached]
+    several = max(len(outcomes), 1)
+    return Agreement(
+        problems=len(outcomes),
+        solved=len(solved),
+        ran=sum(outcome.ran for outcome in solved),
+        reached=sum(outcome.reached for outcome in solved),
+        statuses=dict(Counter(outcome.status for outcome in outcomes if outcome.plan is None)),
+        objects=(
+            sum(len(outcome.task.objects) for outcome in outcomes) / several,
+            sum(len(outcome.task.world.home) for outcome in outcomes) / several,
+        ),
+        steps=sum(len(outcome.plan or ()) for outcome in solved) / max(len(solved), 1),
+        disagreements=tuple(
+            f"{outcome.task.name}: {outcome.failure or 'it runs, and the goal does not hold'}" for outcome in wrong
+        ),
+    )

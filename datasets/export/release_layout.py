@@ -1,0 +1,66 @@
+"""`release`: the original layout, so that code written for it runs, and ingest reads it back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.datasets.dataset import Dataset, Run
+from hearth.datasets.export.batches import Wanted, file_name, programs, runs, write
+from hearth.datasets.format.codecs import program_of
+from hearth.schemas.graph import to_release
+from hearth.schemas.program import Program
+from hearth.schemas.syntax import print_object, print_program
+from hearth.storage.archives import leaves
+
+ROOT = "programs_processed_precond_nograb_morepreconds"
+
+
+def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """Programs as collected, their preconditions, programs grounded in homes, and the graphs before and after.
+
+    A program of the release has its own place again; another one is in a batch named by its origin.
+
+    Returns:
+        how many executions.
+    """
+    root = to / ROOT
+    for row in programs(dataset, wanted):
+        write(root / "withoutconds" / f"{stem(row['program_id'])}.txt", print_program(program_of(row)).encode())
+    number = 0
+    for number, (row, run) in enumerate(runs(dataset, wanted), 1):  # noqa: B007 - the last number is the count
+        name = stem(row["program_id"])
+        grounded = print_grounded(program_of(row, run.bindings()))
+        write(root / "executable_programs" / run.home / f"{name}.txt", grounded.encode())
+        graphs = {"init_graph": to_release(run.start), "final_graph": to_release(run.final)}
+        write(root / "init_and_final_graphs" / run.home / f"{name}.json", orjson.dumps(graphs))
+        write(root / "initstate" / f"{name}.json", orjson.dumps(_conditions(run)))
+    return number
+
+
+def stem(program_id: str) -> str:
+    """`release:batch-1/file1_1` -> `batch-1/file1_1`; `crowd:P1` -> `crowd/P1_1`."""
+    origin, _, rest = program_id.partition(":")
+    if origin == "release" and "+" not in rest and not leaves(rest):
+        return rest
+    return f"{file_name(origin)}/{file_name(rest)}_1"
+
+
+def print_grounded(program: Program) -> str:
+    """A bound program as the release writes it: actions in capitals, `(1.41)` where an object is bound."""
+    head = f"{program.title}\n{program.description}\n\n\n"
+    lines = []
+    for number, step in enumerate(program.steps):
+        text = " ".join((f"[{step.action.upper()}]", *map(print_object, step.objects)))
+        lines.append(f" | {text}" if step.joins and number else f"\n{text}" if number else text)
+    return f"{head}{''.join(lines)}\n"
+
+
+def _conditions(run: Run) -> list[dict[str, Any]]:
+    told = []
+    for condition in run.conditions:
+        objects = [[ref["name"], str(ref["instance"])] for ref in condition["objects"]]
+        told.append({condition["name"]: objects[0] if len(objects) == 1 else objects})
+    return told

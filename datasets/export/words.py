@@ -1,0 +1,59 @@
+"""`nl`: programs as sentences, for people and for language models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.export.batches import Wanted, programs, write
+from hearth.datasets.format.codecs import program_of
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.phrases import say
+from hearth.schemas.program import Program
+from hearth.schemas.rows import ProgramRow
+
+ASKED = "How do you do this at home? Answer with one step a line."
+
+
+def sentences(program: Program, knowledge: Knowledge) -> list[str]:
+    """Each step in words, instances left out: `Put cup on table`."""
+    actions = knowledge.actions
+    return [say(actions[step.action], [ref.name for ref in step.objects]) for step in program.steps]
+
+
+def numbered(program: Program, knowledge: Knowledge) -> str:
+    """A program as planning papers prompt with it: `Task: ...` and `Step 1: ...`."""
+    steps = (f"Step {number}: {text}" for number, text in enumerate(sentences(program, knowledge), 1))
+    return "\n".join((f"Task: {program.title}", *steps))
+
+
+def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
+    """Three files: `steps.jsonl` (id, title, description, steps in words), `chat.jsonl` (pairs of user and assistant
+    for instruction tuning) and `examples.json` (a list of numbered texts, as planning papers read them).
+
+    Returns:
+        how many programs.
+    """
+    knowledge = dataset.knowledge
+    steps, chat, examples = [], [], []
+    for row in programs(dataset, wanted):
+        program = program_of(row)
+        said = sentences(program, knowledge)
+        told = {"program_id": row["program_id"], "split": row["split"], "title": row["title"]}
+        steps.append(orjson.dumps({**told, "description": row["description"], "steps": said}))
+        chat.append(orjson.dumps(_pair(row, said)))
+        examples.append(numbered(program, knowledge))
+    write(to / "steps.jsonl", b"".join(line + b"\n" for line in steps))
+    write(to / "chat.jsonl", b"".join(line + b"\n" for line in chat))
+    write(to / "examples.json", orjson.dumps(examples, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    return len(steps)
+
+
+def _pair(row: ProgramRow, said: list[str]) -> dict[str, Any]:
+    question = "\n".join(part for part in (ASKED, "", row["title"], row["description"]) if part is not None).strip()
+    answer = "\n".join(f"{number}. {text}" for number, text in enumerate(said, 1))
+    messages = [{"role": "user", "content": question}, {"role": "assistant", "content": answer}]
+    return {"program_id": row["program_id"], "split": row["split"], "messages": messages}

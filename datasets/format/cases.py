@@ -1,0 +1,137 @@
+"""Cases: a program in an environment, run; as rows, and rebuilt from rows (the tables' `CASE`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import Protocol
+
+from hearth.datasets.format.codecs import (
+    binding_rows,
+    bindings_of,
+    change_of,
+    environment_change,
+    environment_row,
+    failure_row,
+    program_of,
+    tick_rows,
+)
+from hearth.grounding.environments.sampling import Environment
+from hearth.grounding.environments.thinning import without
+from hearth.schemas.change import Change, State
+from hearth.schemas.graph import Edge
+from hearth.schemas.rows import CaseRow, RunRow
+from hearth.schemas.structs import DifferenceRow
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import RULES
+from hearth.simulation.world.change import encode_whole
+from hearth.simulation.world.derived import changed
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.nodes import states_of
+from hearth.simulation.world.world import World
+
+_SYMMETRIC = "CLOSE"
+
+
+def environment_of(environment: Environment, edges: frozenset[Edge]) -> DifferenceRow:
+    """A sampled environment as a row, at a cost that follows what differs.
+
+    Args:
+        environment: as sampled.
+        edges: those of its home.
+    """
+    home = environment.base
+    states: dict[int, Iterable[str]] = dict(environment.states)
+    nodes = [replace(node, states=tuple(states.pop(node.id, node.states))) for node in environment.nodes]
+    added = set(_both_ways(environment.added))
+    removed = set(_both_ways(environment.removed)) - added
+    came, went = _restated(home, states)
+    moved = (tuple(sorted(added - edges)), tuple(sorted(removed & edges)))
+    return environment_row(Change(*moved, came, went, tuple(nodes), tuple(environment.gone)))
+
+
+def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:
+    for edge in edges:
+        yield edge
+        if edge.relation == _SYMMETRIC:
+            yield Edge(edge.target, _SYMMETRIC, edge.source)
+
+
+def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[State, ...], tuple[State, ...]]:
+    came: list[State] = []
+    went: list[State] = []
+    for node, names in states.items():
+        before = set(states_of(home.index[node], home.states))
+        now = set(names)
+        came.extend((node, name) for name in now - before)
+        went.extend((node, name) for name in before - now)
+    return tuple(sorted(came)), tuple(sorted(went))
+
+
+def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> DifferenceRow:
+    """A world of any home, at its start, as what differs from another home, as a row.
+
+    Args:
+        world: a start.
+        home: what to compare it with.
+        edges: those of `home`.
+    """
+    return environment_row(encode_whole(World.start(home), world, edges))
+
+
+_without = lru_cache(maxsize=32)(without)
+"""Many environments of one home go without the same."""
+
+
+def home_of(environment: DifferenceRow, base: Home) -> Home:
+    """The home that a row describes."""
+    change = environment_change(environment)
+    if change.removed_nodes:
+        base = _without(base, change.removed_nodes)
+    return changed(base, change)
+
+
+class Source(Protocol):
+    """Where homes come from: a build's, or a dataset's own."""
+
+    def home(self, name: str) -> Home:
+        """The home that environments of that name differ from."""
+
+
+def start_of(environment: DifferenceRow, home: str, homes: Source) -> World:
+    """The world that an environment of a home is."""
+    return World.start(home_of(environment, homes.home(home)))
+
+
+def run_row(execution: Execution, rules: str) -> RunRow:
+    """What a run says, as columns of a row."""
+    return {
+        "rules": rules,
+        "bindings": binding_rows(execution.program),
+        "ticks": tick_rows(execution),
+        "executable": execution.executable,
+        "failure": failure_row(execution.failure) if execution.failure else None,
+    }
+
+
+def rerun(case: CaseRow, homes: Source) -> Execution:
+    """Run a case again, from nothing but its row and its home."""
+    program = program_of(case, bindings_of(case["bindings"]))
+    return run(start_of(case["environment"], case["home"], homes), program, RULES[case["rules"]])
+
+
+def difference_on_replay(case: CaseRow, homes: Source) -> str:
+    """How running a case again differs from what its row says; empty when it does not."""
+    execution = rerun(case, homes)
+    if (execution.failure and failure_row(execution.failure)) != case["failure"]:
+        said = case["failure"]["code"] if case["failure"] else "no failure"
+        found = execution.failure.message() if execution.failure else "it runs to its end"
+        return f"the row says {said}, but {found}"
+    changes = execution.changes()
+    if len(changes) != len(case["ticks"]):
+        return f"the row has {len(case['ticks'])} ticks, the run {len(changes)}"
+    for number, (tick, change) in enumerate(zip(case["ticks"], changes, strict=True)):
+        if change_of(tick) != change:
+            return f"tick {number + 1} changes something else than the row says"
+    return ""

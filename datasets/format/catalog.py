@@ -1,0 +1,66 @@
+"""The catalog: views and macros over a dataset's files, as a DuckDB file and as the SQL that makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from hearth.storage.files import replacing, write_bytes
+
+CATALOG = "catalog.duckdb"
+SQL = "catalog.sql"
+
+
+def statements(root: str = "") -> str:
+    """The SQL of the catalog; `root` is put in front of every path."""
+    text = (files("hearth.datasets.format") / "catalog.sql").read_text("utf-8")
+    return text.format(root=root.replace("'", "''"))
+
+
+def _reading(root: str, table: str) -> str:
+    quoted = root.replace("'", "''")
+    return f"read_parquet('{quoted}{table}/*.parquet')"
+
+
+def write_catalog(folder: Path) -> None:
+    """Write `catalog.duckdb` and the SQL that it was made by, with paths that hold wherever the folder is moved."""
+    import duckdb
+
+    write_bytes(folder / SQL, statements().encode())
+    with replacing(folder / CATALOG) as temporary, TemporaryDirectory() as aside:
+        # The search path is a list with commas, which a folder's name may have too: a link's name has none.
+        link = Path(aside) / "dataset"
+        link.symlink_to(folder.resolve())
+        temporary.unlink(missing_ok=True)
+        with duckdb.connect(str(temporary)) as connection:
+            connection.execute(f"SET file_search_path = '{link}'")
+            connection.execute(statements())
+
+
+def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
+    """A connection with the dataset's views that reads nothing but this folder, and writes nothing anywhere.
+
+    Args:
+        folder: of the dataset.
+        absent: tables that it has no files of; they are empty.
+    """
+    import duckdb
+
+    from hearth.schemas.tables import TABLES
+
+    root = f"{folder.resolve()}/"
+    connection = duckdb.connect()
+    connection.execute("SET parquet_metadata_cache = true")
+    text = statements(root)
+    for table in absent:
+        connection.register(f"no_{table}", TABLES[table].empty_table())
+        text = text.replace(_reading(root, table), f"no_{table}")
+    connection.execute(text)
+    quoted = root.replace("'", "''")
+    connection.execute(f"SET allowed_directories = ['{quoted}']")
+    connection.execute("SET enable_external_access = false")
+    connection.execute("SET lock_configuration = true")
+    return connection

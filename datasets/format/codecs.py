@@ -1,0 +1,281 @@
+"""Between values (programs, graphs, changes, failures) and the rows of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
+
+from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.schemas.change import Change
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
+from hearth.schemas.literals import Literal
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.rows import NamedRow, ScriptRow
+from hearth.schemas.structs import (
+    BindingRow,
+    BoxRow,
+    ChangeRow,
+    ConditionRow,
+    DifferenceRow,
+    EdgeRow,
+    FailureRow,
+    GraphRow,
+    InstructionRow,
+    NodeRow,
+    PointRow,
+    StepRow,
+    TickRow,
+    WarningRow,
+)
+
+if TYPE_CHECKING:
+    from hearth.simulation.engine import Execution
+
+Bindings = dict[tuple[str, int], int]
+
+_EDGE = itemgetter("source", "relation", "target")
+_STATE = itemgetter("node", "state")
+
+
+def node_row(node: Node) -> NodeRow:
+    """A node, as a row."""
+    box: BoxRow | None = node.box and {"center": _point_row(node.box.center), "size": _point_row(node.box.size)}
+    return {
+        "id": node.id,
+        "class_name": node.class_name,
+        "category": node.category,
+        "properties": list(node.properties),
+        "states": list(node.states),
+        "prefab": node.prefab,
+        "box": box,
+        "yaw": node.yaw,
+    }
+
+
+def _point_row(point: tuple[float, float, float]) -> PointRow:
+    return {"x": point[0], "y": point[1], "z": point[2]}
+
+
+def node_of(row: NodeRow) -> Node:
+    """The inverse of `node_row`."""
+    box = row["box"]
+    return Node(
+        row["id"],
+        row["class_name"],
+        row["category"],
+        tuple(row["properties"]),
+        tuple(row["states"]),
+        row["prefab"],
+        box and Box(_point(box["center"]), _point(box["size"])),
+        row["yaw"],
+    )
+
+
+def _point(row: PointRow) -> tuple[float, float, float]:
+    return row["x"], row["y"], row["z"]
+
+
+def graph_row(graph: EnvironmentGraph) -> GraphRow:
+    """A graph, edges sorted, each once."""
+    edges = sorted(edge_set(graph.edges))
+    return {
+        "nodes": [node_row(node) for node in graph.nodes],
+        "sources": [source for source, _, _ in edges],
+        "relations": [relation for _, relation, _ in edges],
+        "targets": [target for _, _, target in edges],
+    }
+
+
+def graph_of(row: GraphRow) -> EnvironmentGraph:
+    """The inverse of `graph_row`."""
+    edges = map(Edge, row["sources"], row["relations"], row["targets"])
+    return EnvironmentGraph(tuple(map(node_of, row["nodes"])), tuple(edges))
+
+
+def change_row(change: Change) -> ChangeRow:
+    """A change, as a row."""
+    # Arrow takes named tuples and pairs for structs, and much faster than dicts.
+    found: Any = {
+        "added": list(change.added),
+        "removed": list(change.removed),
+        "set_states": list(change.set_states),
+        "cleared_states": list(change.cleared_states),
+    }
+    row: ChangeRow = found
+    return row
+
+
+def change_of(row: ChangeRow) -> Change:
+    """The inverse of `change_row`."""
+    return Change(
+        tuple(edges_of(row["added"])),
+        tuple(edges_of(row["removed"])),
+        tuple(map(_STATE, row["set_states"])),
+        tuple(map(_STATE, row["cleared_states"])),
+    )
+
+
+def environment_row(change: Change) -> DifferenceRow:
+    """What differs from a home, as a row."""
+    came, went = list(map(node_row, change.added_nodes)), list(change.removed_nodes)
+    return {"added_nodes": came, "removed_nodes": went, **change_row(change)}
+
+
+def environment_change(row: DifferenceRow) -> Change:
+    """The inverse of `environment_row`."""
+    came, went = tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"])
+    return replace(change_of(row), added_nodes=came, removed_nodes=went)
+
+
+def edges_of(rows: Iterable[EdgeRow]) -> Iterator[Edge]:
+    """The edges of rows read back."""
+    return map(Edge._make, map(_EDGE, rows))
+
+
+def named(row: NamedRow) -> NamedRow:
+    """Of a row, the columns that a program keeps from stage to stage."""
+    return {
+        "program_id": row["program_id"],
+        "origin": row["origin"],
+        "source": row["source"],
+        "place": row["place"],
+        "description_id": row["description_id"],
+        "title": row["title"],
+        "description": row["description"],
+        "scene": row["scene"],
+        "worker": row["worker"],
+        "platform": row["platform"],
+        "rooms": row["rooms"],
+        "props": row["props"],
+    }
+
+
+def step_rows(program: Program) -> list[StepRow]:
+    """A program's steps as rows, node ids left out."""
+    return [
+        {
+            "agent": step.agent,
+            "action": step.action,
+            "objects": [{"name": ref.name, "instance": ref.instance} for ref in step.objects],
+            "joins": step.joins,
+            "modifiers": [{"name": name, "value": value} for name, value in step.modifiers],
+            "line": program.line(number),
+        }
+        for number, step in enumerate(program.steps)
+    ]
+
+
+def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
+    """The inverse of `step_rows`, bound where `bindings` says to what."""
+    bound: Bindings = bindings or {}
+    return tuple(
+        Step(
+            row["action"],
+            tuple(
+                ObjectRef(ref["name"], ref["instance"], bound.get((ref["name"], ref["instance"])))
+                for ref in row["objects"]
+            ),
+            row["agent"],
+            row["joins"],
+            tuple((pair["name"], pair["value"]) for pair in row["modifiers"]),
+        )
+        for row in rows
+    )
+
+
+def program_of(row: ScriptRow, bindings: Bindings | None = None) -> Program:
+    """The program of a row that has one."""
+    lines = tuple(step["line"] for step in row["steps"])
+    return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
+
+
+def binding_rows(program: Program) -> list[BindingRow]:
+    """Which node each object of a bound program is."""
+    return [
+        {"name": ref.name, "instance": ref.instance, "node": ref.node}
+        for ref in program.objects()
+        if ref.node is not None
+    ]
+
+
+def bindings_of(rows: Iterable[BindingRow]) -> Bindings:
+    """The inverse of `binding_rows`."""
+    return {(row["name"], row["instance"]): row["node"] for row in rows}
+
+
+def failure_row(failure: Failure) -> FailureRow:
+    """A failure, as a row."""
+    return {
+        "code": str(failure.code),
+        "tick": failure.tick,
+        "agent": failure.agent,
+        "action": failure.action,
+        "objects": list(failure.objects),
+        "names": list(failure.names),
+        "expected": failure.expected,
+        "actual": failure.actual,
+    }
+
+
+def failure_of(row: FailureRow | None) -> Failure | None:
+    """The inverse of `failure_row`."""
+    if row is None:
+        return None
+    places = (tuple(row["objects"]), tuple(row["names"]))
+    return Failure(Code[row["code"]], row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
+
+
+def tick_rows(execution: Execution) -> list[TickRow]:
+    """What was done and changed, tick by tick; only the ticks that were done."""
+    rows: list[TickRow] = []
+    number = 0
+    for steps, change in zip(execution.program.ticks(), execution.changes(), strict=False):
+        instructions: list[InstructionRow] = [
+            {"agent": step.agent, "step": number + place} for place, step in enumerate(steps)
+        ]
+        rows.append({"instructions": instructions, **change_row(change)})
+        number += len(steps)
+    return rows
+
+
+def condition_rows(conditions: Iterable[Condition]) -> list[ConditionRow]:
+    """Preconditions, as rows."""
+    return [
+        {
+            "name": condition.name,
+            "objects": [{"name": name, "instance": instance} for name, instance in condition.objects],
+            "step": condition.step,
+            "hard": condition.hard,
+        }
+        for condition in conditions
+    ]
+
+
+def conditions_of(rows: Iterable[ConditionRow]) -> Preconditions:
+    """The inverse of `condition_rows`; conditions that came with a program are soft."""
+    return Preconditions(
+        tuple(
+            Condition(
+                Literal(row["name"], tuple((ref["name"], ref["instance"]) for ref in row["objects"])),
+                row["step"] or 0,
+                bool(row["hard"]),
+            )
+            for row in rows
+        )
+    )
+
+
+def warning_row(fault: Diagnostic) -> WarningRow:
+    """A diagnostic that does not stop a program."""
+    return {
+        "code": str(fault.code),
+        "line": fault.line,
+        "column": fault.column,
+        "found": fault.found,
+        "message": fault.message,
+        "suggestion": fault.suggestion,
+    }

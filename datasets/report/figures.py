@@ -1,0 +1,46 @@
+"""The numbers of the report, each with the query that makes it (`figures.yaml`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+from hearth.datasets.dataset import Dataset
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A table of the report.
+
+    Attributes:
+        title: what it shows.
+        source: the thesis's table, figure or section that shows the same, or "".
+        query: the SQL that made it, which anyone may ask again.
+        columns, rows: the answer.
+        bars: for each row, the length of its bar in percent of the longest.
+    """
+
+    title: str
+    source: str
+    query: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Any, ...], ...]
+    bars: tuple[float, ...]
+
+
+def figures(dataset: Dataset) -> list[Figure]:
+    """Every figure with its answer; those that have none are left out."""
+    import yaml
+
+    asked = yaml.safe_load((files("hearth.datasets.report") / "figures.yaml").read_text("utf-8"))
+    found = []
+    for each in asked:
+        columns, rows = dataset.rows(each["query"])
+        if rows:
+            lengths = [float(row[columns.index(each["bars"])] or 0) for row in rows]
+            longest = max(lengths) or 1.0
+            bars = tuple(round(100 * length / longest, 1) for length in lengths)
+            told = (each["title"], str(each.get("source", "")), each["query"])
+            found.append(Figure(*told, tuple(columns), tuple(rows), bars))
+    return found

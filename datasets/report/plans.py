@@ -1,0 +1,74 @@
+"""Homes as floor plans, drawn from the boxes of their nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+
+from hearth.datasets.dataset import Dataset
+from hearth.schemas.graph import Box, Node
+
+_SHELL = frozenset({"Walls", "Ceiling", "Floor", "Floors", "Characters", "Rooms"})
+_SMALLEST = 0.25
+"""Square metres that a thing covers to be drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A home's drawing: an SVG, or "" where its nodes have no boxes."""
+
+    home: str
+    rooms: str
+    nodes: int
+    svg: str
+
+
+def plans(dataset: Dataset) -> list[Plan]:
+    """Every home, by name."""
+    _, rows = dataset.rows("SELECT home, rooms, nodes FROM homes ORDER BY home")
+    return [
+        Plan(home, ", ".join(rooms).replace("_", " "), nodes, draw(dataset.home(home).nodes))
+        for home, rooms, nodes in rows
+    ]
+
+
+def draw(nodes: tuple[Node, ...]) -> str:
+    """A plan from above, in metres: rooms with their names, furniture as boxes; z points up the page."""
+    rooms = [(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
+    if not rooms:
+        return ""
+    corners = [_rectangle(box) for _, box in rooms]
+    left, top = min(x for x, _, _, _ in corners), min(y for _, y, _, _ in corners)
+    right, bottom = max(x + w for x, _, w, _ in corners), max(y + h for _, y, _, h in corners)
+    view = f"{left - 0.2:.2f} {top - 0.2:.2f} {right - left + 0.4:.2f} {bottom - top + 0.4:.2f}"
+    shapes = "".join((*_rooms(rooms), *_things(nodes), *_names(rooms)))
+    return f'<svg class="plan" viewBox="{view}" role="img">{shapes}</svg>'
+
+
+def _rectangle(box: Box) -> tuple[float, float, float, float]:
+    (x, _, z), (width, _, depth) = box.center, box.size
+    return x - width / 2, -z - depth / 2, width, depth
+
+
+def _rooms(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
+    for _, box in rooms:
+        x, y, width, height = _rectangle(box)
+        yield f'<rect class="room" x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"/>'
+
+
+def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
+    for node, box in rooms:
+        x, y, width, _ = _rectangle(box)
+        name = escape(node.class_name.replace("_", " "))
+        size = min(0.35, 1.6 * (width - 0.3) / max(len(name), 1))
+        yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="{size:.2f}">{name}</text>'
+
+
+def _things(nodes: tuple[Node, ...]) -> Iterator[str]:
+    drawn = [(node, _rectangle(node.box)) for node in nodes if node.box and node.category not in _SHELL]
+    for node, (x, y, width, height) in sorted(drawn, key=lambda each: -each[1][2] * each[1][3]):
+        if width * height >= _SMALLEST or node.category == "Doors":
+            kind = "door" if node.category == "Doors" else "thing"
+            place = f'x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}"'
+            yield f'<rect class="{kind}" {place}><title>{escape(node.class_name)} ({node.id})</title></rect>'

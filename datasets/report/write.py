@@ -1,0 +1,169 @@
+"""Writing the report: one page, its data in scripts that a browser reads from disk, pictures beside it."""
+
+from __future__ import annotations
+
+import shutil
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.report.figures import figures
+from hearth.datasets.report.plans import plans
+from hearth.datasets.report.stories import DRAWN, Stories
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rows import Row
+from hearth.storage.parallel import Seen, spread, unseen
+
+SHARD = 200
+"""Programs whose stories are in one file: what a reader waits for when a page is opened."""
+
+
+_ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
+
+
+def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen) -> int:
+    """Write the report of a dataset into a folder; the same files for any number of workers.
+
+    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so that data comes in
+    scripts: `data/programs.js` has a short row a program, `data/stories-N.js` what their pages show. `seen` is told
+    how many shares of these are written.
+
+    Returns:
+        how many programs it has.
+
+    Raises:
+        HearthError: the folder holds something else.
+    """
+    if to.exists() and (not to.is_dir() or (any(to.iterdir()) and not (to / "index.html").exists())):
+        message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)
+    (to / "data").mkdir(parents=True, exist_ok=True)
+    rows = _rows(dataset)
+    (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
+    _write_stories(dataset, to, workers, seen)
+    for name in ("app.js", "page.js", "style.css"):
+        (to / name).write_bytes((files("hearth.datasets.report") / "assets" / name).read_bytes())
+    (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
+    _pictures(dataset, to)
+    return len(rows)
+
+
+def _page(dataset: Dataset, programs: int) -> str:
+    import jinja2
+
+    text = (files("hearth.datasets.report") / "assets" / "index.html").read_text("utf-8")
+    template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
+    told = {name: dataset.manifest[name] for name in ("version", "action_set")}
+    drawn = plans(dataset)
+    return template.render(figures=figures(dataset), plans=drawn, programs=programs, shard=SHARD, **told)
+
+
+def _rows(dataset: Dataset) -> list[list[Any]]:
+    """A row a program: id, title, origin, split, steps, homes it runs in, what went wrong, repairs."""
+    query = f"""SELECT p.*,
+            coalesce(e.homes, 0) AS homes, coalesce(e.code, '') AS code, coalesce(r.repairs, 0) AS repairs
+        FROM (SELECT {_ROW} FROM programs) p
+        LEFT JOIN (SELECT program_id, count(*) AS homes, min(failure.code) AS code FROM executions GROUP BY 1) e
+            USING (program_id)
+        LEFT JOIN (SELECT program_id, count(*) AS repairs FROM repairs GROUP BY 1) r USING (program_id)
+        ORDER BY program_id"""
+    columns, found = dataset.rows(query)
+    wanted = [columns.index(name) for name in _LISTED]
+    return [[row[place] for place in wanted] for row in found]
+
+
+_LISTED = ("program_id", "title", "origin", "split", "steps", "homes", "repairs", "code")
+
+
+def _write_stories(dataset: Dataset, to: Path, workers: int, seen: Seen) -> None:
+    """Stories by program id, `SHARD` a file; shares of files go to processes."""
+    names = [name for (name,) in dataset.rows("SELECT program_id FROM programs ORDER BY 1")[1]]
+    shards = [names[start : start + SHARD] for start in range(0, len(names), SHARD)]
+    told = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
+    jobs = [(str(dataset.folder), str(to), told[start : start + _SHARE]) for start in range(0, len(told), _SHARE)]
+    _opened.cache_clear()
+    for _ in spread(_write_share, jobs, workers, seen):
+        pass
+
+
+_SHARE = 8
+"""Files that a process writes at a time."""
+
+Shard = tuple[int, str, str]
+"""A file's number, and the ids of its first and last program."""
+
+
+@lru_cache(maxsize=1)
+def _opened(folder: str) -> tuple[Dataset, Stories]:
+    """A dataset and its homes, once a process."""
+    dataset = Dataset.open(folder)
+    return dataset, Stories(dataset)
+
+
+def _write_share(job: tuple[str, str, list[Shard]]) -> None:
+    folder, to, shards = job
+    dataset, stories = _opened(folder)
+    for shard in shards:
+        _write_shard(dataset, stories, Path(to), shard)
+
+
+def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> None:
+    number, low, high = shard
+    with dataset.connection.cursor() as cursor:
+        found = list(_stories(cursor, stories, {"low": low, "high": high}))
+    (to / f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
+
+
+# Only edges that are drawn are read: CLOSE is most of what a tick changes, and of that only the number is told.
+_DRAWN = ", ".join(f"'{name}'" for name in sorted(DRAWN))
+_EDGES = f"list_filter({{}}, lambda e: e.relation IN ({_DRAWN}))"
+_RUNS = f"""
+    SELECT e.execution_id, e.program_id, e.home, e.failure, e.bindings,
+        list_transform(e.ticks, lambda t: {{
+            'steps': list_transform(t.instructions, lambda i: i.step), 'set_states': t.set_states,
+            'cleared_states': t.cleared_states, 'added': {_EDGES.format("t.added")},
+            'removed': {_EDGES.format("t.removed")}, 'came': len(t.added), 'went': len(t.removed)}}) AS ticks,
+        {{'conditions': v.conditions, 'removed_nodes': v.removed_nodes,
+         'added_nodes': list_transform(v.added_nodes,
+            lambda n: {{'id': n.id, 'class_name': n.class_name, 'states': n.states}}),
+         'set_states': v.set_states, 'cleared_states': v.cleared_states,
+         'added': {_EDGES.format("v.added")}, 'removed': {_EDGES.format("v.removed")}}} AS environment
+    FROM (SELECT * FROM executions WHERE program_id BETWEEN $low AND $high) e
+    JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
+    ORDER BY e.execution_id
+"""
+_TOLD = "program_id, parent_id, title, description, origin, activity_id, steps"
+
+
+def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[Row]:
+    between = "program_id BETWEEN $low AND $high"
+    runs, repairs = defaultdict(list), defaultdict(list)
+    for row in _ask(cursor, _RUNS, asked):
+        runs[row["program_id"]].append(row)
+    for row in _ask(cursor, f"SELECT * FROM repairs WHERE {between} ORDER BY program_id, attempt", asked):
+        repairs[row["program_id"]].append(row)
+    for program in _ask(cursor, f"SELECT {_TOLD}, split FROM programs WHERE {between} ORDER BY program_id", asked):
+        name = program["program_id"]
+        yield stories.story(program, runs[name], repairs[name])
+
+
+def _ask(cursor: Any, query: str, asked: dict[str, str]) -> list[Any]:
+    rows: list[Any] = cursor.sql(query, params=asked).to_arrow_table().to_pylist()
+    return rows
+
+
+def _pictures(dataset: Dataset, to: Path) -> None:
+    query = """SELECT file FROM frames WHERE modality = 'rgb' UNION SELECT file FROM videos
+        UNION SELECT regexp_replace(file, '[.]webm$', '.mp4') FROM videos ORDER BY 1"""
+    for (name,) in dataset.rows(query)[1]:
+        source, target = dataset.folder / name, to / name
+        if source.is_file() and source.resolve().is_relative_to(dataset.folder.resolve()) and ".." not in name:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)

@@ -1,0 +1,279 @@
+"""Is a dataset what it says it is? Files, columns, counts, references, and every execution run again from disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.dataset_knowledge import other_base
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.simulation.world.home import Home
+from hearth.storage.parallel import Seen, spread, unseen
+
+SHARE = 1_000
+"""Executions that a process runs again at a time."""
+
+SHOWN = 20
+"""Faults of one kind that are told singly; what more there is, is counted."""
+
+KEYS = {
+    "activities": "activity_id",
+    "descriptions": "description_id",
+    "programs": "program_id",
+    "homes": "home",
+    "environments": "environment_id",
+    "executions": "execution_id",
+}
+
+REFERENCES = (
+    ("programs", "activity_id", "activities", "activity_id"),
+    ("programs", "description_id", "descriptions", "description_id"),
+    ("programs", "parent_id", "programs", "program_id"),
+    ("descriptions", "activity_id", "activities", "activity_id"),
+    ("home_nodes", "home", "homes", "home"),
+    ("home_edges", "home", "homes", "home"),
+    ("environments", "home", "homes", "home"),
+    ("environments", "program_id", "programs", "program_id"),
+    ("executions", "program_id", "programs", "program_id"),
+    ("executions", "environment_id", "environments", "environment_id"),
+    ("executions", "home", "homes", "home"),
+    ("repairs", "program_id", "programs", "program_id"),
+    ("repairs", "execution_id", "executions", "execution_id"),
+    ("splits", "execution_id", "executions", "execution_id"),
+    ("splits", "program_id", "programs", "program_id"),
+    ("sketches", "program_id", "programs", "program_id"),
+    ("frames", "execution_id", "executions", "execution_id"),
+    ("videos", "execution_id", "executions", "execution_id"),
+)
+"""What refers to what: table and column, and the table and key in which its value must be; null refers to nothing."""
+
+COUNTED = (
+    ("homes", "nodes", "SELECT home, count(*) AS found FROM home_nodes GROUP BY 1"),
+    ("homes", "edges", "SELECT home, count(*) AS found FROM home_edges GROUP BY 1"),
+    ("activities", "programs", "SELECT activity_id, count(*) AS found FROM programs GROUP BY 1"),
+    ("activities", "descriptions", "SELECT activity_id, count(*) AS found FROM descriptions GROUP BY 1"),
+)
+"""Columns that say how many rows there are elsewhere, and the query that counts them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What was looked at, and what is wrong.
+
+    Attributes:
+        files: files hashed.
+        rows: rows counted, all tables together.
+        executions: executions run again.
+        faults: everything that is wrong; empty when the dataset is what it says.
+        note: what else is to be known of it, or "".
+    """
+
+    files: int
+    rows: int
+    executions: int
+    faults: tuple[Diagnostic, ...]
+    note: str = ""
+
+
+def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
+    """Check a dataset from nothing but its folder; what is found is the same for any number of workers.
+
+    Files first: where one is missing or other than the manifest says, or has other columns, nothing further is asked
+    of the dataset, for its answers would mean nothing.
+
+    Args:
+        path: of the dataset.
+        workers: processes.
+        seen: told how many shares of the executions are run again.
+
+    Raises:
+        HearthError: the path is no dataset, or one that a newer version wrote.
+    """
+    opened.cache_clear()
+    dataset = Dataset.open(path)
+    files = len(dataset.manifest["files"])
+    note = other_base(dataset.manifest)
+    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
+    if faults:
+        return Verdict(files, 0, 0, faults, note)
+    rows = sum(_count(dataset, table) for table in _tables())
+    wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
+    if wrong:
+        return Verdict(files, rows, 0, tuple(wrong), note)
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note)
+
+
+def _tables() -> tuple[str, ...]:
+    from hearth.schemas.tables import TABLES
+
+    return tuple(TABLES)
+
+
+def _files(dataset: Dataset) -> Iterator[Diagnostic]:
+    from hearth.storage.files import file_digest
+
+    told = dataset.manifest["files"]
+    for name, entry in told.items():
+        path = dataset.folder / name
+        if not path.is_file():
+            yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=_AGAIN)
+        elif path.stat().st_size != entry["bytes"]:
+            message = f"{path.stat().st_size:,} bytes where the manifest says {entry['bytes']:,}"
+            yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=_AGAIN)
+        elif file_digest(path) != entry["sha256"]:
+            yield Diagnostic(Code.DAMAGED_FILE, "other bytes than the manifest says", str(path), suggestion=_AGAIN)
+    for table in _tables():
+        for path in sorted((dataset.folder / table).glob("*.parquet")):
+            if path.relative_to(dataset.folder).as_posix() not in told:
+                message = "the folder has it, the manifest has not: queries would read it"
+                yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
+
+
+_AGAIN = "fetch or publish the dataset again"
+
+
+def _knowledge(dataset: Dataset) -> Iterator[Diagnostic]:
+    try:
+        _ = dataset.knowledge
+    except HearthError as error:
+        yield from error.diagnostics
+
+
+def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
+    import pyarrow.parquet as pq
+
+    from hearth.schemas.tables import TABLES
+
+    for table, schema in TABLES.items():
+        paths = sorted((dataset.folder / table).glob("*.parquet"))
+        if not paths:
+            yield Diagnostic(Code.MISSING_FILE, f"no table `{table}`", str(dataset.folder / table), suggestion=_AGAIN)
+        for path in paths:
+            found = pq.read_schema(path)
+            if not found.equals(schema):
+                odd = sorted({*found.names} ^ {*schema.names}) or [
+                    name for name in schema.names if found.field(name).type != schema.field(name).type
+                ]
+                message = f"other columns than the table's: {', '.join(odd) or 'in another order'}"
+                yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=_AGAIN)
+
+
+def _split(dataset: Dataset) -> Iterator[Diagnostic]:
+    """`programs.split` is the activity's; `splits` may leave a program out, but never deal it to the other side."""
+    query = """SELECT DISTINCT program_id FROM splits s JOIN programs p USING (program_id)
+        WHERE s.split = 'activities' AND s.part <> 'none' AND NOT starts_with(s.part, p.split) ORDER BY 1"""
+    values = [row[0] for row in dataset.rows(query)[1]]
+    yield from _told(dataset, Code.BAD_TABLE, "splits", values, "{value} is dealt otherwise than `programs` says")
+
+
+def _count(dataset: Dataset, table: str) -> int:
+    return int(dataset.rows(f"SELECT count(*) FROM {table}")[1][0][0])
+
+
+def _told(dataset: Dataset, code: Code, table: str, values: list[Any], message: str) -> Iterator[Diagnostic]:
+    for value in values[:SHOWN]:
+        yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
+    if len(values) > SHOWN:
+        yield Diagnostic(code, f"and {len(values) - SHOWN:,} more like it", str(dataset.folder / table))
+
+
+def _keys(dataset: Dataset) -> Iterator[Diagnostic]:
+    for table, key in KEYS.items():
+        _, found = dataset.rows(f"SELECT {key} FROM {table} GROUP BY 1 HAVING count(*) > 1 ORDER BY 1")
+        yield from _told(
+            dataset, Code.DUPLICATE, table, [row[0] for row in found], f"two rows have the {key} {{value}}"
+        )
+
+
+def _references(dataset: Dataset) -> Iterator[Diagnostic]:
+    for table, column, other, key in REFERENCES:
+        query = f"""SELECT DISTINCT t.{column} FROM {table} t WHERE t.{column} IS NOT NULL
+            AND NOT EXISTS (SELECT 1 FROM {other} o WHERE o.{key} = t.{column}) ORDER BY 1"""
+        values = [row[0] for row in dataset.rows(query)[1]]
+        yield from _told(dataset, Code.UNKNOWN_ID, table, values, f"its {column} {{value}} is not in `{other}`")
+
+
+def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
+    told = dataset.manifest["counts"]["rows"]
+    for table, number in told.items():
+        if number != _count(dataset, table):
+            message = f"{_count(dataset, table):,} rows where the manifest counts {number:,}"
+            yield Diagnostic(Code.BAD_TABLE, message, str(dataset.folder / table))
+    for table, column, query in COUNTED:
+        key = KEYS[table]
+        ask = f"""SELECT t.{key} FROM {table} t LEFT JOIN ({query}) q USING ({key})
+            WHERE t.{column} IS DISTINCT FROM coalesce(q.found, 0) ORDER BY 1"""
+        values = [row[0] for row in dataset.rows(ask)[1]]
+        yield from _told(dataset, Code.BAD_TABLE, table, values, f"its {column} of {{value}} are not so many")
+    query = "SELECT stage FROM ledger WHERE records_in <> records_through + records_rejected ORDER BY 1"
+    values = [row[0] for row in dataset.rows(query)[1]]
+    yield from _told(dataset, Code.BAD_TABLE, "ledger", values, "the records of stage {value} do not add up")
+
+
+class StoredHomes:
+    """The homes of a dataset by name, built from its own tables."""
+
+    def __init__(self, dataset: Dataset) -> None:
+        self._dataset = dataset
+        self._built: dict[str, Home] = {}
+
+    def home(self, name: str) -> Home:
+        """The home that environments of that name differ from.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        if name not in self._built:
+            self._built[name] = Home.from_graph(self._dataset.home(name), name, self._dataset.knowledge)
+        return self._built[name]
+
+
+def _replays(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Diagnostic]:
+    place, wrong = str(dataset.folder / "executions"), 0
+    for found in _replayed(dataset, workers, seen):
+        for execution_id, difference in found:
+            wrong += 1
+            if wrong <= SHOWN:
+                yield Diagnostic(Code.REPLAY_DIFFERS, f"{execution_id}: {difference}", place)
+    if wrong > SHOWN:
+        yield Diagnostic(Code.REPLAY_DIFFERS, f"and {wrong - SHOWN:,} more like it", place)
+
+
+Wrong = list[tuple[str, str]]
+"""Executions that run otherwise than their rows say, and how."""
+
+
+def _replayed(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Wrong]:
+    # In the order of the files, which is the same for environments and programs: a share is in few row groups of each.
+    names = [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
+    jobs = [(str(dataset.folder), names[start : start + SHARE]) for start in range(0, len(names), SHARE)]
+    return spread(_replay, jobs, workers, seen)
+
+
+def _replay(job: tuple[str, list[str]]) -> Wrong:
+    from hearth.datasets.format.cases import difference_on_replay
+
+    folder, names = job
+    dataset, homes = opened(folder)
+    wrong: Wrong = []
+    for case in stored_cases(dataset, names, ("ticks", "failure")):
+        try:
+            difference = difference_on_replay(case, homes)
+        except (HearthError, KeyError, ValueError, TypeError) as error:
+            difference = f"it cannot be run: {type(error).__name__} {error}"
+        if difference:
+            wrong.append((case["execution_id"], difference))
+    return wrong
+
+
+@lru_cache(maxsize=1)
+def opened(folder: str) -> tuple[Dataset, StoredHomes]:
+    """A dataset and its homes, once a process and run of shares."""
+    dataset = Dataset.open(folder)
+    return dataset, StoredHomes(dataset)

@@ -1,0 +1,1 @@
+"""Sampling environments in which given conditions hold, or are violated."""

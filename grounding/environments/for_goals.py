@@ -1,0 +1,141 @@
+"""Sampling environments for goals: what they name is there, as often as they count it, and not yet as they want it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import reduce
+from operator import or_
+
+from hearth.grounding.environments.default_state import Base
+from hearth.grounding.environments.filling import fill
+from hearth.grounding.environments.partial import Draft
+from hearth.grounding.environments.placing import put_where_it_belongs
+from hearth.grounding.environments.sampling import TRIES, USUAL, Environment, Size, of_draft, settle_character
+from hearth.grounding.environments.soundness import unsound
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import AGENT, Literal, Name
+from hearth.schemas.program import Program
+from hearth.schemas.rng import rng
+from hearth.schemas.vocabulary import OPPOSITE
+from hearth.simulation.goals import Progress
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+MOST = 9
+"""Of one class a goal may count up to so many (thesis table C.2)."""
+
+_NO_PROGRAM = Program("", "", ())
+_NOTHING = Preconditions()
+
+
+def sample_for_goal(
+    goal: Goal, home: Home, seed: int, record_id: str = "", size: Size = USUAL
+) -> tuple[Environment, Progress] | Failure:
+    """Draw an environment in which a goal can be reached and is not reached yet; an empty goal asks for nothing.
+
+    Args:
+        goal: counted literals over classes, nodes of the home or agents.
+        home: any home; it is brought to its default state first.
+        seed, record_id: all the randomness there is.
+        size: nodes wanted.
+
+    Returns:
+        The environment with the goal's progress at its start, or why none was found: NO_PLACE where more than `MOST`
+        are asked for or too few things of a class belong anywhere in the home; CONDITION_UNMET where the goal holds
+        whatever is done.
+
+    Raises:
+        HearthError: UNKNOWN_OBJECT or SYNTAX: a literal names nothing that there is.
+    """
+    base = size.base(home)
+    for literal, wanted in goal:
+        if wanted > MOST:
+            return _failure(Code.NO_PLACE, literal, f"at most {MOST}", str(wanted))
+    failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "none was drawn")
+    for attempt in range(TRIES):
+        environment = _drawn(goal, base, seed, record_id, attempt, size)
+        if isinstance(environment, Failure):
+            return environment
+        progress = Progress.start(goal, environment.world)
+        missing = next((p for p, wanted in goal if _candidates(p, environment.world) < wanted), None)
+        if missing is not None:
+            failure = _failure(Code.NO_PLACE, missing, "enough of them", "fewer than the goal counts")
+        elif any(True for _ in goal) and progress.satisfied:
+            failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "it is met already")
+        elif (fault := unsound(environment.world)) is not None:
+            failure = fault
+        else:
+            return environment, progress
+    return failure
+
+
+def _failure(code: Code, literal: Literal[Name] | None, expected: str, actual: str) -> Failure:
+    return Failure(code, names=(str(literal),) if literal else (), expected=expected, actual=actual)
+
+
+def _class(literal: Literal[Name]) -> str:
+    """The class of things that a literal counts, or "" where it names nodes or agents alone."""
+    counted = literal.target if _is_agent(literal.subject) else literal.subject
+    return counted if isinstance(counted, str) and not _is_agent(counted) else ""
+
+
+def _is_agent(term: Name | None) -> bool:
+    return isinstance(term, str) and term.startswith(AGENT)
+
+
+def _candidates(literal: Literal[Name], world: World) -> int:
+    name = _class(literal)
+    return world.home.instances(name).bit_count() if name else MOST + 1
+
+
+def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size: Size) -> Environment | Failure:
+    draft = Draft(base, rng(seed, "goal", base.home.name, record_id, attempt))
+    wanted: Counter[str] = Counter()
+    for literal, number in goal:
+        if name := _class(literal):
+            wanted[name] = max(wanted[name], number)
+        holder = literal.target
+        if isinstance(holder, str) and holder != name and not _is_agent(holder):
+            wanted[holder] = max(wanted[holder], 1)
+    for name, number in sorted(wanted.items()):
+        if not base.knowledge.is_room(name):
+            provide(draft, name, number)
+    for literal, number in goal:
+        _undo(draft, literal, number)
+    settle_character(draft, _NO_PROGRAM, _NOTHING)
+    fill(draft, size.least, size.most, size.some)
+    return of_draft(draft, seed, _NO_PROGRAM, _NOTHING)
+
+
+def provide(draft: Draft, name: str, number: int) -> None:
+    """As many of a class as are wanted, the missing ones where they belong."""
+    base = draft.base
+    here = len(base.instances(name))
+    # A home that calls them by another of their names gets more of those.
+    called = base.home.classes[base.instances(name)[0]] if here else name
+    usual = base.knowledge.object_class(called)
+    rooms = [base.home.ids[i] for room in (usual.rooms if usual else ()) for i in base.rooms(room)]
+    every = [base.home.ids[i] for i in indices(base.home.rooms)]
+    for _ in range(number - here):
+        node_id = draft.add(called, draft.rng.choice(rooms or every))
+        put_where_it_belongs(draft, called, node_id, -1, must=False)
+
+
+def _undo(draft: Draft, literal: Literal[Name], number: int) -> None:
+    """Where the home meets a predicate already, spoil it: states turned over, things laid on the floor."""
+    home = draft.base.home
+    try:
+        watch = Progress.start(Goal(((literal, number),)), World.start(home)).watches[0]
+    except IndexError:
+        return
+    for i in list(indices(reduce(or_, watch.met, 0)))[: max(0, watch.count - number + 1)]:
+        node_id = home.ids[i]
+        if literal.target is None:
+            draft.set_state(node_id, OPPOSITE[literal.name])
+        elif literal.name in ("ON", "INSIDE", "CLOSE") and home.properties["GRABBABLE"] >> i & 1:
+            room = draft.room_of(node_id)
+            draft.lift(node_id)
+            draft.settle(node_id, room)

@@ -1,0 +1,60 @@
+"""Homes with fewer things: for environments of a size that a well-stocked home is beyond (thesis 5.5.2)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from random import Random
+
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.rng import rng
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+
+def superfluous(home: Home, most: int) -> tuple[int, ...]:
+    """Ids of small loose things to go without, so that at most so many nodes are left, if that can be; sorted.
+
+    The first to go is what its room has most of: a household's twelfth plate is missed less than its only kettle.
+    Furniture, and what something stands on or in, stays.
+    """
+    chooser = rng(0, "thinned", home.name, most)
+    gone = 0
+    while len(home) - gone.bit_count() > most:
+        going = _loose(home, gone)
+        if not going:
+            break
+        gone |= _chosen(home, going, len(home) - gone.bit_count() - most, chooser)
+    return tuple(home.ids[i] for i in indices(gone))
+
+
+def without(home: Home, gone: tuple[int, ...]) -> Home:
+    """A home without those nodes, and without their edges."""
+    missing = frozenset(gone)
+    graph = World.start(home).graph()
+    nodes = tuple(node for node in graph.nodes if node.id not in missing)
+    edges = tuple(edge for edge in graph.edges if edge.source not in missing and edge.target not in missing)
+    return Home.from_graph(EnvironmentGraph(nodes, edges), home.name, home.knowledge)
+
+
+def _loose(home: Home, gone: int) -> list[int]:
+    """What can be grasped and bears and holds nothing that is left."""
+    graspable = home.properties["GRABBABLE"] & ~home.characters & ~gone
+    return [i for i in indices(graspable) if not (home.bears[i] | home.contents[i]) & ~gone]
+
+
+def _chosen(home: Home, going: list[int], count: int, chooser: Random) -> int:
+    """So many of them, always one of which its room has most, and then the home; appliances last."""
+    chooser.shuffle(going)
+    plain = ~home.properties["HAS_PLUG"]
+    kinds = {i: (home.direct_room[i], home.classes[i]) for i in going}
+    here, everywhere = Counter(kinds.values()), Counter(home.classes[i] for i in going)
+    found = 0
+    left = list(going)
+    for _ in range(min(count, len(going))):
+        i = max(left, key=lambda i: (plain >> i & 1, here[kinds[i]], everywhere[home.classes[i]]))
+        left.remove(i)
+        here[kinds[i]] -= 1
+        everywhere[home.classes[i]] -= 1
+        found |= 1 << i
+    return found

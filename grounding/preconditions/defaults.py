@@ -1,0 +1,108 @@
+"""What the author of a program takes for granted (rules 1, 7, 8, 9 and 11 of the release): soft conditions.
+
+They make environments realistic; a program that can't run with one of them runs without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hearth.grounding.environments.classes import has
+from hearth.grounding.preconditions.conditions import Condition
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import Key, Literal
+from hearth.schemas.program import Program
+
+
+def habits(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """The soft conditions of a program, in step order."""
+    yield from _locations(program, knowledge)
+    yield from _contents(program, knowledge)
+    yield from _supports(program, knowledge)
+    yield from _free_seats(program, knowledge)
+    yield from _plugs(program, knowledge)
+
+
+def _locations(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 7: after a room was named, what is first used then is in that room, until another is named."""
+    room: Key | None = None
+    seen: set[Key] = set()
+    for number, step in enumerate(program.steps):
+        for ref in step.objects:
+            if knowledge.is_room(ref.name):
+                room = ref.key if step.action in knowledge.group("goes") else room
+            elif ref.key not in seen:
+                seen.add(ref.key)
+                if room is not None and not has(knowledge, ref.name, "BODY_PART"):
+                    yield Condition(Literal("location", (ref.key, room)), number, hard=False)
+
+
+def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 8: what is grabbed while something that the program opened is open, comes from inside it."""
+    opened: list[Key] = []
+    handled: set[Key] = set()
+    for number, step in enumerate(program.steps):
+        keys = [ref.key for ref in step.objects]
+        if step.action == "Open":
+            opened.append(keys[0])
+        elif step.action == "Close" and keys[0] in opened:
+            opened.remove(keys[0])
+        elif step.action == "Grab" and keys[0] not in handled:
+            container = next((key for key in reversed(opened) if _fits(keys[0], key, knowledge)), None)
+            if container is not None:
+                yield Condition(Literal("inside", (keys[0], container)), number, hard=False)
+        if step.action in knowledge.group("frees_hand") or step.action == "Grab":
+            handled.add(keys[0])
+
+
+def _fits(thing: Key, container: Key, knowledge: Knowledge) -> bool:
+    return any(
+        place.relation == "IN" and place.destination in knowledge.same_class(container[0])
+        for place in knowledge.placements(thing[0])
+    )
+
+
+def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 9: who goes to a table-like thing and then uses another expects it there; to a chair, near it."""
+    last: Key | None = None
+    seen: set[Key] = set()
+    for number, step in enumerate(program.steps):
+        for ref in step.objects:
+            new = ref.key not in seen
+            seen.add(ref.key)
+            loose = new and has(knowledge, ref.name, "GRABBABLE")
+            if loose and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
+                yield Condition(Literal("in", (ref.key, last)), number, hard=False)
+            elif loose and last is not None and last[0] == "chair":
+                yield Condition(Literal("atreach", (ref.key, last)), number, hard=False)
+        if step.objects and (step.action in knowledge.group("goes") or step.action == "LookAt"):
+            last = None if knowledge.is_room(step.objects[0].name) else step.objects[0].key
+
+
+def _stands(thing: Key, support: Key, knowledge: Knowledge) -> bool:
+    return any(
+        place.relation == "ON" and place.destination in knowledge.same_class(support[0])
+        for place in knowledge.placements(thing[0])
+    )
+
+
+def _free_seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 11: seats and beds that are used are free."""
+    for number, step in enumerate(program.steps):
+        if step.action in knowledge.group("rests") and step.objects:
+            yield Condition(Literal("free", (step.objects[0].key,)), number)
+
+
+def _plugs(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+    """Rule 1: what is switched on has its plug in, unless the program puts it in."""
+    plugged: set[Key] = set()
+    for number, step in enumerate(program.steps):
+        if not step.objects:
+            continue
+        key = step.objects[0].key
+        if step.action in knowledge.achieving("PLUGGED_IN", "PLUGGED_OUT"):
+            plugged.add(key)
+        elif step.action in knowledge.achieving("ON", "OFF") and key not in plugged:
+            plugged.add(key)
+            if has(knowledge, key[0], "HAS_PLUG"):
+                yield Condition(Literal("plugged", (key,)), number)

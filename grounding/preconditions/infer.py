@@ -1,0 +1,171 @@
+"""Inferring what a program needs, by trying it in a home about which nothing is known but what it needed so far.
+
+The first step that fails says what the start must provide; the condition is added and the program tried again. So every
+condition is explained by the step that needs it, and a program that no start can help is told by the step at which
+that shows and the step that spoilt it (thesis 5.5.2: the function Phi).
+"""
+
+from __future__ import annotations
+
+from hearth.grounding.preconditions.abduction import Moment, conditions_for
+from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.grounding.preconditions.defaults import habits
+from hearth.grounding.preconditions.minimal_home import SketchHome, sketch
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key, Literal
+from hearth.schemas.program import Program
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.world import World
+
+MAX_CONDITIONS = 200
+"""A program that needs more than this many tries is given up."""
+
+CAUSED_BY_START = frozenset(
+    {Code.UNBOUND, Code.NOT_AFFORDED, Code.NOT_SIMULATED, Code.UNKNOWN_ACTION, Code.UNKNOWN_AGENT}
+)
+"""Failures that are the program's own whatever the start."""
+
+
+def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Preconditions | Failure:
+    """The conditions under which a program runs, or the failure that no start prevents.
+
+    A failure of a program that contradicts itself has code CONTRADICTION; its `expected` says what step needed, its
+    `actual` which step made that impossible.
+    """
+    conditions, execution, step = _inferred(program, knowledge, rules)
+    return conditions if execution.failure is None else _contradiction(program, conditions, execution, step, knowledge)
+
+
+def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
+    """The steps because of which no start lets a program run: one, or the one that spoils another and that other."""
+    conditions, execution, step = _inferred(program, knowledge, rules)
+    if execution.failure is None:
+        return ()
+    culprit = None if execution.failure.code in CAUSED_BY_START else _culprit(program, conditions, step, knowledge)
+    return (step,) if culprit is None else (culprit, step)
+
+
+def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
+    """The conditions found, the last try with them, and the step it failed at, if it did."""
+    conditions = Preconditions(tuple(habits(program, knowledge)))
+    tried: dict[int, set[Literal[Key]]] = {}
+    for _ in range(MAX_CONDITIONS):
+        place = sketch(program, conditions, knowledge)
+        execution = run(World.start(place.home), place.program, rules)
+        if execution.failure is None:
+            return conditions, execution, -1
+        step = _step_of(program, execution.failure.tick)
+        found = _next(conditions, execution, place, step, tried.setdefault(step, set()), knowledge)
+        if found is None:
+            break
+        conditions = found
+    return conditions, execution, step
+
+
+def _next(
+    conditions: Preconditions,
+    execution: Execution,
+    place: SketchHome,
+    step: int,
+    tried: set[Literal[Key]],
+    knowledge: Knowledge,
+) -> Preconditions | None:
+    """The conditions with one more that may help at this step, or with a habit in its way given up."""
+    failure = execution.failure
+    assert failure is not None
+    if failure.code in CAUSED_BY_START:
+        return None
+    moment = Moment(place.program, step, failure, execution.final, execution.worlds[0], place.keys, knowledge)
+    for condition in conditions_for(moment):
+        if condition.literal not in tried and not _against(condition, conditions):
+            tried.add(condition.literal)
+            return _settled(conditions, condition)
+    key = moment.key() if failure.objects else None
+    soft = [c for c in conditions if not c.hard and (key is None or key in c.objects)]
+    return conditions.without(soft[-1]) if soft else None
+
+
+def _against(new: Condition, conditions: Preconditions) -> bool:
+    """Whether a hard condition already says the opposite."""
+    opposite = _OPPOSITES.get(new.name)
+    return opposite is not None and any(c.name == opposite and c.objects == new.objects and c.hard for c in conditions)
+
+
+def _settled(conditions: Preconditions, new: Condition) -> Preconditions:
+    """The new condition instead of soft ones it excludes: two places for one thing, or a thing's opposite state."""
+    rivals = [
+        c
+        for c in conditions
+        if not c.hard
+        and c.objects[0] == new.objects[0]
+        and c.literal != new.literal
+        and (c.name == _OPPOSITES.get(new.name) or (c.name in _PLACES and new.name in _PLACES))
+    ]
+    return conditions.without(*rivals).plus(new)
+
+
+_PLACES = frozenset({"in", "inside", "location", "together", "holds"})
+
+_OPPOSITES = {
+    "closed": "open",
+    "open": "closed",
+    "is_on": "is_off",
+    "is_off": "is_on",
+    "plugged": "unplugged",
+    "unplugged": "plugged",
+    "sitting": "lying",
+    "lying": "sitting",
+}
+
+
+def _step_of(program: Program, tick: int) -> int:
+    """The first step of a tick."""
+    number = -1
+    for index, step in enumerate(program.steps):
+        number += not step.joins
+        if number == tick:
+            return index
+    return len(program.steps) - 1
+
+
+def _contradiction(
+    program: Program, conditions: Preconditions, execution: Execution, step: int, knowledge: Knowledge
+) -> Failure:
+    failure = execution.failure
+    assert failure is not None
+    if failure.code in CAUSED_BY_START:
+        return failure
+    culprit = _culprit(program, conditions, step, knowledge)
+    spoilt = (
+        f"made impossible by step {culprit + 1}, [{program.steps[culprit].action}]"
+        if culprit is not None
+        else "by no step"
+    )
+    return Failure(
+        Code.CONTRADICTION,
+        failure.tick,
+        failure.agent,
+        failure.action,
+        failure.objects,
+        failure.names,
+        f"{failure.code}: {failure.expected} at step {step + 1}",
+        f"{failure.actual}; {spoilt}",
+    )
+
+
+def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:
+    """The step that needed or did the opposite: the one a condition on the same object stems from, else the last
+    earlier step about that object, else the last that moved the character.
+    """
+    keys = {ref.key for ref in program.steps[step].objects}
+    changing = knowledge.group("operates") | knowledge.group("takes") | knowledge.group("dresses")
+    for number in range(step - 1, -1, -1):
+        if keys & {ref.key for ref in program.steps[number].objects} and program.steps[number].action in changing:
+            return number
+    needed = [c.step for c in conditions if c.name in _OPPOSITES and c.objects[0] in keys and c.step < step]
+    if needed:
+        return needed[-1]
+    moving = knowledge.group("goes") | knowledge.group("rests") | knowledge.group("rises")
+    return next((n for n in range(step - 1, -1, -1) if program.steps[n].action in moving), None)

@@ -1,0 +1,107 @@
+"""Post-conditions: what a program achieves, said of its own objects, so that it can be asked of any environment.
+
+What the original brings about in its own, unperturbed environment has to be reached by every repair of it (thesis A.2,
+eq. A.1: the function Omega).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from hearth.schemas.literals import HOLDS, Key, Literal
+from hearth.schemas.program import Program
+from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID, STATES
+from hearth.simulation.engine import Execution
+from hearth.simulation.holds import RELATED, holds
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.world import World
+
+Postconditions = tuple[Literal[Key], ...]
+"""States, ON, INSIDE and HOLDS, of a program's objects, sorted, each once; what is worn is ON the character."""
+
+
+def achieved(execution: Execution) -> Postconditions:
+    """What holds at the end of a run and did not at its start, of the program's objects and the characters.
+
+    That a bottle is INSIDE the glass it was poured into counts only if it is put nowhere else. A room counts where it
+    is the point: for a character, when the last walk was to that room itself; for a thing, when it lies in a room that
+    the program walked to and on or in none of its objects.
+    """
+    program, world = execution.program, execution.final
+    nodes = nodes_of(program, world)
+    home = world.home
+    before = frozenset(facts(execution.worlds[0], nodes))
+    now = tuple(facts(world, nodes))
+    new = [fact for fact in now if fact not in before]
+    rooms = {key for key, node in nodes.items() if home.rooms >> home.index[node] & 1}
+    held = {fact.target for fact in now if fact.name == HOLDS}
+    poured = _residues(program, now, held, rooms)
+    placed = {fact.subject for fact in new if fact.name in ("ON", "INSIDE") and fact.target not in rooms}
+    going = home.knowledge.group("goes")
+    walked = [step.objects[0].key for step in program.steps if step.action in going and step.objects]
+
+    def is_meant(fact: Literal[Key]) -> bool:
+        if fact in poured:
+            return False
+        if fact.name != "INSIDE" or fact.target not in rooms:
+            return True
+        if fact.subject[0] == CHARACTER_CLASS:
+            return bool(walked) and fact.target == walked[-1]
+        return fact.target in walked and fact.subject not in placed and fact.subject not in held
+
+    return tuple(sorted(filter(is_meant, new)))
+
+
+def missing(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> Postconditions:
+    """The facts that do not hold in a world; `nodes` says which node each object is."""
+    return tuple(fact for fact in wanted if not holds(fact, world, nodes))
+
+
+def reached(wanted: Postconditions, nodes: Mapping[Key, int], world: World) -> bool:
+    """Whether every fact holds in a world."""
+    return all(holds(fact, world, nodes) for fact in wanted)
+
+
+def nodes_of(program: Program, world: World) -> dict[Key, int]:
+    """The node of each object of a bound program, and of each character."""
+    home = world.home
+    nodes = {ref.key: ref.node for ref in program.objects() if ref.node is not None and ref.node in home.index}
+    for number, agent in enumerate(world.agents, 1):
+        nodes[CHARACTER_CLASS, number] = home.ids[agent.index]
+    return nodes
+
+
+def facts(
+    world: World,
+    nodes: Mapping[Key, int],
+    states: Sequence[str] = STATES,
+    relations: Sequence[str] = ("ON", "INSIDE", HOLDS),
+) -> Iterable[Literal[Key]]:
+    """All states and relations, or these, of some objects in a world."""
+    index = world.home.index
+    keys: dict[int, list[Key]] = {}
+    for key, node in nodes.items():
+        keys.setdefault(index[node], []).append(key)
+    named = mask_of(keys)
+    known = [(state, world.states[STATE_ID[state]]) for state in states if world.states[STATE_ID[state]] & named]
+    for i, subjects in keys.items():
+        found: list[tuple[str, tuple[Key, ...]]] = [(state, ()) for state, row in known if row >> i & 1]
+        for relation in relations:
+            if row := RELATED[relation](world, i, named):
+                found.extend((relation, (key,)) for j in indices(row) for key in keys[j])
+        for subject in subjects:
+            yield from (Literal(name, (subject, *target)) for name, target in found)
+
+
+def _residues(program: Program, now: Postconditions, held: set[Key | None], rooms: set[Key]) -> set[Literal[Key]]:
+    """What pouring has left: a thing is INSIDE what it was poured into, although it is held or stands elsewhere."""
+    pours = {(s.objects[0].key, s.objects[1].key) for s in program.steps if s.action == "Pour"}
+    if not pours:
+        return set()
+    poured = {f for f in now if f.name == "INSIDE" and (f.subject, f.target) in pours}
+    placed = {
+        f.subject
+        for f in now
+        if f.name in ("ON", "INSIDE") and f.target is not None and f.target not in rooms and f not in poured
+    }
+    return {fact for fact in poured if fact.subject in held | placed}

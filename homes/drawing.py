@@ -1,0 +1,157 @@
+"""A home's floor plan as a drawing: SVG written directly, PNG from the same shapes. North is up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from hearth.homes.geometry import Rect, bottom, footprint
+from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.shell import Thing, before
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+SCALE = 90
+"""Pixels a metre."""
+BORDER = 0.4
+"""Metres around the home."""
+
+ROOM_COLOURS = {
+    "bathroom": "#dcecf2", "bedroom": "#ece4f3", "kids_bedroom": "#f8e8ee", "kitchen": "#fbf0da",
+    "dining_room": "#f7ead8", "living_room": "#e6f0e0", "home_office": "#e4ebf5", "entrance_hall": "#efece6",
+}  # fmt: skip
+COLOURS = {"wall": "#3b3b3b", "door": "#8a5a2b", "window": "#6db3e8", "curtain": "#b58fc4", "mat": "#e3d2b8"}
+FURNITURE, HUNG, SMALL, INK = "#d3b28c", "#9fb3a0", "#c65b4a", "#222222"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A part of the drawing, in metres.
+
+    Attributes:
+        kind: `rect`, `line` or `text`.
+        rect: what it covers; a line runs from its south-west to its north-east corner; a text stands in its middle.
+        fill: colour.
+        edge: colour of its outline, or "".
+        text: what it says.
+        size: of the letters, metres.
+    """
+
+    kind: str
+    rect: Rect
+    fill: str
+    edge: str = ""
+    text: str = ""
+    size: float = 0.12
+
+
+def shapes(layout: Layout) -> Iterator[Shape]:
+    """Everything to draw, what lies below first."""
+    for room in layout.plan.rooms:
+        yield Shape("rect", room.rect, ROOM_COLOURS.get(room.class_name, "#eeeeee"))
+    things = layout.things
+    yield from (Shape("rect", footprint(t.box), COLOURS["mat"]) for t in things if t.mount == "flat")
+    yield from _shell(things)
+    for thing in things:
+        if thing.mount in ("floor", "wall") and thing.class_name != "wall":
+            yield from _furniture(thing)
+    for thing in things:
+        if thing.mount in ("item", "sunk"):
+            yield Shape("rect", footprint(thing.box), SMALL if thing.on else "#7f7f7f", "#ffffff")
+    yield from _furniture(layout.character, "#3f6fd1")
+    for room in layout.plan.rooms:
+        yield Shape("text", room.rect, "#00000077", text=room.name, size=0.24)
+
+
+def _shell(things: tuple[Thing, ...]) -> Iterator[Shape]:
+    for thing in things:
+        if thing.class_name == "wall" and bottom(thing.box) == 0 and thing.box.size[1] > 1.5:
+            yield Shape("rect", footprint(thing.box), COLOURS["wall"])
+        elif thing.class_name == "wall" and bottom(thing.box) == 0:
+            yield Shape("rect", footprint(thing.box), "#8d8d8d")
+        elif thing.mount == "window":
+            yield Shape("rect", footprint(thing.box), COLOURS[thing.class_name])
+        elif thing.class_name in ("door", "maindoor"):
+            yield Shape("rect", footprint(thing.box), COLOURS["door"])
+
+
+def _furniture(thing: Thing, colour: str = "") -> Iterator[Shape]:
+    rect = footprint(thing.box)
+    yield Shape("rect", rect, colour or (FURNITURE if thing.mount == "floor" else HUNG), "#6b5535")
+    if thing.yaw is not None:
+        edge = before(rect, thing.yaw, -min(0.05, rect.width / 3, rect.depth / 3))
+        yield Shape("rect", edge, "#6b5535")
+    if thing.mount != "wall":
+        size = min(0.12, 1.5 * max(rect.width, rect.depth) / max(len(thing.class_name), 1))
+        yield Shape("text", rect, INK, text=thing.class_name, size=size)
+
+
+def bounds(layout: Layout) -> Rect:
+    """What the drawing covers, metres."""
+    return Rect.over(room.rect for room in layout.plan.rooms).inset(-BORDER)
+
+
+def svg(layout: Layout) -> str:
+    """The floor plan as an SVG document."""
+    area = bounds(layout)
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{area.width * SCALE:.0f}" height="{area.depth * SCALE:.0f}" '
+        f'viewBox="0 0 {area.width * SCALE:.1f} {area.depth * SCALE:.1f}" font-family="sans-serif">'
+    )
+    parts = [head, f"<title>{escape(layout.plan.name)}</title>", '<rect width="100%" height="100%" fill="#ffffff"/>']
+    parts.extend(_svg_shape(shape, area) for shape in shapes(layout))
+    return "\n".join([*parts, "</svg>", ""])
+
+
+def _svg_shape(shape: Shape, area: Rect) -> str:
+    rect = shape.rect
+    x, y = (rect.x0 - area.x0) * SCALE, (area.z1 - rect.z1) * SCALE
+    if shape.kind == "text":
+        middle, centre = x + rect.width * SCALE / 2, y + rect.depth * SCALE / 2
+        size = shape.size * SCALE
+        return (
+            f'<text x="{middle:.1f}" y="{centre + size / 3:.1f}" font-size="{size:.1f}" text-anchor="middle" '
+            f'fill="{shape.fill}">{escape(shape.text)}</text>'
+        )
+    edge = f' stroke="{shape.edge}" stroke-width="0.7"' if shape.edge else ""
+    width, height = rect.width * SCALE, rect.depth * SCALE
+    return f'<rect x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{shape.fill}"{edge}/>'
+
+
+def write(layout: Layout, path: Path | str) -> None:
+    """Write the floor plan as SVG or PNG, by the file's ending.
+
+    Raises:
+        HearthError: UNSUPPORTED_FILE for another ending.
+    """
+    target = Path(path)
+    if target.suffix == ".svg":
+        target.write_text(svg(layout), encoding="utf-8")
+    elif target.suffix == ".png":
+        _write_png(layout, target)
+    else:
+        raise HearthError.of(Code.UNSUPPORTED_FILE, "a floor plan is written as .svg or .png", file=str(path))
+
+
+def _write_png(layout: Layout, path: Path) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+
+    area = bounds(layout)
+    figure = Figure(figsize=(area.width, area.depth), dpi=SCALE)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_xlim(area.x0, area.x1)
+    axes.set_ylim(area.z0, area.z1)
+    axes.set_axis_off()
+    for number, shape in enumerate(shapes(layout)):
+        rect = shape.rect
+        if shape.kind == "text":
+            axes.text(*rect.center, shape.text, size=shape.size * 72 * 0.95, ha="center", va="center",
+                      color=shape.fill, zorder=number)  # fmt: skip
+        else:
+            axes.add_patch(Rectangle((rect.x0, rect.z0), rect.width, rect.depth, facecolor=shape.fill,
+                                     edgecolor=shape.edge or "none", linewidth=0.5, zorder=number))  # fmt: skip
+    FigureCanvasAgg(figure).print_png(str(path), metadata={"Software": None})

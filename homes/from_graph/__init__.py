@@ -1,0 +1,1 @@
+"""A layout for a scene graph that has none."""

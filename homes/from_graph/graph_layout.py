@@ -1,0 +1,185 @@
+"""A layout for any scene graph: rooms joined through their doors, furniture along walls, things on and in each other.
+
+The relations decide: what is CLOSE is put close, what FACES something is turned to it, as far as there is room. What
+cannot be had is told, edge by edge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import sqrt
+
+from hearth.homes.from_graph import panels
+from hearth.homes.from_graph.arranging import Crowd, furnish
+from hearth.homes.from_graph.embedding import guessed
+from hearth.homes.from_graph.parts import Parts
+from hearth.homes.from_graph.rooms import RoomPair, packed
+from hearth.homes.from_graph.shown_relations import missed, unmet
+from hearth.homes.geometry import OPPOSITE_WALL, Rect
+from hearth.homes.plans import shell
+from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
+from hearth.homes.plans.shell import Thing, shared_wall, span
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph, Node
+from hearth.schemas.vocabulary import CHARACTER_CLASS
+
+HEIGHT = 2.6
+LEAST_SIDE = 2.6
+SPACE = 2.4
+"""Square metres of room for each square metre of furniture."""
+GOES = 2
+"""How often a home is furnished in a series, each time with what was learnt."""
+ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
+"""Factors by which a room's floor is enlarged until everything stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaidOut:
+    """A graph with geometry.
+
+    Attributes:
+        graph: the same nodes and edges, in the same order; those that have a place with box and yaw.
+        layout: rooms, doors and things, for drawing and walking; things are called by their node ids.
+        unmet: what the geometry does not show of what the graph says, each with the ids in `found`.
+    """
+
+    graph: EnvironmentGraph
+    layout: Layout
+    unmet: tuple[Diagnostic, ...]
+
+
+def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> LaidOut:
+    """Give a graph plausible geometry; the same graph always gets the same.
+
+    Raises:
+        HearthError: NO_ROOM: it has no room.
+    """
+    parts = Parts(graph, knowledge)
+    if not parts.rooms:
+        raise HearthError.of(Code.NO_ROOM, "there is no room to lay out", file=name,
+                             suggestion="a node of the category Rooms")  # fmt: skip
+    plan, built = _large_enough(parts, name)
+    crowd, things = _arranged(parts, plan, built)
+    layout = Layout(plan, built, (*built.things, *crowd.things.values()))
+    people = [node.id for node in graph.nodes if node.class_name == CHARACTER_CLASS]
+    for person in people[:1]:
+        room = _name(parts.nodes[parts.room.get(person, parts.rooms[0])])
+        layout = replace(layout, plan=replace(plan, character=room))
+        things[person] = layout.character
+    new = EnvironmentGraph(tuple(_placed(node, things.get(node.id)) for node in graph.nodes), graph.edges, graph.extra)
+    return LaidOut(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
+
+
+def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:
+    """Rooms in which all furniture stands, or that are as large as they may be."""
+    factors = dict.fromkeys(parts.rooms, 0)
+    for _ in ENLARGED:
+        plan, built = _plan(parts, name, {room: ENLARGED[step] for room, step in factors.items()})
+        short = _short(Crowd(parts, built, {}), plan)
+        if all(factors[room] == len(ENLARGED) - 1 for room in short):
+            break
+        factors.update({room: min(factors[room] + 1, len(ENLARGED) - 1) for room in short})
+    return plan, built
+
+
+def _short(crowd: Crowd, plan: Plan) -> list[int]:
+    """Furnish all rooms; those where something of size found no place."""
+    return [room for room, found in zip(crowd.parts.rooms, plan.rooms, strict=True) if furnish(crowd, room, found)]
+
+
+def _arranged(parts: Parts, plan: Plan, built: shell.Shell) -> tuple[Crowd, dict[int, Thing]]:
+    """Everything in its place, the best of several goes: each knows where the one before has put things.
+
+    The furniture decides which tile is where, and then the tiles where the furniture is. One series of goes begins with
+    nothing known, the other with a guess.
+    """
+    fixed, places = panels.rooms_and_doors(parts, plan, built), panels.slots(parts, plan, built)
+    guess = guessed(parts, plan, fixed)
+    found: list[tuple[int, Crowd, dict[int, Thing]]] = []
+    for start in ({}, guess | panels.assigned(parts, places, guess | fixed, anew=True)):
+        before: dict[int, Thing] = start
+        for _ in range(GOES):
+            crowd = Crowd(parts, built, before | fixed)
+            lost = 1000 * len(_short(crowd, plan))
+            before = fixed | crowd.things
+            before |= panels.assigned(parts, places, before)
+            found.append((lost + missed(parts, before), crowd, before))
+    _, crowd, things = min(found, key=lambda go: go[0])
+    return crowd, dict(things)
+
+
+def _placed(node: Node, thing: Thing | None) -> Node:
+    return node if thing is None else replace(node, box=thing.box, yaw=thing.yaw)
+
+
+def _name(room: Node) -> str:
+    return f"{room.class_name} ({room.id})"
+
+
+def _plan(parts: Parts, name: str, factors: Mapping[int, float]) -> tuple[Plan, shell.Shell]:
+    sizes = {}
+    for room in parts.rooms:
+        area = (SPACE * parts.area(room) + 4.0) * factors[room]
+        width = round(max(LEAST_SIDE, sqrt(1.25 * area)), 1)
+        sizes[room] = (width, round(max(LEAST_SIDE, area / width), 1))
+    rects, _ = packed(sizes, list(parts.between.values()))
+    x, z = min(rect.x0 for rect in rects.values()), min(rect.z0 for rect in rects.values())
+    moved = {r: Rect(*(round(v, 2) for v in (q.x0 - x, q.z0 - z, q.x1 - x, q.z1 - z))) for r, q in rects.items()}
+    doors = (*_doorways(parts, moved), *_ways_out(parts, moved))
+    rooms = tuple(
+        Room(_name(node := parts.nodes[r]), node.class_name, moved[r], _windows(parts, r, moved), line=r)
+        for r in parts.rooms
+    )
+    plan = Plan(name, rooms, doors, "Laid out from its relations.", HEIGHT)
+    return plan, shell.build(plan, Faults(name))
+
+
+def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
+    """One for each pair of rooms that share a wall and a door; with a leaf where there is a door, not only its jamb."""
+    pairs: dict[RoomPair, list[int]] = {}
+    for door, pair in sorted(parts.between.items()):
+        if shared_wall(rects[pair[0]], rects[pair[1]]) is not None:
+            pairs.setdefault(pair, []).append(door)
+    found = []
+    for (one, other), doors in pairs.items():
+        names = _name(parts.nodes[one]), _name(parts.nodes[other])
+        leaves = [door for door in doors if parts.nodes[door].class_name == "door"]
+        into = next(
+            (_name(parts.nodes[r]) for door in leaves if (r := parts.room.get(door, -1)) in (one, other)), names[1]
+        )
+        found.append(Doorway(names, leaf=bool(leaves), into=into, line=doors[0]))
+    return found
+
+
+def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
+    """A room's main door, in the last of its outer walls; the others are for windows."""
+    for room in parts.rooms:
+        walls = _outer(room, rects)
+        for door in parts.of_class(room, "maindoor")[: len(walls[:1])]:
+            yield Doorway((_name(parts.nodes[room]), OUTSIDE), wall=walls[-1], line=door)
+
+
+def _outer(room: int, rects: Mapping[int, Rect]) -> list[str]:
+    """The walls of a room that no other room shares."""
+    beside = (shared_wall(rects[room], rects[other]) for other in rects if other != room)
+    inner = {shared[0] for shared in beside if shared is not None}
+    return [wall for wall in OPPOSITE_WALL if wall not in inner]
+
+
+def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window, ...]:
+    """As many as the graph has, in the middle of outer walls and then beside the middle; curtains as it has them."""
+    walls = _outer(room, rects)
+    if parts.of_class(room, "maindoor"):
+        walls = walls[:-1]
+    count, curtains = len(parts.of_class(room, "window")), len(parts.of_class(room, "curtain"))
+    found = []
+    for number, wall in zip(range(count), walls, strict=False):
+        low, high = span(rects[room], wall)
+        width = round(min(1.4, 0.5 * (high - low)), 1)
+        hung = min(2, curtains - 2 * number) if curtains > 2 * number else 0
+        found.append(Window(wall, None, width, 1.2, 0.9, curtains=hung))
+    return tuple(found)

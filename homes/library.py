@@ -1,0 +1,161 @@
+"""The homes that there are: the designed ones, and whatever a user lays over them with `--homes DIR`."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import lru_cache
+from importlib.resources import as_file, files
+from pathlib import Path
+
+from hearth.homes.from_graph.graph_layout import LaidOut, lay_out
+from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.plans.layout import Layout, read
+from hearth.homes.scene_graph import scene
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph, from_release
+
+IDS = ".ids.csv"
+"""A plan `maple.yaml` may have its node ids fixed in `maple.ids.csv`, with columns id and name."""
+
+
+def names(directory: Path | str | None = None) -> tuple[str, ...]:
+    """The homes' names, sorted: ours, and those of the user's directory.
+
+    Raises:
+        HearthError: MISSING_FILE: there is no such directory.
+    """
+    return tuple(sorted(_files(directory)))
+
+
+def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> EnvironmentGraph:
+    """A home's scene graph; built once a process.
+
+    Raises:
+        HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
+    """
+    path = _file(name, directory)
+    return _graph(path) if path.suffix == ".json" else _scene(path, knowledge)
+
+
+def load_layout(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> Layout:
+    """A home's plan with everything in its place; a scene graph is laid out by its relations.
+
+    Raises:
+        HearthError: UNKNOWN_HOME; every fault of its plan; or NO_ROOM: a graph without rooms.
+    """
+    return layout_of(_file(name, directory), knowledge)
+
+
+def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
+    """A plan file with everything in its place, or a graph laid out; errors as of `load_layout`."""
+    found = Path(path)
+    if found.suffix != ".json":
+        return _layout(found, knowledge)
+    graph = _graph(found)
+    return measured(graph, found.stem, knowledge) if has_geometry(graph) else laid_out(found, knowledge).layout
+
+
+def laid_out(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> LaidOut:
+    """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and what of them that
+    does not show; errors as of `load_graph`.
+    """
+    return _laid_out(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
+
+
+@lru_cache(maxsize=16)
+def _laid_out(path: Path, knowledge: Knowledge) -> LaidOut:
+    return lay_out(graph_of(path, knowledge), path.stem, knowledge)
+
+
+def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
+    """The scene graph of a plan file, or of a JSON file in the release's layout; errors as of `load_graph`."""
+    found = Path(path)
+    return _graph(found) if found.suffix == ".json" else _scene(found, knowledge)
+
+
+def _file(name: str, directory: Path | str | None) -> Path:
+    known = _files(directory)
+    if name not in known:
+        near = get_close_matches(name, known, 1)
+        hint = f"did you mean `{near[0]}`?" if near else f"homes are {', '.join(sorted(known))}"
+        raise HearthError.of(Code.UNKNOWN_HOME, f"there is no home `{name}`", suggestion=hint)
+    return known[name]
+
+
+def _files(directory: Path | str | None) -> dict[str, Path]:
+    found = dict(_own())
+    if directory is not None:
+        folder = Path(directory)
+        if not folder.is_dir():
+            raise HearthError.of(Code.MISSING_FILE, f"`{folder}` is no directory", suggestion="--homes DIR")
+        found.update(_in(folder))
+    return found
+
+
+@lru_cache(maxsize=1)
+def _own() -> Mapping[str, Path]:
+    with as_file(files("hearth.data_raw") / "homes") as folder:
+        return _in(folder)
+
+
+def _in(folder: Path) -> dict[str, Path]:
+    plans = {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return {path.stem: path for path in sorted(folder.glob("*.json"))} | plans
+
+
+@lru_cache(maxsize=64)
+def _scene(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
+    return scene(_layout(path, knowledge), knowledge)
+
+
+@lru_cache(maxsize=64)
+def _graph(path: Path) -> EnvironmentGraph:
+    import orjson
+
+    try:
+        data = orjson.loads(_bytes(path))
+    except orjson.JSONDecodeError as error:
+        raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
+    if isinstance(data, dict) and "init_graph" in data:
+        data = data["init_graph"]
+    if not isinstance(data, dict):
+        raise HearthError.of(Code.BAD_GRAPH, "not an environment graph", file=str(path), suggestion="nodes and edges")
+    return from_release(data, str(path))
+
+
+@lru_cache(maxsize=64)
+def _layout(path: Path, knowledge: Knowledge) -> Layout:
+    from dataclasses import replace
+
+    text = decode(_bytes(path), str(path))
+    if not isinstance(text, str):
+        raise HearthError(text)
+    layout = read(text, str(path), knowledge)
+    return replace(layout, plan=replace(layout.plan, ids=_ids(path.with_name(path.stem + IDS))))
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise HearthError.of(Code.MISSING_FILE, f"cannot read it: {error.strerror}", file=str(path)) from error
+
+
+def _ids(path: Path) -> dict[str, int]:
+    """Node ids by name, from the file beside a plan; empty where there is none."""
+    if not path.exists():
+        return {}
+    found: dict[str, int] = {}
+    with path.open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            number, name = row.get("id") or "", row.get("name") or ""
+            if not number.isdigit() or not name or name in found or int(number) in found.values():
+                raise HearthError.of(Code.BAD_TABLE, f"`{number},{name}` is no id and name of its own", file=str(path),
+                                     suggestion="columns id and name, each once")  # fmt: skip
+            found[name] = int(number)
+    return found

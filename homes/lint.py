@@ -1,0 +1,269 @@
+"""What is wrong with a scene graph, whoever made it: every fault with the ids of the nodes concerned."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
+from typing import TypeVar
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph, Node
+from hearth.schemas.literals import HANDS
+from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATIONS, ROOM_CATEGORY, STATES
+
+Id = TypeVar("Id", int, str)
+
+CATEGORIES = (
+    "Animals", "Appliances", "BodyParts", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor",
+    "Floors", "Food", "Furniture", "Lamps", "People", "Props", "Rooms", "Walls", "Windows", "placable_objects",
+)  # fmt: skip
+"""The categories that the release's graphs and ours know; of `Floor` and `Floors` both occur."""
+
+NEEDS_STATES = {"CAN_OPEN": ("OPEN", "CLOSED"), "HAS_SWITCH": ("ON", "OFF")}
+"""A thing with the property is in one of the states."""
+
+SITTING_ON_EDGES = "SITTING"
+"""A relation that some files of the release have; nothing follows from it."""
+
+
+class View:
+    """A graph with what the checks look up.
+
+    Attributes:
+        graph: the graph.
+        knowledge: for classes.
+        nodes: by id; of two with one id, the first.
+    """
+
+    def __init__(self, graph: EnvironmentGraph, knowledge: Knowledge) -> None:
+        self.graph = graph
+        self.knowledge = knowledge
+        self.nodes: dict[int, Node] = {}
+        for node in graph.nodes:
+            self.nodes.setdefault(node.id, node)
+
+    @cached_property
+    def targets(self) -> dict[str, dict[int, list[int]]]:
+        """Relation -> source -> targets, each once, edges to missing nodes left out."""
+        found: dict[str, dict[int, list[int]]] = defaultdict(dict)
+        for edge in self.graph.edges:
+            if edge.source in self.nodes and edge.target in self.nodes:
+                known = found[edge.relation].setdefault(edge.source, [])
+                if edge.target not in known:
+                    known.append(edge.target)
+        return found
+
+    def said(self, node_id: int) -> str:
+        """A node as people call it: `fridge (41)`."""
+        node = self.nodes.get(node_id)
+        return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
+
+    def is_room(self, node_id: int) -> bool:
+        """Whether it is a room."""
+        return self.nodes[node_id].category == ROOM_CATEGORY
+
+    def parents(self, node_id: int) -> list[int]:
+        """What it is INSIDE."""
+        return self.targets["INSIDE"].get(node_id, [])
+
+
+def lint(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> tuple[Diagnostic, ...]:
+    """Every fault of a graph, in the order of `CHECKS`; empty when it is sound. Node ids stand in `found`."""
+    view = View(graph, knowledge)
+    return tuple(fault.at(file) for check in CHECKS.values() for fault in check(view))
+
+
+def _fault(code: Code, message: str, ids: tuple[int, ...], suggestion: str = "") -> Diagnostic:
+    return Diagnostic(code, message, found=" ".join(map(str, ids)), suggestion=suggestion)
+
+
+def _ids(view: View) -> Iterator[Diagnostic]:
+    counts = Counter(node.id for node in view.graph.nodes)
+    for node_id, count in counts.items():
+        if count > 1:
+            yield _fault(Code.DUPLICATE, f"{count} nodes have the id {node_id}", (node_id,), "give each its own")
+
+
+def _names(view: View) -> Iterator[Diagnostic]:
+    for node in view.graph.nodes:
+        me = (node.id,)
+        if node.category not in CATEGORIES:
+            message = f"{view.said(node.id)} is of the unknown category `{node.category}`"
+            yield _fault(Code.BAD_GRAPH, message, me, f"one of {', '.join(CATEGORIES)}")
+        if view.knowledge.object_class(node.class_name) is None:
+            near = view.knowledge.suggest(node.class_name)
+            hint = f"did you mean `{near[0]}`?" if near else "add it to the knowledge"
+            yield _fault(Code.UNKNOWN_OBJECT, f"no class is called `{node.class_name}`", me, hint)
+        for kind, words, known in (("state", node.states, STATES), ("property", node.properties, PROPERTIES)):
+            for word in words:
+                if word not in known:
+                    yield _fault(Code.BAD_GRAPH, f"{view.said(node.id)} has the unknown {kind} `{word}`", me)
+
+
+def _edges(view: View) -> Iterator[Diagnostic]:
+    counts = Counter(view.graph.edges)
+    for edge, count in counts.items():
+        ends = (edge.source, edge.target)
+        shown = f"{edge.source} {edge.relation} {edge.target}"
+        for end in dict.fromkeys(ends):
+            if end not in view.nodes:
+                yield _fault(Code.UNKNOWN_ID, f"{shown}: there is no node {end}", ends, "remove the edge")
+        if count > 1:
+            yield _fault(Code.DUPLICATE, f"{shown} stands {count} times", ends, "keep one")
+        if edge.relation not in (*RELATIONS, SITTING_ON_EDGES):
+            hint = f"one of {', '.join(RELATIONS)}"
+            yield _fault(Code.BAD_GRAPH, f"{shown}: no relation is called `{edge.relation}`", ends, hint)
+        if edge.source == edge.target:
+            yield _fault(Code.LOOP, f"{shown}: a thing related to itself", ends, "remove the edge")
+
+
+def _states(view: View) -> Iterator[Diagnostic]:
+    for node in view.graph.nodes:
+        for i in range(0, len(STATES), 2):
+            if STATES[i] in node.states and STATES[i + 1] in node.states:
+                message = f"{view.said(node.id)} is both {STATES[i]} and {STATES[i + 1]}"
+                yield _fault(Code.CONTRADICTION, message, (node.id,), "keep one")
+        for prop, states in NEEDS_STATES.items():
+            if prop in node.properties and not set(states) & set(node.states):
+                message = f"{view.said(node.id)} has {prop} and is neither {states[0]} nor {states[1]}"
+                yield _fault(Code.CONDITION_UNMET, message, (node.id,), f"give it the state {states[1]}")
+
+
+def _rooms(view: View) -> Iterator[Diagnostic]:
+    if not any(map(view.is_room, view.nodes)):
+        yield _fault(Code.NO_ROOM, "there is no room", (), f"a node of the category {ROOM_CATEGORY}")
+    held = {target for hand in HANDS for targets in view.targets[hand].values() for target in targets}
+    for node_id in view.nodes:
+        rooms = [parent for parent in view.parents(node_id) if view.is_room(parent)]
+        if len(rooms) > 1:
+            where = ", ".join(map(view.said, rooms))
+            yield _fault(
+                Code.BAD_GRAPH,
+                f"{view.said(node_id)} is INSIDE {len(rooms)} rooms: {where}",
+                (node_id, *rooms),
+                "keep one",
+            )
+        if not rooms and not view.is_room(node_id) and node_id not in held and not _nested_room(view, node_id):
+            yield _fault(Code.NO_ROOM, f"{view.said(node_id)} is INSIDE no room", (node_id,), "say INSIDE which")
+
+
+def _nested_room(view: View, node_id: int) -> bool:
+    """Whether following INSIDE and ON leads to a room."""
+    seen, waiting = {node_id}, [node_id]
+    while waiting:
+        current = waiting.pop()
+        for parent in (*view.parents(current), *view.targets["ON"].get(current, [])):
+            if view.is_room(parent):
+                return True
+            if parent not in seen:
+                seen.add(parent)
+                waiting.append(parent)
+    return False
+
+
+def _containers(view: View) -> Iterator[Diagnostic]:
+    """A thing may be INSIDE a box INSIDE a closet, and say both; two that are not in each other cannot both hold it."""
+    for node_id in view.nodes:
+        holders = [parent for parent in view.parents(node_id) if not view.is_room(parent)]
+        innermost = [h for h in holders if not any(h in view.parents(other) for other in holders)]
+        if len(innermost) > 1:
+            where = " and ".join(map(view.said, innermost))
+            yield _fault(Code.BAD_GRAPH, f"{view.said(node_id)} is INSIDE {where}", (node_id, *innermost), "keep one")
+        if view.is_room(node_id) and view.parents(node_id):
+            yield _fault(Code.BAD_GRAPH, f"{view.said(node_id)} is a room INSIDE something", (node_id,), "remove it")
+
+
+def _circles(view: View) -> Iterator[Diagnostic]:
+    """Circles of INSIDE, or of ON, each named once."""
+    for relation in ("INSIDE", "ON"):
+        done: set[int] = set()
+        for start in view.targets[relation]:
+            circle = _circle(view.targets[relation], start, done)
+            if len(circle) > 1:
+                way = f" {relation} ".join(map(view.said, (*circle, circle[0])))
+                yield _fault(Code.LOOP, f"a circle: {way}", circle, "remove one of the edges")
+
+
+def _circle(targets: dict[int, list[int]], start: int, done: set[int]) -> tuple[int, ...]:
+    """A circle reached from `start` through nodes not yet done, or (); marks what it visits as done."""
+    path: list[int] = []
+    stack: list[tuple[int, int]] = [(start, 0)]
+    while stack:
+        node, depth = stack.pop()
+        del path[depth:]
+        if node in path:
+            return tuple(path[path.index(node) :])
+        if node not in done:
+            done.add(node)
+            path.append(node)
+            stack.extend((target, depth + 1) for target in targets.get(node, ()))
+    return ()
+
+
+def _doors(view: View) -> Iterator[Diagnostic]:
+    for door, rooms in view.targets["BETWEEN"].items():
+        real = [room for room in rooms if view.is_room(room)]
+        if len(real) != 2 or len(rooms) != 2:
+            message = f"{view.said(door)} is BETWEEN {len(real)} room{'s' * (len(real) != 1)}"
+            yield _fault(Code.BAD_GRAPH, message, (door, *rooms), "a door joins two rooms")
+    rooms = [node_id for node_id in view.nodes if view.is_room(node_id)]
+    cut = sorted(set(rooms) - joined(rooms[0], map(set, view.targets["BETWEEN"].values()))) if rooms else []
+    if rooms and cut and view.targets["BETWEEN"]:
+        names = ", ".join(map(view.said, cut))
+        yield _fault(Code.NO_PATH, f"no door leads from {view.said(rooms[0])} to {names}", tuple(cut), "add a door")
+
+
+def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
+    """What is reached from `start` through doors, each a set of what it joins."""
+    found, left = {start}, list(doors)
+    while through := [ends for ends in left if ends & found]:
+        left = [ends for ends in left if not ends & found]
+        found.update(*through)
+    return found
+
+
+def _hands(view: View) -> Iterator[Diagnostic]:
+    holders: dict[int, set[int]] = defaultdict(set)
+    for hand in HANDS:
+        for agent, things in view.targets[hand].items():
+            if view.nodes[agent].class_name != CHARACTER_CLASS:
+                yield _fault(Code.BAD_GRAPH, f"{view.said(agent)} has no hands to hold with", (agent, *things))
+            if len(things) > 1:
+                held = ", ".join(map(view.said, things))
+                yield _fault(
+                    Code.CONFLICT, f"one hand of {view.said(agent)} holds {held}", (agent, *things), "keep one"
+                )
+            for thing in things:
+                holders[thing].add(agent)
+    for thing, agents in holders.items():
+        if len(agents) > 1:
+            names = " and ".join(view.said(agent) for agent in sorted(agents))
+            message = f"{view.said(thing)} is held by {names}"
+            yield _fault(Code.CONFLICT, message, (thing, *sorted(agents)), "one of them has to let go")
+
+
+def _close(view: View) -> Iterator[Diagnostic]:
+    near = view.targets["CLOSE"]
+    for one, others in near.items():
+        for other in others:
+            if one != other and one not in near.get(other, ()):
+                message = f"{view.said(one)} is CLOSE to {view.said(other)}, but not the other way round"
+                yield _fault(Code.BAD_GRAPH, message, (one, other), f"add {other} CLOSE {one}")
+
+
+CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
+    "ids": _ids,
+    "names": _names,
+    "edges": _edges,
+    "states": _states,
+    "rooms": _rooms,
+    "containers": _containers,
+    "circles": _circles,
+    "doors": _doors,
+    "hands": _hands,
+    "close": _close,
+}
+"""Every check of a graph."""

@@ -1,0 +1,1 @@
+"""Floor plans as people write them, read, checked and laid out in metres."""

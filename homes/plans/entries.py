@@ -1,0 +1,298 @@
+"""Reading a plan's entries: every key by the function that reads it; every fault named with its line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from difflib import get_close_matches
+from typing import Any
+
+from hearth.homes.geometry import DIRECTIONS, Rect
+from hearth.homes.plans import located
+from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Piece, Plan, Room, Window
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.vocabulary import ROOM_CATEGORY
+
+ReadValue = Callable[[Any], Any]
+CORNERS = ("northwest", "northeast", "southwest", "southeast")
+MOST = 60
+"""Things one entry may count; more is taken for a slip of the pen."""
+
+
+class WrongValueError(ValueError):
+    """What a value should have been."""
+
+
+def number(value: Any) -> float:
+    """A length in metres."""
+    if isinstance(value, located.Number) and abs(value) < 1000:
+        return float(value)
+    raise WrongValueError("a number of metres")
+
+
+def length(value: Any) -> float:
+    """A length greater than 0."""
+    found = number(value)
+    if found <= 0:
+        raise WrongValueError("a length greater than 0")
+    return found
+
+
+def whole(value: Any) -> int:
+    """A whole number, not negative."""
+    found = number(value)
+    if found != int(found) or not 0 <= found <= MOST:
+        raise WrongValueError(f"a whole number from 0 to {MOST}")
+    return int(found)
+
+
+def yes_or_no(value: Any) -> bool:
+    """true or false."""
+    if isinstance(value, bool):
+        return value
+    raise WrongValueError("true or false")
+
+
+def word(value: Any) -> str:
+    """A name."""
+    if isinstance(value, str) and value:
+        return str(value)
+    raise WrongValueError("a name")
+
+
+def one_of(*words: str) -> ReadValue:
+    """A reader of one of some words."""
+
+    def read(value: Any) -> str:
+        if value in words:
+            return str(value)
+        raise WrongValueError(f"one of {', '.join(words)}")
+
+    return read
+
+
+def pair(value: Any) -> tuple[float, float]:
+    """Two numbers: [x, z]."""
+    if isinstance(value, list) and len(value) == 2:
+        return number(value[0]), number(value[1])
+    raise WrongValueError("two numbers, [east, north]")
+
+
+def extent(value: Any) -> tuple[float, float]:
+    """Two lengths: [width, depth]."""
+    x, z = pair(value)
+    if min(x, z) <= 0:
+        raise WrongValueError("two lengths greater than 0")
+    return x, z
+
+
+def along(value: Any) -> float | None:
+    """A distance from a wall's west or south end, or `middle`."""
+    return None if value == "middle" else number(value)
+
+
+def spot(value: Any) -> tuple[float, float] | None:
+    """A point of the room as [east, north] of its south-west corner, or `middle`."""
+    return None if value == "middle" else pair(value)
+
+
+direction = one_of(*DIRECTIONS)
+
+PLACE_KEYS: dict[str, ReadValue] = {
+    "wall": direction, "at": along, "from_end": number, "corner": one_of(*CORNERS), "beside": word, "side": direction,
+    "before": word, "opposite": word, "around": word, "above": word, "spot": spot, "facing": direction,
+    "gap": number, "up": number,
+}  # fmt: skip
+"""How a thing is placed."""
+
+ANCHORS = ("wall", "corner", "beside", "before", "opposite", "around", "above", "spot")
+"""The keys of which a piece of furniture has one; `corner` may have a `wall` beside it."""
+
+ON_TOP = ("spot", "before", "beside")
+"""Those that also place what stands on something: `spot` is then [along its back, out from its back]."""
+
+SIZE_KEYS: dict[str, ReadValue] = {"width": length, "height": length, "depth": length}
+WINDOW_KEYS: dict[str, ReadValue] = {
+    "wall": direction, "at": along, "width": length, "height": length, "sill": number, "curtains": whole,
+}  # fmt: skip
+DOOR_KEYS: dict[str, ReadValue] = {
+    "between": list, "wall": direction, "at": along, "width": length, "leaf": yes_or_no, "into": word,
+    "hinge": one_of("low", "high"),
+}  # fmt: skip
+ROOM_KEYS: dict[str, ReadValue] = {
+    "name": word, "class": word, "at": pair, "size": extent, "windows": list, "furniture": list,
+}  # fmt: skip
+PLAN_KEYS: dict[str, ReadValue] = {
+    "home": word, "about": word, "height": length, "character": word, "rooms": list, "doors": list,
+}  # fmt: skip
+
+
+def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Plan:
+    """A plan from YAML text; what cannot be read is left out and noted.
+
+    Raises:
+        HearthError: the text is no YAML mapping at all.
+    """
+    tree = located.read(text, file)
+    if not isinstance(tree, located.Mapping):
+        raise HearthError.of(Code.SYNTAX, "a plan is a mapping", file=file, suggestion="home, rooms, doors")
+    reader = _Reader(knowledge, faults)
+    top = reader.fields(tree, PLAN_KEYS, "a plan", need=("home", "rooms"))
+    rooms = [room for entry in top.get("rooms") or () if (room := reader.room(entry)) is not None]
+    doors = [door for entry in top.get("doors") or () if (door := reader.door(entry)) is not None]
+    return Plan(
+        name=top.get("home", ""),
+        rooms=tuple(rooms),
+        doorways=tuple(doors),
+        about=top.get("about", ""),
+        height=top.get("height", 2.5),
+        character=top.get("character", ""),
+        file=file,
+    )
+
+
+class _Reader:
+    """Reads entries of one plan."""
+
+    def __init__(self, knowledge: Knowledge, faults: Faults) -> None:
+        self.knowledge = knowledge
+        self.faults = faults
+
+    def fields(
+        self, entry: Any, keys: dict[str, ReadValue], what: str, need: tuple[str, ...] = (), line: int = 0
+    ) -> dict[str, Any]:
+        """The values of a mapping, read by their keys' readers."""
+        if not isinstance(entry, located.Mapping):
+            self.faults.add(Code.SYNTAX, f"{what} is a mapping", located.line_of(entry) or line, ", ".join(keys))
+            return {}
+        for key, at in entry.twice:
+            self.faults.add(Code.DUPLICATE, f"`{key}` stands twice", at, "keep one of them")
+        found: dict[str, Any] = {}
+        for key, value in entry.items():
+            if key not in keys:
+                near = get_close_matches(key, keys, 1)
+                hint = f"did you mean `{near[0]}`?" if near else f"known are {', '.join(keys)}"
+                self.faults.add(Code.SYNTAX, f"`{key}` is not part of {what}", entry.at(key), hint)
+                continue
+            self._value(found, key, value, keys[key], entry.at(key))
+        for key in need:
+            if key not in entry:
+                self.faults.add(Code.SYNTAX, f"{what} needs `{key}`", entry.line or line)
+        return found
+
+    def _value(self, found: dict[str, Any], key: str, value: Any, read: ReadValue, line: int) -> None:
+        try:
+            if read is list:
+                if not isinstance(value, list) and value is not None:
+                    raise WrongValueError("a list")
+                found[key] = value or []
+            else:
+                found[key] = read(value)
+        except WrongValueError as wrong:
+            self.faults.add(Code.SYNTAX, f"`{key}` is `{_shown(value)}`", line, f"write {wrong}")
+
+    def room(self, entry: Any) -> Room | None:
+        """A room with its windows and furniture; None when it has no usable name or place."""
+        found = self.fields(entry, ROOM_KEYS, "a room", ("name", "at", "size"))
+        if not {"name", "at", "size"} <= found.keys():
+            return None
+        line = located.line_of(entry)
+        name = found["name"]
+        class_name = found.get("class", name)
+        known = self.knowledge.objects.get(class_name)
+        if known is None or known.category != ROOM_CATEGORY:
+            rooms = sorted(n for n, o in self.knowledge.objects.items() if o.category == ROOM_CATEGORY)
+            self.faults.add(
+                Code.UNKNOWN_OBJECT, f"`{class_name}` is no class of room", line, f"`class:` one of {', '.join(rooms)}"
+            )
+        (x, z), (width, depth) = found["at"], found["size"]
+        windows = [w for item in found.get("windows", ()) if (w := self.window(item)) is not None]
+        return Room(
+            name, class_name, Rect(x, z, round(x + width, 6), round(z + depth, 6)), tuple(windows),
+            self.pieces(found.get("furniture", ()), furniture=True), line,
+        )  # fmt: skip
+
+    def window(self, entry: Any) -> Window | None:
+        """A window."""
+        found = self.fields(entry, WINDOW_KEYS, "a window", ("wall",))
+        return Window(**{"at": None, **found}, line=located.line_of(entry)) if "wall" in found else None
+
+    def door(self, entry: Any) -> Doorway | None:
+        """A doorway."""
+        found = self.fields(entry, DOOR_KEYS, "a door", ("between",))
+        line = located.line_of(entry)
+        rooms = found.pop("between", None)
+        if rooms is None:
+            return None
+        if len(rooms) != 2 or not all(isinstance(room, str) for room in rooms) or rooms[0] == rooms[1]:
+            self.faults.add(Code.SYNTAX, "a door is between two rooms", line, f"between: [kitchen, {OUTSIDE}]")
+            return None
+        first, second = rooms if rooms[0] != OUTSIDE else rooms[::-1]
+        return Doorway((str(first), str(second)), **found, line=line)
+
+    def pieces(self, entries: Any, furniture: bool = False) -> tuple[Piece, ...]:
+        """Entries of a list: `plate*4`, or `- couch: {wall: south}`."""
+        if not isinstance(entries, (list, tuple)):
+            self.faults.add(Code.SYNTAX, "things are a list", located.line_of(entries), "[cup, plate*4]")
+            return ()
+        return tuple(piece for entry in entries if (piece := self.piece(entry, furniture)) is not None)
+
+    def piece(self, entry: Any, furniture: bool) -> Piece | None:
+        """One thing, or several alike."""
+        line = located.line_of(entry)
+        if isinstance(entry, located.Mapping) and len(entry) == 1:
+            ((text, fields),) = entry.items()
+            fields = located.Mapping(line) if fields is None else fields
+        elif isinstance(entry, str):
+            text, fields = entry, located.Mapping(line)
+        else:
+            hint = "`plate*4`, or `couch: {wall: south, at: 1.2}`"
+            self.faults.add(Code.SYNTAX, f"`{_shown(entry)}` is no thing", line, hint)
+            return None
+        match = re.fullmatch(r"\s*([^*\s]+)\s*(?:\*\s*(\d{1,4}))?\s*", text)
+        count = int(match[2] or 1) if match else 0
+        if match is None or not 1 <= count <= MOST:
+            self.faults.add(Code.SYNTAX, f"`{text}` is no thing", line, f"a class, or class*count up to {MOST}")
+            return None
+        class_name = self._class(match[1], line)
+        return self._piece(class_name, count, fields, line, furniture) if class_name else None
+
+    def _piece(self, class_name: str, count: int, fields: Any, line: int, furniture: bool) -> Piece:
+        keys = {"name": word, "on": list, "in": list, "lay": list, **SIZE_KEYS, **PLACE_KEYS}
+        found = self.fields(fields, keys, f"`{class_name}`", line=line)
+        place = {key: found[key] for key in PLACE_KEYS if key in found}
+        anchors = [key for key in ANCHORS if key in place]
+        if furniture and len(anchors) != 1 and set(anchors) != {"wall", "corner"}:
+            message = f"`{class_name}` is placed by {' and '.join(anchors) or 'nothing'}"
+            self.faults.add(Code.SYNTAX, message, line, f"give one of {', '.join(ANCHORS)}")
+        if not furniture and (len(anchors) > 1 or not set(anchors) <= set(ON_TOP)):
+            message = f"`{class_name}` stands on or in something and is placed by {' and '.join(anchors)} too"
+            self.faults.add(Code.SYNTAX, message, line, f"leave it out, or give one of {', '.join(ON_TOP)}")
+        return Piece(
+            class_name,
+            found.get("name", ""),
+            count,
+            place,
+            (found.get("width"), found.get("height"), found.get("depth")),
+            self.pieces(found.get("on", ())),
+            self.pieces(found.get("in", ())),
+            self.pieces(found.get("lay", ())),
+            line,
+        )
+
+    def _class(self, name: str, line: int) -> str | None:
+        """The class of that name, when the knowledge has it."""
+        if name not in self.knowledge.objects:
+            near = self.knowledge.suggest(name)
+            hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"
+            self.faults.add(Code.UNKNOWN_OBJECT, f"`{name}` is no class", line, hint)
+            return None
+        return name
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, located.Number):
+        return f"{float(value):g}"
+    return str(value)[:60]

@@ -1,0 +1,89 @@
+"""The floor that can be walked: what furniture leaves free, as an occupancy grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hearth.homes.geometry import Rect, bottom, footprint
+from hearth.homes.plans import raster
+from hearth.homes.plans.plan import Plan
+from hearth.homes.plans.shell import WALL, Shell, Thing, interior, strip
+
+CELL = 0.1
+"""Metres a cell."""
+BODY = 0.2
+"""Half the width of someone walking."""
+HEAD = 1.8
+"""What hangs higher is walked under."""
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """An occupancy grid over a whole home.
+
+    Attributes:
+        origin: (x, z) of the grid's south-west corner, metres.
+        cell: metres a cell.
+        free: bool (columns, rows), x first: nothing stands there.
+        walkable: bool, same shape: free, and wide enough around for someone to stand there.
+        room: int16, same shape: number of the room in the plan, -1 outside rooms.
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    free: np.ndarray
+    walkable: np.ndarray
+    room: np.ndarray
+
+    def center(self, i: int, j: int) -> tuple[float, float]:
+        """The middle of a cell as (x, z)."""
+        return self.origin[0] + (i + 0.5) * self.cell, self.origin[1] + (j + 0.5) * self.cell
+
+    def index(self, x: float, z: float) -> tuple[int, int]:
+        """The cell a point lies in; may lie beyond the grid."""
+        return int((x - self.origin[0]) // self.cell), int((z - self.origin[1]) // self.cell)
+
+    def regions(self) -> np.ndarray:
+        """Int array: walkable cells that reach each other share a number from 1; others are 0."""
+        return raster.regions(self.walkable)
+
+
+def stands_on_floor(thing: Thing) -> bool:
+    """Whether a thing is in the way of someone walking."""
+    if thing.mount in ("shell", "flat", "door", "ceiling", "item", "sunk"):
+        return False
+    return bottom(thing.box) < HEAD and thing.class_name != "curtain" and (
+        thing.mount == "floor" or min(thing.box.size[0], thing.box.size[2]) > 0.1
+    )  # fmt: skip
+
+
+def grid(plan: Plan, shell: Shell, things: Iterable[Thing], cell: float = CELL) -> Floor:
+    """The floor of a furnished plan."""
+    x0, z0, x1, z1 = Rect.over(room.rect for room in plan.rooms)
+    shape = (round((x1 - x0) / cell + 0.499), round((z1 - z0) / cell + 0.499))
+
+    def part(low: float, high: float, size: int) -> slice:
+        first, last = int(low / cell + 0.5 - 1e-6), int(high / cell + 0.5 - 1e-6)
+        return slice(max(0, min(first, size)), max(0, min(last, size)))
+
+    def cells(rect: Rect) -> tuple[slice, slice]:
+        """The cells whose middles lie in a rectangle."""
+        return part(rect.x0 - x0, rect.x1 - x0, shape[0]), part(rect.z0 - z0, rect.z1 - z0, shape[1])
+
+    free = np.zeros(shape, bool)
+    room_of = np.full(shape, -1, np.int16)
+    for number, room in enumerate(plan.rooms):
+        room_of[cells(room.rect)] = number
+        free[cells(interior(room))] = True
+    for opening in shell.openings:
+        if opening.door is not None:
+            inner = interior(plan.room(opening.room))
+            hole = strip(inner.inset(-0.001), opening.wall, opening.start, opening.end, -WALL - cell)
+            free[cells(hole)] |= room_of[cells(hole)] >= 0
+    for thing in things:
+        if stands_on_floor(thing):
+            free[cells(footprint(thing.box))] = False
+    return Floor((x0, z0), cell, free, raster.eroded(free, round(BODY / cell)), room_of)

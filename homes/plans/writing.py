@@ -1,0 +1,89 @@
+"""Plans as the YAML that people write: the inverse of reading one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hearth.homes.plans.plan import Doorway, Piece, Plan, Room, Window
+
+
+def plan_text(plan: Plan) -> str:
+    """A plan as YAML that reads back as the same plan, but for the lines its entries stand on."""
+    lines = [f"home: {plan.name}"]
+    if plan.about:
+        lines.append(f'about: "{plan.about}"')
+    lines.append(f"height: {plan.height:g}")
+    if plan.character:
+        lines.append(f"character: {plan.character}")
+    lines += ["", "rooms:"]
+    for room in plan.rooms:
+        lines += [*_room(room), ""]
+    lines.append("doors:")
+    lines.extend(f"  - {_flow(_door(door))}" for door in plan.doorways)
+    return "\n".join(lines) + "\n"
+
+
+def _room(room: Room) -> Iterator[str]:
+    yield f"  - name: {room.name}"
+    if room.class_name != room.name:
+        yield f"    class: {room.class_name}"
+    yield f"    at: {_flow([room.rect.x0, room.rect.z0])}"
+    yield f"    size: {_flow([_metres(room.rect.width), _metres(room.rect.depth)])}"
+    if room.windows:
+        yield "    windows:"
+        yield from (f"      - {_flow(_window(window))}" for window in room.windows)
+    if room.furniture:
+        yield "    furniture:"
+        yield from (f"      - {_piece(piece)}" for piece in room.furniture)
+
+
+def _piece(piece: Piece) -> str:
+    what = f"{piece.class_name}*{piece.count}" if piece.count > 1 else piece.class_name
+    said: dict[str, Any] = {"name": piece.name} if piece.name else {}
+    said |= {key: _place(value) for key, value in piece.place.items()}
+    said |= {key: size for key, size in zip(("width", "height", "depth"), piece.size, strict=True) if size}
+    said |= {key: list(own) for key, own in (("on", piece.on), ("in", piece.inside), ("lay", piece.lay)) if own}
+    return f"{what}: {_flow(said)}" if said else what
+
+
+def _place(value: Any) -> Any:
+    if value is None:
+        return "middle"
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _window(window: Window) -> dict[str, Any]:
+    place = {} if window.at is None else {"at": window.at}
+    sizes = {"width": window.width, "height": window.height, "sill": window.sill}
+    return {"wall": window.wall, **place, **sizes, **({"curtains": window.curtains} if window.curtains else {})}
+
+
+def _door(door: Doorway) -> dict[str, Any]:
+    said: dict[str, Any] = {"between": list(door.rooms)}
+    if door.wall:
+        said["wall"] = door.wall
+    if door.at is not None:
+        said["at"] = door.at
+    said["width"] = door.width
+    if not door.leaf:
+        return {**said, "leaf": False}
+    return {**said, **({"into": door.into} if door.into else {}), "hinge": door.hinge}
+
+
+def _metres(length: float) -> float:
+    """A difference of coordinates without the last digits' noise."""
+    return round(length, 6)
+
+
+def _flow(value: Any) -> str:
+    """A value in YAML's flow style."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {_flow(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_flow, value)) + "]"
+    if isinstance(value, Piece):
+        return _piece(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

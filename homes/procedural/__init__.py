@@ -1,0 +1,1 @@
+"""Procedural homes: random floor plans, furnished and stocked."""

@@ -1,0 +1,175 @@
+"""Geometry -> edges: ON, INSIDE and BETWEEN from the plan, CLOSE from free distance, FACING from fronts and sight."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import cos, radians, sin
+
+import numpy as np
+
+from hearth.homes.plans.shell import Thing
+from hearth.schemas.graph import Edge
+from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
+
+CLOSE_WITHIN = 0.8
+"""Metres of free space between two things that are CLOSE; chosen so that homes are as dense as the release's."""
+VIEW = 60.0
+"""A thing faces what lies at most this many degrees off the way its front points."""
+SHOWN = 80.0
+"""And what it faces must show its own front: at most this many degrees off."""
+FAR = 7.0
+"""Metres beyond which nothing is looked at."""
+EYES = (1.1, 1.6)
+"""Sight starts between these heights: those of someone sitting and standing."""
+BLIND = ("ceiling", "flat", "door", "window")
+"""How things are mounted that face nothing."""
+TALL = ("floor", "wall", "door")
+"""And how those are that may stand in the way of sight."""
+
+
+def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[str]) -> tuple[Edge, ...]:
+    """All edges between things, sorted by source, relation and target.
+
+    Args:
+        things: rooms, everything in them, and the character.
+        ids: node ids by the things' names.
+        lookable: classes that one can look at: what things are FACING.
+    """
+    own = np.array([ids[thing.name] for thing in things], np.int64)
+    tables = [np.array([(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]).reshape(-1, 3)]
+    for relation, pairs in (("CLOSE", _close_pairs(things)), ("FACING", np.array([*facing(things, lookable)], int))):
+        i, j = pairs.reshape(-1, 2).T
+        tables.append(np.column_stack((own[i], np.full(len(i), RELATION_ID[relation]), own[j])))
+    table = np.concatenate(tables).astype(np.int64)
+    sources, numbers, targets = table[np.lexsort((table[:, 2], table[:, 1], table[:, 0]))].T.tolist()
+    return tuple(map(Edge, sources, map(RELATIONS.__getitem__, numbers), targets))
+
+
+def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
+    """What the plan says outright; everything is INSIDE its room as well."""
+    for thing in things:
+        me = ids[thing.name]
+        if thing.on:
+            yield Edge(me, "ON", ids[thing.on])
+        if thing.inside:
+            yield Edge(me, "INSIDE", ids[thing.inside])
+        if thing.mount != "room":
+            yield Edge(me, "INSIDE", ids[thing.room])
+        # Where a door hangs it is the door that is between the rooms, as in the release, not its jamb.
+        has_door = thing.class_name == "doorjamb" and thing.name.removesuffix("jamb") in ids
+        for room in () if has_door else thing.between:
+            yield Edge(me, "BETWEEN", ids[room])
+
+
+def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
+    """Pairs with at most `CLOSE_WITHIN` of free space between their boxes, both ways round.
+
+    Walls part things of different rooms; doors and their jambs are near things of both. A container's sides part
+    nothing: as in the release, what is in a dresser is near what stands beside it.
+    """
+    yield from map(tuple, _close_pairs(things).tolist())
+
+
+def _close_pairs(things: Sequence[Thing]) -> np.ndarray:
+    """The same as an int array of shape (pairs, 2)."""
+    found = [np.zeros((0, 2), np.int64)]
+    doorway = np.array([bool(thing.between) for thing in things])
+    for members in _rooms(things).values():
+        centers, halves = _arrays([things[i] for i in members])
+        gaps = np.abs(centers[:, None] - centers[None]) - (halves[:, None] + halves[None])
+        near = (np.maximum(gaps, 0.0) ** 2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
+        np.fill_diagonal(near, False)
+        found.append(np.array(members)[np.argwhere(near)])
+    pairs = np.concatenate(found)
+    # A door and its jamb meet in both rooms.
+    both = doorway[pairs].all(axis=1)
+    return np.concatenate((pairs[~both], np.unique(pairs[both], axis=0)))
+
+
+def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
+    """What is in each room, doorways in both of theirs; rooms themselves are near nothing."""
+    found: dict[str, list[int]] = {}
+    for i, thing in enumerate(things):
+        if thing.mount != "room":
+            for room in dict.fromkeys((thing.room, *thing.between)):
+                found.setdefault(room, []).append(i)
+    return found
+
+
+def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:
+    """Centres and half sizes, both of shape (things, 3)."""
+    centers = np.array([thing.box.center for thing in things], float).reshape(-1, 3)
+    halves = np.array([thing.box.size for thing in things], float).reshape(-1, 3) / 2
+    return centers, halves
+
+
+def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[int, int]]:
+    """Pairs where the first turns its front to the second, which shows its own front, with nothing tall between.
+
+    What is in a container neither looks nor is looked at.
+    """
+    rooms: dict[str, list[int]] = {}
+    for i, thing in enumerate(things):
+        if thing.mount not in ("room", "shell") and not thing.inside:
+            rooms.setdefault(thing.room, []).append(i)
+    for members in rooms.values():
+        own = [things[i] for i in members]
+        targets = [k for k, thing in enumerate(own) if thing.class_name in lookable]
+        if targets:
+            yield from ((members[i], members[j]) for i, j in _seen(own, targets))
+
+
+def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Which things of one room face which of its targets."""
+    centers, _ = _arrays(things)
+    towards = centers[targets][None] - centers[:, None]
+    distance = np.maximum(np.hypot(towards[..., 0], towards[..., 2]), 1e-9)
+    fronts = np.array([_direction(thing.yaw or 0.0) for thing in things])
+    ahead = (towards[..., 0] * fronts[:, None, 0] + towards[..., 2] * fronts[:, None, 1]) / distance
+    shows = fronts[targets]
+    shown = -(towards[..., 0] * shows[None, :, 0] + towards[..., 2] * shows[None, :, 1]) / distance
+    shown[:, [things[j].yaw is None for j in targets]] = 1.0
+    looks = np.array([t.yaw is not None and t.mount not in BLIND for t in things])
+    near = (distance > 0.05) & (distance <= FAR) & looks[:, None]
+    pairs = np.argwhere(near & (ahead >= cos(radians(VIEW)) - 1e-9) & (shown >= cos(radians(SHOWN)) - 1e-9))
+    if len(pairs):
+        sources, aims = pairs[:, 0], np.array(targets)[pairs[:, 1]]
+        free = ~_blocked(things, sources, aims)
+        yield from zip(sources[free].tolist(), aims[free].tolist(), strict=True)
+
+
+def _direction(yaw: float) -> tuple[float, float]:
+    """A yaw as a unit vector (x, z); exact for the four winds."""
+    exact = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}
+    return exact.get(yaw % 360) or (sin(radians(yaw)), cos(radians(yaw)))
+
+
+def _blocked(things: Sequence[Thing], sources: np.ndarray, aims: np.ndarray) -> np.ndarray:
+    """Bool (pairs): the line of sight cuts through something of size other than the two and what they are on."""
+    centers, halves = _arrays(things)
+    walls = np.array([k for k, thing in enumerate(things) if thing.mount in TALL], int)
+    start = centers[sources].copy()
+    start[:, 1] = np.clip(start[:, 1], *EYES)
+    cut = _cuts(start, centers[aims], centers[walls] - halves[walls], centers[walls] + halves[walls])
+    index = {thing.name: k for k, thing in enumerate(things)}
+    under = np.array([index.get(thing.on, -1) for thing in things])
+    for spared in (sources, aims, under[sources], under[aims]):
+        cut &= spared[:, None] != walls[None]
+    return np.asarray(cut.any(axis=1))
+
+
+def _cuts(start: np.ndarray, end: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Bool (segments, boxes): whether a segment passes through a box (slab test).
+
+    Args:
+        start, end: of shape (segments, 3).
+        low, high: corners, of shape (boxes, 3).
+    """
+    step = (end - start)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, other = (low[None] - start[:, None]) / step, (high[None] - start[:, None]) / step
+    still = np.abs(step) < 1e-9
+    within = (low[None] <= start[:, None]) & (start[:, None] <= high[None])
+    near = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(one, other))
+    far = np.where(still, np.where(within, np.inf, -np.inf), np.maximum(one, other))
+    return np.asarray(np.maximum(near.max(axis=2), 0.0) < np.minimum(far.min(axis=2), 1.0))

@@ -1,0 +1,1 @@
+"""Between steps and sentences: phrases, language understanding, plans in natural language."""

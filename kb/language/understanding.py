@@ -1,0 +1,163 @@
+"""What a sentence asks for: the step it means, how sure that is, and what else it may mean."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+from hearth.kb.knowledge import Knowledge, key_of
+from hearth.kb.language.phrases import Heard, hear
+from hearth.kb.records import Action
+
+ACCEPTED = 0.75
+"""The similarity from which the nearest valid instruction is taken for what was meant."""
+
+MARGIN = 0.03
+"""How much nearer the best must be than the second; what is not is ambiguous."""
+
+_WEAK = 0.5
+_HEADS = 8
+_NAMES = 4
+_SHOWN = 3
+_FILLER = re.compile(r"(?:then|next|first|finally|now|please|and|afterwards|after that|you|i|we)\b[\s,]*")
+_ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
+
+
+class Candidate(NamedTuple):
+    """A valid instruction that a sentence may mean, and how near it is: 1 for what is said word by word."""
+
+    score: float
+    action: Action
+    names: tuple[str, ...]
+
+
+class Understood(NamedTuple):
+    """What was made of a sentence; `meant` is None where nothing is near or two things are equally near."""
+
+    meant: Candidate | None
+    candidates: tuple[Candidate, ...]
+
+    @property
+    def ambiguous(self) -> bool:
+        """Whether something is near enough, but not one thing alone."""
+        return self.meant is None and bool(self.candidates) and self.candidates[0].score >= ACCEPTED
+
+
+@lru_cache(maxsize=65_536)
+def understand(knowledge: Knowledge, sentence: str) -> Understood:
+    """The instruction a sentence means.
+
+    Templates and synonyms are tried first and score 1. For what remains, the valid instructions whose beginning and
+    objects are spelt most like the sentence are compared with it by edit distance, spaces and articles left out.
+    """
+    cleaned = _cleaned(sentence)
+    exact = _exact(knowledge, cleaned)
+    if exact:
+        return Understood(exact[0], exact)
+    found = tuple(sorted(_near(knowledge, cleaned), key=lambda each: (-each.score, each.action.id, each.names)))
+    near = tuple({(each.action.name, each.names): each for each in reversed(found)}.values())
+    near = tuple(sorted(near, key=lambda each: -each.score))[:_SHOWN]
+    sure = bool(near) and near[0].score >= ACCEPTED and (len(near) < 2 or near[0].score - near[1].score >= MARGIN)
+    return Understood(near[0] if sure else None, near)
+
+
+def _cleaned(sentence: str) -> str:
+    text = " ".join(sentence.strip().rstrip(".!;,").lower().replace("_", " ").split())
+    while match := _FILLER.match(text):
+        if match.end() == len(text):
+            break
+        text = text[match.end() :]
+    return text
+
+
+def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
+    """What is said word by word, of known things; those that afford it first."""
+    known = [heard for heard in hear(knowledge, text) if all(map(knowledge.object_class, heard[1]))]
+    known.sort(key=lambda heard: not _afforded(knowledge, heard))
+    return tuple(Candidate(1.0, *heard) for heard in known[:_SHOWN])
+
+
+def _afforded(knowledge: Knowledge, heard: Heard) -> bool:
+    action, names = heard
+    return all(knowledge.affords(action.name, place, name) for place, name in enumerate(names))
+
+
+class _Way(NamedTuple):
+    """One way to say an action: the words before its first object, between, and after its objects."""
+
+    head: str
+    between: str
+    action: Action
+
+
+@lru_cache(maxsize=8)
+def _ways(knowledge: Knowledge) -> dict[str, tuple[_Way, ...]]:
+    """Ways by their first words, so that each beginning is compared once."""
+    found: dict[str, list[_Way]] = {}
+    for action in knowledge.actions.values():
+        said = [action.template.lower(), *(f"{words} {{0}}" if action.arity else words for words in action.words)]
+        tail = action.template.lower().partition("{0}")[2].strip()
+        for template in said:
+            head, _, rest = template.partition("{0}")
+            between = (rest.strip() or tail if action.arity > 1 else "").replace("{1}", "").strip()
+            found.setdefault(head.strip(), []).append(_Way(head.strip(), between, action))
+    return {head: tuple(dict.fromkeys(ways)) for head, ways in found.items()}
+
+
+def _near(knowledge: Knowledge, text: str) -> Iterator[Candidate]:
+    from rapidfuzz import process
+    from rapidfuzz.distance import Levenshtein
+
+    words = text.split()
+    ways = _ways(knowledge)
+    for size in range(1, min(4, len(words)) + 1):
+        guess, rest = " ".join(words[:size]), " ".join(words[size:])
+        scorer = Levenshtein.normalized_similarity
+        heads = process.extract(guess, list(ways), scorer=scorer, limit=_HEADS, score_cutoff=_WEAK)
+        for head, _, _ in heads:
+            for way in ways[head]:
+                yield from _filled(knowledge, text, way, rest)
+
+
+def _filled(knowledge: Knowledge, text: str, way: _Way, rest: str) -> Iterator[Candidate]:
+    """A way to say it with the known objects nearest to the words that follow."""
+    if way.action.arity == 0:
+        yield Candidate(_similar(text, way.head), way.action, ())
+        return
+    parts = [rest] if way.action.arity == 1 else [*map(str.strip, rest.split(f" {way.between} ", 1))]
+    if len(parts) != way.action.arity:
+        return
+    guesses = [_objects(knowledge, _ARTICLE.sub("", f"{part} ").strip()) for part in parts]
+    if not all(guesses):
+        return
+    for first in guesses[0]:
+        for second in guesses[1] if len(guesses) > 1 else [None]:
+            chosen = [first, *([second] if second else [])]
+            names = tuple(name for _, name in chosen)
+            said = f" {way.between} ".join(spelt for spelt, _ in chosen)
+            if _afforded(knowledge, (way.action, names)):
+                yield Candidate(_similar(text, f"{way.head} {said}"), way.action, names)
+
+
+def _similar(text: str, phrase: str) -> float:
+    from rapidfuzz.distance import Levenshtein
+
+    one, other = (key_of(_ARTICLE.sub("", each)) for each in (text, phrase))
+    return round(Levenshtein.normalized_similarity(one, other), 3)
+
+
+@lru_cache(maxsize=65_536)
+def _objects(knowledge: Knowledge, words: str) -> tuple[tuple[str, str], ...]:
+    """The known objects whose names are spelt most like the words, as (spelling, class)."""
+    from rapidfuzz import process
+    from rapidfuzz.distance import Levenshtein
+
+    thing = knowledge.object_class(words)
+    if thing:
+        return ((words, thing.name),)
+    names = knowledge.object_spellings
+    scorer = Levenshtein.normalized_similarity
+    close = process.extract(key_of(words), list(names), scorer=scorer, limit=_NAMES, score_cutoff=_WEAK)
+    return tuple((key, names[key]) for key, _, _ in close)

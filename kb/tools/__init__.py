@@ -1,0 +1,1 @@
+"""What one does with the knowledge: find, show, mine, compare, export."""

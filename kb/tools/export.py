@@ -1,0 +1,51 @@
+"""The knowledge in other forms: Markdown, PDDL, GraphML, a DuckDB file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.tools.action_table import action_table
+from hearth.kb.tools.pddl import domain
+from hearth.kb.tools.views import fill, graph
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+
+def export(knowledge: Knowledge, form: str, to: Path | None = None) -> str:
+    """Write the knowledge as one of `FORMS` to a file; without one, the text is returned.
+
+    Raises:
+        HearthError: the form is unknown, or it is no text and there is no file to write it to.
+    """
+    if form == "duckdb":
+        return _database(knowledge, to)
+    if form not in FORMS:
+        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is no form", suggestion=f"{', '.join(FORMS)}, duckdb")
+    text = FORMS[form](knowledge)
+    if to is None:
+        return text
+    to.write_text(text, encoding="utf-8")
+    return ""
+
+
+def _graphml(knowledge: Knowledge) -> str:
+    import networkx
+
+    return "\n".join(networkx.generate_graphml(graph(knowledge))) + "\n"
+
+
+def _database(knowledge: Knowledge, to: Path | None) -> str:
+    import duckdb
+
+    if to is None:
+        raise HearthError.of(Code.UNSUPPORTED_FILE, "a database needs a file", suggestion="give --to FILE")
+    to.unlink(missing_ok=True)
+    with duckdb.connect(str(to)) as connection:
+        fill(connection, knowledge)
+    return ""
+
+
+FORMS: dict[str, Callable[[Knowledge], str]] = {"table": action_table, "pddl": domain, "graphml": _graphml}
+"""Forms that are text."""

@@ -1,0 +1,64 @@
+"""The facts of the release's five knowledge files, as sets of names."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+Fact = tuple[str, ...]
+"""Names; what they mean depends on the table."""
+
+
+def is_release(directory: Path) -> bool:
+    """Whether any of the release's files stands there."""
+    return any((directory / file).exists() for file, _, _ in _FILES)
+
+
+def read_release(directory: Path) -> dict[str, set[Fact]]:
+    """The facts of the files there, by table: properties, states, placements, synonyms, affordances.
+
+    Raises:
+        HearthError: a file is not JSON or not of its form.
+    """
+    found = {}
+    for file, table, facts in _FILES:
+        path = directory / file
+        if not path.exists():
+            continue
+        try:
+            found[table] = set(facts(json.loads(path.read_bytes())))
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            message = f"not the release's file: {type(error).__name__} {error}"
+            raise HearthError.of(Code.BAD_JSON, message, file=str(path)) from error
+    return found
+
+
+def _pairs(data: dict[str, list[str]]) -> Iterator[Fact]:
+    """`{class: [names]}`: properties, states, equivalent names."""
+    for name, others in data.items():
+        yield from ((name, other) for other in others if other != name)
+
+
+def _places(data: dict[str, list[dict[str, str]]]) -> Iterator[Fact]:
+    for name, rows in data.items():
+        yield from ((name, row["relation"], row["destination"]) for row in rows)
+
+
+def _matrix(data: dict[str, Any]) -> Iterator[Fact]:
+    for action, columns in data["affordances"].items():
+        for position, column in enumerate(("object1", "object2")):
+            yield from ((action, str(position), name) for name in columns[column])
+
+
+_FILES: tuple[tuple[str, str, Callable[[Any], Iterator[Fact]]], ...] = (
+    ("properties_data.json", "properties", _pairs),
+    ("object_states.json", "states", _pairs),
+    ("object_script_placing.json", "placements", _places),
+    ("class_name_equivalence.json", "synonyms", _pairs),
+    ("affordances.json", "affordances", _matrix),
+)

@@ -1,0 +1,120 @@
+"""Everything known about one object or one action, as plain data for people and machines."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.records import Action, ObjectClass, Placement
+from hearth.kb.tools.reasons import Reasons
+
+
+def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
+    """Everything about a class; placements and what is done with it, most usual first."""
+    name = thing.name
+    taken = [[a.name for a in knowledge.actions.values() if knowledge.affords(a.name, n, name)] for n in (0, 1)]
+    return {
+        "name": name,
+        "id": thing.id,
+        "gloss": thing.gloss,
+        "kind": list(knowledge.ancestors(name)),
+        "category": thing.category,
+        "same_as": thing.same_as,
+        "synonyms": list(thing.synonyms),
+        "found_as": list(knowledge.same_class(name)),
+        "size": {"width": thing.size[0], "height": thing.size[1], "depth": thing.size[2]},
+        "rooms": list(thing.rooms),
+        "properties": sorted(thing.properties),
+        "states": list(thing.states),
+        "default_states": list(knowledge.default_states(name)),
+        "seats": knowledge.seat_limit(name) if knowledge.is_seat(name) else 0,
+        "lies": knowledge.bed_limit(name) if knowledge.is_bed(name) else 0,
+        "placed": [_placed(p) for p in knowledge.placements(name)],
+        "holds": [_held(p) for p in knowledge.holds(name)],
+        "goes_with": _goes_with(knowledge, thing.same_as or name),
+        "takes_it_first": taken[0],
+        "takes_it_second": taken[1],
+        "our_own": _our_own(knowledge, name, taken),
+        "source": thing.source,
+    }
+
+
+def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
+    """Everything about an action: what it takes, needs and changes, how it is said, what repairs it."""
+    return {
+        "name": action.name,
+        "id": action.id,
+        "executed": action.executed,
+        "said": action.template,
+        "words": list(action.words),
+        "aliases": list(action.aliases),
+        "arguments": [
+            {
+                "role": role,
+                "needs": str(action.needs[position]),
+                "grammar": str(action.grammar[position]),
+                "classes": sum(knowledge.affords(action.name, position, name) for name in knowledge.objects),
+            }
+            for position, role in enumerate(action.roles)
+        ],
+        "before": [
+            {"holds": str(check.formula), "else": check.code.value, "option": check.option}
+            for check in action.preconditions
+        ],
+        "effects": [str(effect) for effect in action.effects],
+        "repairs": [
+            {"on": repair.code.value, "when": repair.when, "repair": repair.say, "source": repair.source}
+            for check in action.preconditions
+            for repair in knowledge.repairs_for(check.code, action.name)[:1]
+        ],
+        "served_by": [a.name for a in knowledge.associations if a.relation == "serves" and a.other == action.name],
+        "source": action.source,
+    }
+
+
+def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[dict[str, str]]:
+    """The affordances that the release's matrix does not hold, each with the reason; of its own classes only."""
+    if knowledge.objects[name].source != "release":
+        return []
+    reasons = Reasons(knowledge)
+    cells = ((action, position) for position in (0, 1) for action in taken[position])
+    said = ((action, reasons.cell(action, position, name)) for action, position in cells)
+    return [{"action": action, "evidence": evidence} for action, evidence in said if evidence != "release"]
+
+
+def _placed(placement: Placement) -> dict[str, Any]:
+    return {
+        "relation": placement.relation,
+        "place": placement.destination,
+        "room": placement.room,
+        "weight": placement.weight,
+        "evidence": placement.evidence,
+    }
+
+
+def _held(placement: Placement) -> dict[str, Any]:
+    return {
+        "object": placement.object,
+        "relation": placement.relation,
+        "room": placement.room,
+        "weight": placement.weight,
+        "evidence": placement.evidence,
+    }
+
+
+def _goes_with(knowledge: Knowledge, name: str) -> list[dict[str, Any]]:
+    rows = [
+        {
+            "relation": a.relation
+            if a.name == name
+            else f"{a.relation} (of it)"
+            if a.relation == "serves"
+            else a.relation,
+            "other": a.other if a.name == name else a.name,
+            "weight": a.weight,
+            "evidence": a.evidence,
+        }
+        for a in knowledge.associations
+        if name in (a.name, a.other)
+    ]
+    return sorted(rows, key=lambda row: (-int(str(row["weight"])), str(row["other"])))

@@ -1,0 +1,62 @@
+"""Special blocks: free text where no action fitted, and the reviewed steps that replace some of it (thesis 3.3)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from hearth.schemas.diagnostics import Diagnostic
+
+FILE = "data_raw/crowd/special_blocks.yaml"
+
+_SPECIAL = re.compile(r"\s*\[\s*special\s*\]\s*<?(.*?)>?(?:\s*\(\d+\))?\s*", re.IGNORECASE)
+
+
+class Expanded(NamedTuple):
+    """A program's text with special blocks replaced, and where each of its lines stood."""
+
+    text: str
+    lines: tuple[int, ...]
+    replaced: tuple[tuple[int, str], ...] = ()
+    """The lines of blocks that were replaced, with their text."""
+
+    def original(self, line: int) -> int:
+        """The line that a line of the expanded text came from."""
+        return self.lines[line - 1] if 0 < line <= len(self.lines) else line
+
+    def placed(self, fault: Diagnostic) -> Diagnostic:
+        """A fault of the expanded text, at the line it came from; one of the whole text, at its first."""
+        return replace(fault, line=self.original(fault.line or 1))
+
+
+@cache
+def blocks() -> dict[str, tuple[str, ...]]:
+    """Free text in lower case with single spaces -> the steps that stand in for it."""
+    import yaml
+
+    data = yaml.safe_load((files("hearth") / FILE).read_text("utf-8")) or {}
+    return {_normal(block["text"]): tuple(block["steps"]) for block in data.get("blocks") or ()}
+
+
+def expand(text: str, before: int) -> Expanded:
+    """Replace the blocks that are known; `before` is how many lines of the file stand before the text."""
+    known = blocks()
+    kept: list[str] = []
+    numbers: list[int] = []
+    replaced: list[tuple[int, str]] = []
+    for number, line in enumerate(text.split("\n"), before + 1):
+        match = _SPECIAL.fullmatch(line) if "special" in line.lower() else None
+        steps = known.get(_normal(match[1])) if match else None
+        if match and steps:
+            replaced.append((number, match[1]))
+        for piece in steps or (line,):
+            kept.append(piece)
+            numbers.append(number)
+    return Expanded("\n".join(kept), tuple(numbers), tuple(replaced))
+
+
+def _normal(text: str) -> str:
+    return " ".join(text.lower().split())

@@ -1,0 +1,1 @@
+"""What is particular to answers of crowds: copies, repetitions, off-topic texts."""

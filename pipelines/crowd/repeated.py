@@ -1,0 +1,65 @@
+"""Records that were read before: the same id again, the same answer of a worker, the same words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from hearth.pipelines.crowd.seen import Tally, digest
+from hearth.pipelines.readers import crowd, plans, text
+from hearth.pipelines.readers.item import Item, refused
+from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject
+
+
+class Repeated:
+    """Tells first records from copies, across all sources.
+
+    Programs of text go by their file and a running number: of these only the count is kept.
+    """
+
+    def __init__(self) -> None:
+        self._seen = Tally()
+        self._numbered: dict[str, int] = {}
+        self._likely = False
+
+    def first(self, items: Iterable[Item], reader: str, place: str) -> Iterator[Item]:
+        """The items of a file, those that came before as refusals."""
+        if reader != text.NAME or self._likely:
+            yield from map(self._checked, items)
+            return
+        count = 0
+        for count, item in enumerate(items, 1):  # noqa: B007 - its last value is kept
+            yield item
+        self._numbered[f"{text.NAME}:{place}"] = count
+
+    def _checked(self, item: Item) -> Item:
+        if item.reader == "refused":
+            return item
+        name = item.record_id
+        if name.startswith(f"{text.NAME}:"):
+            self._likely = True
+        answer = _answer(item)
+        if self._was_numbered(name) or self._seen.add(digest(name)):
+            what = "this id"
+        elif answer is not None and self._seen.add(digest(answer)):
+            what = "this text" if item.reader == plans.NAME else "this answer of the same worker"
+        else:
+            return item
+        fault = Reject.of(Code.DUPLICATE, f"{what} was read before", file=item.place, line=item.line, found=name)
+        return refused(item.place, fault, name, item.line)
+
+    def _was_numbered(self, name: str) -> bool:
+        place, _, number = name.rpartition("#")
+        if number.isdecimal() and place in self._numbered:
+            return 1 < int(number) <= self._numbered[place]
+        return self._numbered.get(name, 0) > 0
+
+
+def _answer(item: Item) -> Any:
+    """What makes two records one: a crowd worker's answer, its own id left out, or steps in words; else None."""
+    if item.reader == plans.NAME:
+        return [plans.NAME, item.value["text"]]
+    if item.reader != crowd.NAME:
+        return None
+    return {name: cell for name, cell in item.value["cells"].items() if name != "HITId"}

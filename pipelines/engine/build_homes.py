@@ -1,0 +1,73 @@
+"""The homes that stages run programs in: the catalog, the user's laid over it, and those derived from start graphs."""
+
+from __future__ import annotations
+
+import orjson
+
+from hearth.pipelines.engine.context import knowledge
+from hearth.pipelines.engine.settings import Settings
+from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+DERIVED = "homes"
+"""Folder of the sample stage that holds homes derived from stored start graphs."""
+
+
+class Homes:
+    """The homes of a build by name, each built once a process: the catalog's at rest, derived ones as they are."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._homes: dict[str, Home] = {}
+        self._edges: dict[str, frozenset[Edge]] = {}
+        self.knowledge = knowledge(settings)
+
+    def names(self) -> tuple[str, ...]:
+        """Homes to sample in: those asked for, or all of the catalog.
+
+        Raises:
+            HearthError: UNKNOWN_HOME.
+        """
+        from hearth.homes import library
+
+        for name in self._settings.homes:
+            library.load_graph(name, self.knowledge, self._settings.homes_folder)
+        return self._settings.homes or library.names(self._settings.homes_folder)
+
+    def catalog(self) -> tuple[str, ...]:
+        """All homes that come with us, or are laid over ours."""
+        from hearth.homes import library
+
+        return library.names(self._settings.homes_folder)
+
+    def in_catalog(self, name: str) -> bool:
+        """Whether a home is one of the catalog's."""
+        from hearth.homes import library
+
+        return name in library.names(self._settings.homes_folder)
+
+    def home(self, name: str) -> Home:
+        """The home that environments of that name differ from."""
+        if name not in self._homes:
+            self._homes[name] = self._build(name)
+        return self._homes[name]
+
+    def edges(self, name: str) -> frozenset[Edge]:
+        """Its edges."""
+        if name not in self._edges:
+            self._edges[name] = frozenset(World.start(self.home(name)).edges())
+        return self._edges[name]
+
+    def _build(self, name: str) -> Home:
+        from hearth.grounding.environments.default_state import prepared
+        from hearth.homes import library
+
+        if self.in_catalog(name):
+            graph = library.load_graph(name, self.knowledge, self._settings.homes_folder)
+            return prepared(Home.from_graph(graph, name, self.knowledge)).home
+        return Home.from_graph(self._derived(name), name, self.knowledge)
+
+    def _derived(self, name: str) -> EnvironmentGraph:
+        path = self._settings.folder("sample") / DERIVED / f"{name}.json"
+        return from_release(orjson.loads(path.read_bytes()), str(path))

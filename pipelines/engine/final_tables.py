@@ -1,0 +1,394 @@
+"""What is published once all cases are: the tables about the whole, the pictures and the catalog."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from hearth.datasets.dataset_knowledge import copy_overlay
+from hearth.datasets.format import splits
+from hearth.datasets.format.card import write_card
+from hearth.datasets.format.catalog import write_catalog
+from hearth.datasets.format.codecs import node_row
+from hearth.datasets.format.croissant import write_croissant
+from hearth.datasets.format.ids import STAMP, activity_id
+from hearth.datasets.tensors import EDGE_TYPES
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.pipelines.engine.stage import Job
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rows import (
+    ActivityRow,
+    DescriptionRow,
+    FrameRow,
+    HomeEdgeRow,
+    HomeNodeRow,
+    HomeRow,
+    IngestedRow,
+    LedgerRow,
+    NameRow,
+    ProgramRow,
+    RejectRow,
+    Row,
+    SketchRow,
+    SplitRow,
+    TriedRow,
+    VideoRow,
+)
+from hearth.schemas.tables import TABLES
+from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
+from hearth.simulation.world.world import World
+from hearth.storage.files import TEMPORARY, commit, sync_folder, write_json
+from hearth.storage.manifest import Manifest, read_manifest
+from hearth.storage.partitions import Counts, part_path, read_rows, write_table
+
+STAGES = ("ingest", "validate", "sample", "augment", "render", "publish")
+"""The ledger's order."""
+
+BATCH = 4_096
+
+
+def finish(job: Job, counts: Counts) -> None:
+    """Write every table that needs all cases, then the catalog over them.
+
+    Raises:
+        HearthError: DUPLICATE, when two rows have one id.
+    """
+    _check_unique(job.folder)
+    told = _activities(job)
+    homes = job.context.homes
+    makers: dict[str, Callable[[], Iterable[Row]]] = {
+        "activities": told.activity_rows,
+        "descriptions": told.description_rows,
+        "homes": lambda: _homes(job, homes),
+        "home_nodes": lambda: _home_nodes(job, homes),
+        "home_edges": lambda: _home_edges(job, homes),
+        "splits": lambda: _splits(job),
+        "sketches": lambda: _sketches(job),
+        "frames": lambda: _frames(job, ""),
+        "videos": lambda: _frames(job, "videos"),
+        "vocabulary": lambda: _vocabulary(homes.knowledge),
+        "rejects": lambda: _rejects(job),
+        "ledger": lambda: _ledger(job, counts),
+    }
+    for table, rows in makers.items():
+        write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
+    in_vain = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
+    write_rows(in_vain, TABLES["repairs"], _in_vain(job))
+    counts.rows["repairs"] += pq.read_metadata(in_vain).num_rows
+    _copy_pictures(job)
+    copy_overlay(job.settings.kb_folder, job.folder)
+    write_card(job.folder)
+    write_croissant(job.folder)
+    write_catalog(job.folder)
+
+
+def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
+    """Write a table from rows, stamped with the versions it belongs to."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    batches = list(_batches(schema, rows))
+    write_table(path, pa.Table.from_batches(batches, schema))
+
+
+def _batches(schema: pa.Schema, rows: Iterable[Row]) -> Iterator[pa.RecordBatch]:
+    waiting: list[Row] = []
+    for row in rows:
+        waiting.append({**row, **STAMP})
+        if len(waiting) == BATCH:
+            yield pa.RecordBatch.from_pylist(waiting, schema)
+            waiting = []
+    if waiting:
+        yield pa.RecordBatch.from_pylist(waiting, schema)
+
+
+_KEYS = {"programs": "program_id", "environments": "environment_id", "executions": "execution_id"}
+
+
+def _check_unique(folder: Path) -> None:
+    import duckdb
+
+    with duckdb.connect() as connection:
+        for table, key in _KEYS.items():
+            files = str(folder / table / "*.parquet").replace("'", "''")
+            query = f"SELECT {key} FROM read_parquet('{files}') GROUP BY 1 HAVING count(*) > 1 ORDER BY 1 LIMIT 1"
+            twice = connection.execute(query).fetchone()
+            if twice:
+                message = f"two rows of `{table}` have the {key} `{twice[0]}`"
+                raise HearthError.of(Code.DUPLICATE, message, file=str(folder))
+
+
+@dataclass(slots=True)
+class _Activity:
+    titles: Counter[str] = field(default_factory=Counter)
+    scenes: set[str] = field(default_factory=set)
+    descriptions: int = 0
+    programs: int = 0
+
+
+@dataclass(slots=True)
+class _Told:
+    """Activities and descriptions, gathered from what was ingested and published."""
+
+    activities: dict[str, _Activity] = field(default_factory=dict)
+    descriptions: dict[str, DescriptionRow] = field(default_factory=dict)
+    described: set[str] = field(default_factory=set)
+
+    def describe(self, row: IngestedRow) -> None:
+        """Take the words of an ingested row; those of a description go before those repeated with a program."""
+        name, own = row["description_id"], row["kind"] == "description"
+        if name not in self.descriptions or (own and name not in self.described):
+            self.descriptions[name] = _description(row)
+        if own:
+            self.described.add(name)
+
+    def count(self, program: ProgramRow) -> None:
+        """Take a published program."""
+        activity = self.activities.setdefault(program["activity_id"], _Activity())
+        activity.programs += 1
+        activity.titles[program["title"]] += 1
+        if program["parent_id"] is None and program["description_id"] in self.descriptions:
+            self.descriptions[program["description_id"]]["programs"] += 1
+
+    def gather(self) -> None:
+        """Count descriptions under their activities."""
+        for row in self.descriptions.values():
+            activity = self.activities.setdefault(activity_id(row["title"]), _Activity())
+            activity.descriptions += 1
+            activity.titles[row["title"]] += 1
+            if row["scene"]:
+                activity.scenes.add(row["scene"])
+
+    def activity_rows(self) -> Iterator[ActivityRow]:
+        for name, activity in sorted(self.activities.items()):
+            title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
+            yield {
+                "activity_id": name,
+                "title": title,
+                "scenes": sorted(activity.scenes),
+                "descriptions": activity.descriptions,
+                "programs": activity.programs,
+            }
+
+    def description_rows(self) -> Iterator[DescriptionRow]:
+        yield from (row for _, row in sorted(self.descriptions.items()))
+
+
+def _description(row: IngestedRow) -> DescriptionRow:
+    return {
+        "description_id": row["description_id"],
+        "activity_id": activity_id(row["title"]),
+        "title": row["title"],
+        "description": row["description"],
+        "scene": row["scene"],
+        "origin": row["origin"],
+        "source": row["source"],
+        "worker": row["worker"],
+        "platform": row["platform"],
+        "programs": 0,
+    }
+
+
+_WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
+
+
+def _activities(job: Job) -> _Told:
+    told = _Told()
+    for path in _parts(job, "ingest"):
+        for row in read_rows(path, list(_WORDS)):
+            if row["kind"] in ("program", "description"):
+                told.describe(row)
+    for path in sorted((job.folder / "programs").glob("part-*.parquet")):
+        for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
+            told.count(row)
+    told.gather()
+    return told
+
+
+def _sketches(job: Job) -> Iterator[SketchRow]:
+    """What was inferred or inherited; what people drew, of which the program goes by the id of its description."""
+    for path in _parts(job, "augment", "sketches"):
+        yield from read_rows(path)
+    for path in _parts(job, "ingest"):
+        for row in read_rows(path, ["kind", "description_id", "keep", "text"]):
+            if row["kind"] == "sketch":
+                steps = row["text"].splitlines()
+                yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
+
+
+def _in_vain(job: Job) -> Iterator[TriedRow]:
+    """Repairs that gave no program."""
+    for path in _parts(job, "augment", "attempts"):
+        yield from read_rows(path)
+
+
+def _manifest(job: Job, stage: str) -> Manifest:
+    manifest = read_manifest(job.settings.folder(stage))
+    assert manifest is not None
+    return manifest
+
+
+def _parts(job: Job, stage: str, table: str = "") -> Iterator[Path]:
+    """The parts of one of a stage's tables."""
+    folder = job.settings.folder(stage)
+    for part in _manifest(job, stage).parts:
+        yield from (folder / file for file in part["files"] if (folder / file).parent == folder / table)
+
+
+def _used_homes(job: Job) -> list[str]:
+    names: set[str] = set()
+    for path in (job.folder / "environments").glob("part-*.parquet"):
+        names.update(pq.read_table(path, columns=["home"])["home"].unique().to_pylist())
+    return sorted(names)
+
+
+def _homes(job: Job, homes: Homes) -> Iterator[HomeRow]:
+    for name in _used_homes(job):
+        home = homes.home(name)
+        rooms = [node for node in map(home.node, range(len(home))) if home.rooms >> home.index[node.id] & 1]
+        yield {
+            "home": name,
+            "origin": "catalog" if homes.in_catalog(name) else "derived",
+            "rooms": sorted(node.class_name for node in rooms),
+            "nodes": len(home),
+            "edges": len(homes.edges(name)),
+            "has_geometry": bool(rooms) and all(node.box for node in rooms),
+        }
+
+
+def _home_nodes(job: Job, homes: Homes) -> Iterator[HomeNodeRow]:
+    for name in _used_homes(job):
+        for node in World.start(homes.home(name)).graph().nodes:
+            yield {"home": name, **node_row(node)}
+
+
+def _home_edges(job: Job, homes: Homes) -> Iterator[HomeEdgeRow]:
+    for name in _used_homes(job):
+        for edge in sorted(homes.edges(name)):
+            yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
+
+
+def _frames(job: Job, kind: str) -> Iterator[FrameRow | VideoRow]:
+    home: dict[str, str] = {}
+    for path in (job.folder / "executions").glob("part-*.parquet"):
+        table = pq.read_table(path, columns=["execution_id", "home"])
+        home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
+    for path in _parts(job, "render", kind):
+        for row in read_rows(path):
+            if row["execution_id"] in home:
+                row["home"] = home[row["execution_id"]]
+                yield row
+
+
+def _splits(job: Job) -> list[SplitRow]:
+    told = _told_for_splits(job.folder)
+    runs: list[Any] = []
+    for path in sorted((job.folder / "executions").glob("part-*.parquet")):
+        table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
+        runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
+    likeness = splits.Likeness(told)
+    rows = list(splits.parts(told, runs, job.settings.seed, likeness))
+    write_json(job.folder / "splits.json", splits.summary(told, rows, job.settings.seed, likeness))
+    return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
+
+
+def _told_for_splits(folder: Path) -> list[splits.Told]:
+    told: dict[str, list[Any]] = {
+        name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
+    }
+    steps: list[tuple[str, ...]] = []
+    # Programs made of one another say most things alike, which is kept once.
+    same: dict[Any, Any] = {}
+    for path in sorted((folder / "programs").glob("part-*.parquet")):
+        table = pq.read_table(path, columns=[*told, "steps"])
+        steps.extend(same.setdefault(each, each) for each in _step_names(table["steps"].combine_chunks()))
+        for name, values in told.items():
+            values.extend(same.setdefault(each, each) for each in table[name].to_pylist())
+    tops = splits.roots(dict(zip(told["program_id"], told["parent_id"], strict=True)))
+    rows = zip(told["program_id"], told["activity_id"], told["split"], steps, told["description"], strict=True)
+    return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, mine, text in rows]
+
+
+def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
+    """For each program its steps as action and class names; by columns, since there are hundreds of thousands."""
+    every = steps.flatten()
+    actions, objects = every.field("action"), every.field("objects")
+    names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))
+    texts = [
+        sys.intern(text) for text in pc.binary_join_element_wise(actions, pc.binary_join(names, " "), " ").to_pylist()
+    ]
+    end = 0
+    for length in pc.list_value_length(steps).to_pylist():
+        yield tuple(texts[end : end + length])
+        end += length
+
+
+def _copy_pictures(job: Job) -> None:
+    """Copy the pictures beside the tables, and drop those of an earlier build."""
+    for name in ("frames", "films"):
+        _copy_folder(job.settings.folder("render") / name, job.folder / name)
+
+
+def _copy_folder(source: Path, folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    wanted = {path.relative_to(source) for path in source.rglob("*") if path.is_file()} if source.exists() else set()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix != ".parquet" and path.relative_to(folder) not in wanted:
+            path.unlink()
+    for name in sorted(wanted):
+        target = folder / name
+        if name.suffix != ".parquet" and not name.name.startswith("."):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            temporary = target.with_name(f".{target.name}{TEMPORARY}")
+            shutil.copyfile(source / name, temporary)
+            commit(temporary, target)
+    if wanted:
+        sync_folder(folder)
+
+
+def _vocabulary(knowledge: Knowledge) -> Iterator[NameRow]:
+    for action in sorted(knowledge.actions.values(), key=lambda action: action.id):
+        yield _name("action", action.id, action.name, action.arity, action.executed)
+    for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
+        yield _name("class", thing.id, thing.name)
+    graphs = {"state": STATES, "property": PROPERTIES, "relation": RELATIONS, "edge_type": EDGE_TYPES}
+    for kind, names in graphs.items():
+        yield from (_name(kind, number, name) for number, name in enumerate(names))
+    for code in sorted(Code, key=lambda code: code.number):
+        yield _name("failure", code.number, str(code))
+
+
+def _name(kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None) -> NameRow:
+    return {"kind": kind, "id": number, "name": name, "arity": arity, "simulated": simulated}
+
+
+def _rejects(job: Job) -> Iterator[RejectRow]:
+    for stage in STAGES:
+        for row in read_rows(job.settings.folder(stage) / "rejects.parquet"):
+            del row["partition"]
+            yield row
+
+
+def _ledger(job: Job, counts: Counts) -> Iterator[LedgerRow]:
+    for order, stage in enumerate(STAGES):
+        stage_counts = counts if stage == job.stage.name else _manifest(job, stage).counts
+        codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
+        yield {
+            "stage": stage,
+            "order": order,
+            "records_in": stage_counts.records_in,
+            "records_through": stage_counts.through,
+            "records_rejected": stage_counts.rejected,
+            "partial_rejects": stage_counts.partial,
+            "rows": stage_counts.rows.total(),
+            "codes": [{"code": code, "count": count} for code, count in codes],
+        }

@@ -1,0 +1,156 @@
+"""Progress that tells the truth: records done, rate, time left and rejects; a line a stage where nobody watches."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from typing import TextIO
+
+from hearth.storage.partitions import Counts
+
+
+class Progress:
+    """Is told how a build goes; this one says nothing of it."""
+
+    def note(self, text: str) -> None:
+        """Something that people should know before it begins."""
+
+    def start(self, stage: str, total: int | None) -> None:
+        """A stage begins; `total` records, if that is known."""
+
+    def seen(self, records: int, rejects: int) -> None:
+        """So many more records were processed, and so many of them rejected."""
+
+    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
+        """A stage is complete; `fresh` is False when nothing had to be done."""
+
+
+class Lines(Progress):
+    """A line a stage."""
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self._stream = stream or sys.stderr
+
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._stream.write(f"{text}\n")
+        self._stream.flush()
+
+    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
+        """Say what became of the stage's records."""
+        self._stream.write(line(stage, counts, seconds, fresh) + "\n")
+        self._stream.flush()
+
+
+class JsonLines(Progress):
+    """A line of JSON for what happens, at most one a second while a stage runs: for logs of long builds.
+
+    Each has `time` (seconds since 1970), `event` (start, progress, end, note) and `stage`.
+    """
+
+    def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = time.time) -> None:
+        self._stream = stream or sys.stderr
+        self._clock = clock
+        self._stage = ""
+        self._total: int | None = None
+        self._done = self._rejects = 0
+        self._began = self._said = 0.0
+
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._say("note", text=text)
+
+    def start(self, stage: str, total: int | None) -> None:
+        """Say that a stage begins."""
+        self._stage, self._total, self._done, self._rejects = stage, total, 0, 0
+        self._began = self._said = self._clock()
+        self._say("start", total=total)
+
+    def seen(self, records: int, rejects: int) -> None:
+        """Say how far it is, if a second has gone by."""
+        self._done += records
+        self._rejects += rejects
+        now = self._clock()
+        if now - self._said >= 1.0:
+            self._said = now
+            rate = self._done / max(now - self._began, 1e-3)
+            left = None if self._total is None else round(max(0, self._total - self._done) / max(rate, 1e-9), 1)
+            self._say("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
+
+    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
+        """Say what became of the stage's records."""
+        self._stage = stage
+        self._say("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
+
+    def _say(self, event: str, **facts: object) -> None:
+        line = {"time": round(self._clock(), 3), "event": event, "stage": self._stage, **facts}
+        self._stream.write(json.dumps(line) + "\n")
+        self._stream.flush()
+
+
+class Bars(Progress):
+    """A bar for the running stage on a terminal, its line when it is done."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeRemainingColumn
+        from rich.progress import Progress as Rich
+
+        self._console = Console(stderr=True)
+        self._rich = Rich(
+            SpinnerColumn(),
+            TextColumn("{task.description:>8}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[rate]}/s"),
+            TimeRemainingColumn(),
+            TextColumn("{task.fields[rejects]} rejects"),
+            console=self._console,
+            transient=True,
+        )
+        self._done = self._rejects = 0
+        self._began = 0.0
+
+    def note(self, text: str) -> None:
+        """Say it."""
+        self._console.print(text, highlight=False, markup=False)
+
+    def start(self, stage: str, total: int | None) -> None:
+        """Show a bar."""
+        self._done = self._rejects = 0
+        self._began = time.monotonic()
+        self._task = self._rich.add_task(stage, total=total, rate="0", rejects=0)
+        self._rich.start()
+
+    def seen(self, records: int, rejects: int) -> None:
+        """Move it."""
+        self._done += records
+        self._rejects += rejects
+        rate = self._done / max(time.monotonic() - self._began, 1e-3)
+        self._rich.update(self._task, completed=self._done, rate=f"{rate:,.0f}", rejects=self._rejects)
+
+    def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
+        """Put a line in its place."""
+        if self._rich.tasks:
+            self._rich.remove_task(self._task)
+        self._rich.stop()
+        self._console.print(line(stage, counts, seconds, fresh), highlight=False, markup=False)
+
+
+def line(stage: str, counts: Counts, seconds: float, fresh: bool) -> str:
+    """What became of a stage's records, in one line."""
+    if not fresh:
+        return f"{stage:>8}  up to date"
+    rate = counts.records_in / max(seconds, 1e-3)
+    return (
+        f"{stage:>8}  {counts.records_in:,} in, {counts.through:,} through, {counts.rejected:,} rejected, "
+        f"{counts.rows.total():,} rows in {seconds:.1f} s ({rate:,.0f}/s)"
+    )
+
+
+def for_terminal(stream: TextIO | None = None) -> Progress:
+    """Bars on a terminal, lines elsewhere."""
+    stream = stream or sys.stderr
+    return Bars() if stream.isatty() else Lines(stream)

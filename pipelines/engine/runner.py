@@ -1,0 +1,251 @@
+"""Running one stage: what is up to date stays, what is complete is kept, the manifest comes last."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from hearth.pipelines.engine.engines import Engine
+from hearth.pipelines.engine.progress import Progress
+from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.sources import source_digests
+from hearth.pipelines.engine.stage import Job, Partition, Stage
+from hearth.pipelines.engine.workers import Workers
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.tables import REJECTED
+from hearth.storage.files import is_temporary, value_digest, write_json
+from hearth.storage.lock import locked
+from hearth.storage.manifest import NAME, TIMING, Manifest, describe, read_manifest
+from hearth.storage.partitions import Counts, part_path, part_state, rejects_path, write_table
+from hearth.storage.stores import store
+
+REJECTS = "rejects.parquet"
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A stage that is complete, and whether anything had to be done for it."""
+
+    manifest: Manifest
+    fresh: bool
+
+
+def run_stage(
+    stage: Stage, settings: Settings, workers: Engine | None = None, progress: Progress | None = None
+) -> Result:
+    """Bring a stage's folder up to date.
+
+    Raises:
+        HearthError: a stage it reads is missing, someone else builds there, or the folder cannot be written.
+    """
+    progress = progress or Progress()
+    try:
+        with locked(Path(settings.out)):
+            return _run(stage, settings, workers or Workers(), progress)
+    except OSError as error:
+        raise HearthError.of(
+            Code.UNWRITABLE,
+            f"cannot write: {error.strerror or error}",
+            file=str(error.filename or settings.folder(stage.name)),
+            suggestion="free some space, or choose a folder you may write to with --out; complete parts are kept",
+        ) from error
+
+
+def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) -> Result:
+    inputs = _inputs(stage, settings)
+    job = Job(stage, settings, stage.prepare(settings))
+    key = value_digest([job.key, inputs])
+    folder = job.folder
+    known = read_manifest(folder)
+    if known and known.key == key and known.intact() and not known.counts.codes[Code.TIMED_OUT]:
+        os.utime(folder / NAME)
+        _drop_gathered(folder)
+        progress.end(stage.name, known.counts, 0.0, fresh=False)
+        return Result(known, fresh=False)
+    began = time.monotonic()
+    _clear(folder)
+    elsewhere = store(settings.store) if settings.store else None
+    if elsewhere:
+        elsewhere.begin(stage.name)
+    progress.start(stage.name, _total(stage, settings))
+    if stage.begin:
+        stage.begin(job)
+    numbers, counts = _partitions(job, workers, progress)
+    _gather_rejects(job, numbers)
+    _drop_stale(job, numbers)
+    _drop_leftovers(folder)
+    if stage.finish:
+        stage.finish(job, counts)
+    counts.check(stage.name)
+    facts = {**stage.facts(job), "counts": counts.to_json(), "parts": list(_parts(job, numbers))}
+    manifest = describe(folder, job.asked(), inputs, key, **facts)
+    seconds = time.monotonic() - began
+    write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
+    manifest.write()
+    _drop_gathered(folder)
+    if elsewhere:
+        elsewhere.end(stage.name)
+    progress.end(stage.name, counts, seconds, fresh=True)
+    return Result(manifest, fresh=True)
+
+
+def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
+    """Digest of everything a stage reads, by name."""
+    digests = {}
+    for name in (*stage.reads, *stage.needs):
+        manifest = read_manifest(settings.folder(name))
+        if manifest is None:
+            raise HearthError.of(
+                Code.MISSING_FILE,
+                f"stage `{stage.name}` reads what stage `{name}` writes, and that is not there",
+                file=str(settings.folder(name)),
+                suggestion=f"run `{name}` first, or `build` for all stages",
+            )
+        digests[name] = manifest.digest
+    return digests or source_digests(settings.sources)
+
+
+def _total(stage: Stage, settings: Settings) -> int | None:
+    if stage.partitions is not None:
+        return None
+    manifests = [read_manifest(settings.folder(name)) for name in stage.reads]
+    return sum(int(part["rows"]) for manifest in manifests if manifest for part in manifest.parts)
+
+
+def _clear(folder: Path) -> None:
+    """Make the folder say that it is not complete, and drop what was half written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / NAME).unlink(missing_ok=True)
+    _drop_leftovers(folder)
+
+
+def _drop_gathered(folder: Path) -> None:
+    """Remove the rejects of single partitions, once a manifest vouches for the file that holds them all."""
+    for path in folder.glob(".rejects-*.parquet"):
+        path.unlink(missing_ok=True)
+
+
+def _drop_leftovers(folder: Path) -> None:
+    """Remove what workers that were lost had half written."""
+    for leftover in [path for path in folder.rglob(".*") if is_temporary(path.name)]:
+        leftover.unlink(missing_ok=True)
+
+
+def input_partitions(job: Job) -> Iterator[Partition]:
+    """The parts of the stages that a stage reads, one partition each, unless it shares or gathers them."""
+    waiting: list[Partition] = []
+    number = 0
+    for part in _input_parts(job):
+        if waiting and sum(each.size or 0 for each in waiting) + (part.size or 0) > job.stage.gather:
+            yield _gathered(number, waiting)
+            number += 1
+            waiting = []
+        waiting.append(part)
+    if waiting:
+        yield _gathered(number, waiting)
+
+
+def _gathered(number: int, parts: list[Partition]) -> Partition:
+    if len(parts) == 1:
+        return replace(parts[0], number=number)
+    paths = tuple(path for part in parts for path in part.payload)
+    return Partition(
+        number, value_digest([part.digest for part in parts]), paths, sum(part.size or 0 for part in parts)
+    )
+
+
+def _input_parts(job: Job) -> Iterator[Partition]:
+    """The parts of the stages that a stage reads, or shares of them; of several tables, those of the first."""
+    for name in job.stage.reads:
+        folder = job.settings.folder(name)
+        manifest = read_manifest(folder)
+        assert manifest is not None
+        for part in manifest.parts:
+            file = part["files"][0]
+            digest = manifest.content["files"][file]["sha256"]
+            for rows in _shares(part["rows"], job.stage.share):
+                told = digest if rows is None else f"{digest} {rows}"
+                size = part["rows"] if rows is None else rows[1] - rows[0]
+                yield Partition(0, told, (str(folder / file),), size, rows)
+
+
+def _shares(rows: int, share: int | None) -> list[tuple[int, int] | None]:
+    """Rows of a part that make a partition each; None for all of them."""
+    if share is None or rows <= share:
+        return [None]
+    return [(first, min(first + share, rows)) for first in range(0, rows, share)]
+
+
+def _partitions(job: Job, workers: Engine, progress: Progress) -> tuple[list[int], Counts]:
+    """Run what is not complete yet."""
+    numbers: list[int] = []
+    counts = Counts()
+
+    def missing() -> Iterator[Partition]:
+        for partition in (job.stage.partitions or input_partitions)(job):
+            numbers.append(partition.number)
+            state = part_state(job.folder, job.stage.tables, partition.number)
+            if state and state[0] == job.part_key(partition) and _is_whole(job, partition.number, state[1]):
+                counts.add(state[1])
+                progress.seen(state[1].records_in, state[1].rejected)
+            else:
+                _forget(job, partition.number)
+                yield partition
+
+    for _, done in workers.run(job, missing(), progress.seen):
+        counts.add(done)
+    return numbers, counts
+
+
+def _forget(job: Job, number: int) -> None:
+    """Remove a partition that is to be made again, its commit point first."""
+    for table in reversed([*job.stage.tables]):
+        part_path(job.folder, table, number).unlink(missing_ok=True)
+
+
+def _is_whole(job: Job, number: int, counts: Counts) -> bool:
+    """Whether a partition's rejects are there, too, and none of its records ran out of time."""
+    if not counts.rejected and not counts.partial:
+        return True
+    if counts.codes[Code.TIMED_OUT]:
+        return False
+    return rejects_path(job.folder, number).exists() or (job.folder / REJECTS).exists()
+
+
+def _gather_rejects(job: Job, numbers: list[int]) -> None:
+    """Put the rejects of all partitions into one file, in order."""
+    folder = job.folder
+    whole = folder / REJECTS
+    earlier = pq.read_table(whole) if whole.exists() else REJECTED.empty_table()
+    tables = []
+    for number in numbers:
+        path = rejects_path(folder, number)
+        state = part_state(folder, job.stage.tables, number)
+        if path.exists():
+            tables.append(pq.read_table(path))
+        elif state and (state[1].rejected or state[1].partial):
+            tables.append(earlier.filter(pc.equal(earlier["partition"], number)))
+    write_table(whole, pa.concat_tables(tables) if tables else REJECTED.empty_table())
+
+
+def _drop_stale(job: Job, numbers: list[int]) -> None:
+    """Remove parts of partitions that are no more."""
+    kept = {part_path(job.folder, table, number) for table in job.stage.tables for number in numbers}
+    for path in job.folder.rglob("part-*.parquet"):
+        if path not in kept:
+            path.unlink()
+
+
+def _parts(job: Job, numbers: list[int]) -> Iterator[dict[str, object]]:
+    for number in numbers:
+        paths = [part_path(job.folder, table, number) for table in job.stage.tables]
+        rows = sum(pq.read_metadata(path).num_rows for path in paths)
+        yield {"files": [path.relative_to(job.folder).as_posix() for path in paths], "rows": rows}

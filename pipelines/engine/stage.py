@@ -1,0 +1,290 @@
+"""The loop that all stages share: read, process, count, reject, write, resume.
+
+A stage's author writes `process(record, context)`: one record in; rows out, or a `Reject` with code and place. The base
+owns the rest. Every record read ends in rows or in rejects, and an exception costs only its own record.
+"""
+
+from __future__ import annotations
+
+import errno
+import importlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from hearth.pipelines.engine.deadline import Deadline, OverTime
+from hearth.pipelines.engine.dependencies import code_digest
+from hearth.pipelines.engine.settings import Settings
+from hearth.schemas.failures import Code
+from hearth.schemas.rows import Row
+from hearth.storage.files import value_digest
+from hearth.storage.partitions import Counts, PartWriter, read_rows
+from hearth.storage.rejects import Reject
+
+Plan = dict[str, Any]
+Output = Row | Reject | tuple[str, Row]
+
+BATCH = 64
+"""Records whose rows are turned into Arrow together, where a stage says nothing else: graphs are large."""
+
+
+@dataclass(frozen=True, slots=True)
+class Partition:
+    """A share of a stage's input that is processed and written as one.
+
+    Attributes:
+        number: its place, from 0.
+        digest: of its input's content.
+        payload: what `Stage.records` needs to read it; small and picklable.
+        size: how many records, if known.
+        rows: of a part that several partitions share, the first row of this one and the one after its last.
+
+    Where the payload is paths of parts, it is a tuple of them.
+    """
+
+    number: int
+    digest: str
+    payload: Any
+    size: int | None = None
+    rows: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of the pipeline, in the words of its author.
+
+    Attributes:
+        name: also the name of its folder and command.
+        tables: columns by table; a stage with one table calls it "".
+        process: one record to its rows (`(table, row)` where there are several tables) or its reject. Rejects among
+            rows refuse a part of a record.
+        reads: the stages whose rows are its records, in order.
+        needs: stages that it looks at besides.
+        settings: names of the options that decide its output.
+        open: makes the context given to `process`, once a process.
+        prepare: looks at all of the input once, before any record; its result is part of what was asked.
+        begin: does what all partitions rely on, before the first of them.
+        partitions: shares of the input; by default the parts of the stages it reads.
+        records: the records of a partition; by default the rows of its part.
+        select: which rows of the input are records at all.
+        identify: the id of a record.
+        columns: columns of the input to read; None for all.
+        batch: how many records' rows are turned into Arrow together, of a partition.
+        tally: a label under which a row is counted, or None.
+        finish: writes what needs all partitions, before the manifest.
+        facts: what else the manifest says.
+        patience: how many times the usual limit a record may take.
+        share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
+        gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
+
+    A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
+    """
+
+    name: str
+    tables: Mapping[str, pa.Schema]
+    process: Callable[[Any, Any], Iterable[Output] | Reject]
+    reads: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    settings: tuple[str, ...] = ()
+    open: Callable[[Job], Any] = lambda job: job
+    prepare: Callable[[Settings], Plan] = lambda settings: {}
+    begin: Callable[[Job], None] | None = None
+    partitions: Callable[[Job], Iterator[Partition]] | None = None
+    records: Callable[[Job, Partition], Iterable[Any]] | None = None
+    select: Callable[[Any, Plan], bool] = lambda record, plan: True
+    identify: Callable[[Any], str] = lambda record: str(record["program_id"])
+    columns: tuple[str, ...] | None = None
+    batch: Callable[[Partition], int] = lambda partition: BATCH
+    tally: Callable[[Any], str | None] = lambda row: None
+    finish: Callable[[Job, Counts], None] | None = None
+    facts: Callable[[Job], dict[str, Any]] = lambda job: {}
+    patience: int = 1
+    share: int | None = None
+    gather: int = 0
+
+    def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
+        """Workers get a stage by the module that defines it, as its `STAGE`."""
+        return _stage_of, (self.process.__module__,)
+
+
+def _stage_of(module: str) -> Stage:
+    stage: Stage = importlib.import_module(module).STAGE
+    return stage
+
+
+@dataclass(frozen=True)
+class Job:
+    """A stage, what was asked of it, and its plan: all that a worker needs to know."""
+
+    stage: Stage
+    settings: Settings
+    plan: Plan = field(default_factory=dict)
+
+    @property
+    def folder(self) -> Path:
+        """Where the stage writes."""
+        return self.settings.folder(self.stage.name)
+
+    @cached_property
+    def context(self) -> Any:
+        """What the stage opened in this process."""
+        return self.stage.open(self)
+
+    @cached_property
+    def key(self) -> str:
+        """Digest of all that decides the output, the input aside."""
+        return value_digest(self.asked())
+
+    def asked(self) -> dict[str, Any]:
+        """Stage, code, options and plan, as they stand in the manifest."""
+        return {
+            "stage": self.stage.name,
+            "code": code_digest(self.stage.process.__module__, __name__, "hearth.version"),
+            "settings": self.settings.chosen(self.stage.settings),
+            "plan": self.plan,
+        }
+
+    def part_key(self, partition: Partition) -> str:
+        """Digest of all that decides a partition's bytes."""
+        return value_digest([self.key, partition.number, partition.digest])
+
+
+RecordsSeen = Callable[[int, int], None]
+"""Called with the numbers of records and of rejects that were added."""
+
+Done = tuple[Partition, Counts]
+"""A partition that is written, and what became of its records."""
+
+
+def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
+    """Process one partition and write it."""
+    stage = job.stage
+    writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
+    deadline = Deadline(job.settings.time_limit * stage.patience)
+    try:
+        sink = _Sink(job, partition, writer)
+        for record in _records(job, partition):
+            before = sink.counts.rejected
+            sink.take(stage.identify(record), _attempt(stage, record, job.context, deadline))
+            seen(1, sink.counts.rejected - before)
+        sink.flush()
+        sink.counts.check(f"{stage.name}, partition {partition.number}")
+        writer.finish(sink.counts)
+    except BaseException:
+        writer.abandon()
+        raise
+    finally:
+        deadline.close()
+    return sink.counts
+
+
+def _records(job: Job, partition: Partition) -> Iterable[Any]:
+    stage = job.stage
+    if stage.records is not None:
+        return stage.records(job, partition)
+    columns = list(stage.columns) if stage.columns is not None else None
+    rows: Iterable[Any] = chain.from_iterable(read_rows(Path(path), columns) for path in partition.payload)
+    if partition.rows is not None:
+        rows = islice(rows, *partition.rows)
+    return (row for row in rows if stage.select(row, job.plan))
+
+
+def _attempt(stage: Stage, record: Row, context: Any, deadline: Deadline) -> list[Output]:
+    """All that a record gives; an exception or too long a time gives a reject and none of its rows."""
+    try:
+        with deadline:
+            outputs = stage.process(record, context)
+            return [outputs] if isinstance(outputs, Reject) else list(outputs)
+    except OverTime:
+        message = f"took longer than {deadline.seconds:g} s"
+        place = str(record.get("place") or "")
+        return [Reject.of(Code.TIMED_OUT, message, file=place, suggestion="give it more time with --time-limit")]
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in _FULL:
+            # No fault of the record: the stage stops, what is complete stays, and the next run goes on from there.
+            raise
+        return [Reject.caused(error, str(record.get("place") or ""))]
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
+
+class _Sink:
+    """Counts what records gave and writes it in batches."""
+
+    def __init__(self, job: Job, partition: Partition, writer: PartWriter) -> None:
+        self.stage, self.number, self.writer = job.stage, partition.number, writer
+        self.batch = job.stage.batch(partition)
+        self.counts = Counts()
+        self._waiting: list[tuple[str, list[tuple[str, Row]], list[Reject]]] = []
+
+    def take(self, record_id: str, outputs: list[Output]) -> None:
+        """Take all that one record gave."""
+        self.counts.records_in += 1
+        rows: list[tuple[str, Row]] = []
+        rejects: list[Reject] = []
+        for output in outputs:
+            if isinstance(output, Reject):
+                rejects.append(output)
+            else:
+                rows.append(output if isinstance(output, tuple) else ("", output))
+        if not outputs:
+            rejects = [Reject.caused(AssertionError("neither rows nor a reject came of this record"))]
+        self._waiting.append((record_id, rows, rejects))
+        if len(self._waiting) >= self.batch:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits. Where a row does not fit its table, only its record is refused."""
+        try:
+            self._write(self._waiting)
+        except (pa.ArrowException, TypeError, ValueError, OverflowError):
+            for one in self._waiting:
+                try:
+                    self._write([one])
+                except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
+                    self._write([(one[0], [], [Reject.caused(error)])])
+        self._waiting.clear()
+
+    def _write(self, records: list[tuple[str, list[tuple[str, Row]], list[Reject]]]) -> None:
+        batches = [
+            (table, self._batch(schema, [row for _, rows, _ in records for to, row in rows if to == table]))
+            for table, schema in self.stage.tables.items()
+        ]
+        for table, batch in batches:
+            if len(batch):
+                self.writer.write(table, batch)
+                self.counts.rows[table] += len(batch)
+        for record_id, rows, rejects in records:
+            self._count(record_id, rows, rejects)
+
+    def _batch(self, schema: pa.Schema, rows: list[Row]) -> pa.RecordBatch:
+        names = frozenset(schema.names)
+        for columns in {tuple(row) for row in rows}:
+            if not names.issuperset(columns):
+                raise TypeError(f"columns that the table lacks: {', '.join(sorted({*columns} - names))}")
+        return pa.RecordBatch.from_pylist(rows, schema)
+
+    def _count(self, record_id: str, rows: list[tuple[str, Row]], rejects: list[Reject]) -> None:
+        counts, partial = self.counts, bool(rows)
+        counts.through += partial
+        counts.rejected += not partial
+        for _, row in rows:
+            label = self.stage.tally(row)
+            if label is not None:
+                counts.tally[label] += 1
+        if not rejects:
+            return
+        if partial:
+            counts.partial += len(rejects)
+        else:
+            counts.codes[rejects[0].code] += 1
+        faults = [row for reject in rejects for row in reject.rows()]
+        for number, row in enumerate(faults):
+            told = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
+            self.writer.reject([{**row, **told, "fault": number}])

@@ -1,0 +1,32 @@
+"""The stages, in order. To add one: a file that defines `STAGE`, and a row here."""
+
+from __future__ import annotations
+
+import importlib
+
+from hearth.pipelines.engine.stage import Stage
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+STAGES: dict[str, str] = {
+    "ingest": "hearth.pipelines.ingest",
+    "validate": "hearth.pipelines.validate",
+    "sample": "hearth.pipelines.sample",
+    "augment": "hearth.pipelines.augment",
+    "render": "hearth.pipelines.render",
+    "publish": "hearth.pipelines.publish",
+}
+"""Name -> the module that defines it, imported when the stage is run."""
+
+
+def stage(name: str) -> Stage:
+    """The stage of that name.
+
+    Raises:
+        HearthError: UNKNOWN_ID, with what there is.
+    """
+    if name not in STAGES:
+        suggestion = f"stages are {', '.join(STAGES)}"
+        raise HearthError.of(Code.UNKNOWN_ID, f"there is no stage `{name}`", suggestion=suggestion)
+    found: Stage = importlib.import_module(STAGES[name]).STAGE
+    return found

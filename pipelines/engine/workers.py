@@ -1,0 +1,161 @@
+"""Partitions over processes: a bounded window in flight, progress as records go by, the same bytes for any number."""
+
+from __future__ import annotations
+
+import gc
+import itertools
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import Any
+
+from hearth.pipelines.engine.stage import Done, Job, Partition, RecordsSeen, run_partition
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.manifest import read_manifest
+from hearth.storage.parallel import begin, context
+from hearth.storage.partitions import Counts, part_path, rejects_path
+from hearth.storage.stores import store
+
+AHEAD = 2
+"""Partitions handed out for each process: the next is there when one is done."""
+
+_POLL_SECONDS = 0.2
+
+
+class Workers:
+    """Processes that stages share; they start when a stage first has work for two.
+
+    Use it as a context manager, so that they end with the build.
+    """
+
+    def __init__(self, count: int = 1) -> None:
+        self.count = max(1, count)
+        self._pool: ProcessPoolExecutor | None = None
+        self._seen: Any = None
+        self._thresholds = gc.get_threshold()
+
+    def __enter__(self) -> Workers:
+        self._thresholds = gc.get_threshold()
+        _collect_seldom()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stop()
+        gc.set_threshold(*self._thresholds)
+        gc.unfreeze()
+
+    def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
+        """Run partitions and yield each with its counts, in the order of completion.
+
+        Raises:
+            HearthError: a worker died; what was complete is kept.
+        """
+        first = list(itertools.islice(partitions, 2))
+        rest = itertools.chain(first, partitions)
+        if self.count == 1 or len(first) < 2:
+            yield from ((partition, _run(job, partition, seen)) for partition in rest)
+        else:
+            yield from self._pooled(job, rest, seen)
+
+    def _pooled(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
+        try:
+            yield from self._drive(job, partitions, seen)
+        except BrokenProcessPool as error:
+            self._stop()
+            raise HearthError.of(
+                Code.CONFLICT,
+                f"a worker of stage `{job.stage.name}` was killed, perhaps for want of memory",
+                file=str(job.folder),
+                suggestion="run the same command again: complete parts are kept; fewer --workers need less memory",
+            ) from error
+
+    def _drive(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
+        pool = self._start()
+        before = self._told()
+        running: dict[Future[Counts], Partition] = {}
+        while True:
+            for partition in itertools.islice(partitions, self.count * AHEAD - len(running)):
+                running[pool.submit(run_here, job, partition)] = partition
+            if not running:
+                return
+            done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
+            now = self._told()
+            if now > before:
+                seen(now[0] - before[0], now[1] - before[1])
+                before = now
+            for future in done:
+                yield running.pop(future), future.result()
+
+    def _start(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            here = context()
+            self._seen = here.Array("q", 2)
+            self._pool = ProcessPoolExecutor(self.count, here, _begin, (self._seen,))
+        return self._pool
+
+    def _stop(self) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+            self._pool = None
+
+    def _told(self) -> tuple[int, int]:
+        with self._seen.get_lock():
+            return self._seen[0], self._seen[1]
+
+
+_told: Any = None
+_job: Job | None = None
+
+
+def _begin(told: Any) -> None:
+    global _told  # noqa: PLW0603 - a worker's own state
+    _told = told
+    begin()
+
+
+def _collect_seldom() -> None:
+    """Rows and worlds hold no cycles to speak of: looking for them took a fifth of the time."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 100)
+
+
+def run_here(job: Job, partition: Partition) -> Counts:
+    """Run a partition in a worker, with the context that the same job opened before."""
+    global _job  # noqa: PLW0603 - a worker's own state
+    if _job is None:
+        _collect_seldom()
+    if _job is None or (_job.key, _job.settings) != (job.key, job.settings):
+        _job = job
+    return _run(_job, partition, _count)
+
+
+def _run(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
+    """Run a partition; its input comes from a store and its parts go there, where the build is in one."""
+    if not job.settings.store:
+        return run_partition(job, partition, seen)
+    elsewhere = store(job.settings.store)
+    elsewhere.attend(job.settings.revision)
+    for path in _needed(job, partition):
+        elsewhere.fetch(path)
+    counts = run_partition(job, partition, seen)
+    rejects = rejects_path(job.folder, partition.number)
+    parts = [part_path(job.folder, table, partition.number) for table in job.stage.tables]
+    elsewhere.push([*([rejects] if rejects.exists() else []), *parts])
+    return counts
+
+
+def _needed(job: Job, partition: Partition) -> list[Path]:
+    """The parts that a partition is made from: its own, or all where a stage has partitions of its own kind."""
+    if job.stage.partitions is None:
+        return [Path(path) for path in partition.payload]
+    manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]
+    return [found.folder / file for found in manifests if found for part in found.parts for file in part["files"]]
+
+
+def _count(records: int, rejects: int) -> None:
+    if _told is not None:
+        with _told.get_lock():
+            _told[0] += records
+            _told[1] += rejects

@@ -1,0 +1,96 @@
+"""What agents see with their eyes while they act: pictures for `Env.observe`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import NDArray
+
+from hearth.kb.knowledge import Knowledge
+from hearth.rendering.cameras.camera import Camera, follow, top_view
+from hearth.rendering.cameras.viewpoints import home_box
+from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at
+from hearth.rendering.film.video import FIRST, THIRD, first_person
+from hearth.rendering.modalities import render
+from hearth.rendering.people.acting import Actor, cast, posed
+from hearth.rendering.scene.places import Places
+from hearth.rendering.scene.prepared import stage
+from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.swept import ground_of
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.simulation.env import Env
+from hearth.simulation.world.world import World
+
+
+class Eyes:
+    """Pictures of an episode. Give them to an environment: `env.eyes = Eyes(home, knowledge)`.
+
+    They follow what happens from the moment they first look: people stand where their steps have brought them, and
+    things lie where they were put.
+
+    Args:
+        home: the home's graph as it was built, with boxes.
+        seed: decides bodies, colours and designs.
+        hour: of the day.
+        size: width and height of the pictures.
+        view: `first` person, `third` person, or `top`.
+        quality: as of `modalities.render`.
+        knowledge: Hearth's own by default.
+
+    Raises:
+        HearthError: the home has no geometry.
+    """
+
+    def __init__(
+        self,
+        home: EnvironmentGraph,
+        knowledge: Knowledge,
+        *,
+        seed: int = 0,
+        hour: float = 10.0,
+        size: tuple[int, int] = (320, 240),
+        view: str = FIRST,
+        quality: str = "draft",
+    ) -> None:
+        check_geometry(home)
+        self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
+        self.prepared = stage(home, knowledge, seed=seed, hour=hour)
+        self.ground = ground_of(self.prepared)
+        self.places = Places.start(home, self.prepared.knowledge)
+        self.actors: tuple[Actor, ...] = ()
+        self._scene: Scene | None = None
+        self._ticks = 0
+        self._world: World | None = None
+
+    def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+        """What an agent sees now, by modality."""
+        self._follow(env)
+        if self._scene is None:
+            self._scene = scene_at(self.prepared, self.places, self.actors)
+        return render(self._scene, self._camera(self.actors[agent]), modalities, quality=self.quality)
+
+    def _camera(self, actor: Actor) -> Camera:
+        if self.view == FIRST:
+            return first_person(actor, self.size)
+        if self.view == THIRD:
+            return follow(THIRD, actor.position, actor.yaw, *self.size)
+        return top_view(home_box(self.home), self.view, *self.size)
+
+    def _follow(self, env: Env) -> None:
+        """Catch up with what has happened since the last look."""
+        went_on = self._ticks <= len(env.ticks) and (
+            self._ticks == 0 or (len(env.ticks) > 0 and env.ticks[self._ticks - 1].world is self._world)
+        )
+        if self._world is None or not went_on or (not env.ticks and env.world is not self._world):
+            self._begin(env)
+        for tick in env.ticks[self._ticks :]:
+            steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
+            self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), self.ground, steps)
+            self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
+
+    def _begin(self, env: Env) -> None:
+        graph = env.world.graph()
+        self.places = Places.start(self.home, self.prepared.knowledge).settled(graph)
+        actors = cast(graph, self.ground, self.places, self.seed)
+        self.actors = tuple(posed(actor, graph, self.places, None) for actor in actors)
+        self._ticks, self._world, self._scene = len(env.ticks), env.world, None

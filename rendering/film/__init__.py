@@ -1,0 +1,1 @@
+"""Pictures and films of executions, and the page that plays them."""

@@ -1,0 +1,62 @@
+"""PNG bytes: the same picture gives the same bytes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+LEVEL = 1
+"""zlib's fastest: four times as fast as the default for a few per cent more bytes."""
+
+
+def encode(image: NDArray[Any]) -> bytes:
+    """An image as PNG, without any meta data.
+
+    Args:
+        image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
+            are written as 16 bits a component, (n + 1) / 2 * 65535; (H, W, 2) float32 (flow) as 16 bits
+            64 * f + 32768 in red and green, with blue 1 where it is known, as KITTI writes it.
+
+    Raises:
+        HearthError: the picture can't be written as PNG.
+    """
+    import cv2
+
+    if image.dtype == np.float32 and image.shape[-1] == 2:
+        image = _flow_code(image)
+    if image.dtype == np.float32:
+        image = np.rint((np.clip(image, -1, 1) + 1) / 2 * 65535).astype(np.uint16)
+    flipped = np.ascontiguousarray(image[..., ::-1]) if image.ndim == 3 else image
+    done, data = cv2.imencode(".png", flipped, [cv2.IMWRITE_PNG_COMPRESSION, LEVEL])
+    if not done:
+        raise HearthError.of(Code.NOT_RENDERED, f"no PNG of {image.shape} {image.dtype}")
+    return bytes(data)
+
+
+def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
+    known = np.isfinite(flow).all(axis=2)
+    code = np.zeros((*flow.shape[:2], 3), np.uint16)
+    code[..., :2] = np.clip(np.rint(np.where(known[..., None], flow, 0) * 64 + 32768), 0, 65535)
+    code[~known, :2] = 0
+    code[..., 2] = known
+    return code
+
+
+def decode(data: bytes) -> NDArray[Any]:
+    """The image that `encode` wrote; components in the order red, green, blue.
+
+    Raises:
+        HearthError: it is no picture.
+    """
+    import cv2
+
+    image: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise HearthError.of(Code.NOT_RENDERED, "not a PNG picture")
+    found: NDArray[Any] = image[..., ::-1] if image.ndim == 3 else image
+    return found

@@ -1,0 +1,120 @@
+"""Which recipe draws a class, and with what: the classes of `looks.yaml`, then hypernyms, then a plain box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from importlib.resources import files
+from typing import Any
+
+import yaml
+
+from hearth.kb.knowledge import Knowledge
+from hearth.rendering.models.catalog import RECIPES
+from hearth.rendering.models.look import Look, Recipe, Size
+from hearth.rendering.models.mesh import Mesh
+from hearth.rendering.models.textures import SLOTS
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rng import derive
+
+FALLBACK = "crate"
+"""The recipe of classes for which there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """How a class is drawn: the recipe's name and what it is told besides size and states."""
+
+    recipe: str
+    color: str = ""
+    kind: str = ""
+    variant: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A mesh by what it is made from; equal models are equal meshes."""
+
+    recipe: str
+    look: Look
+
+
+@cache
+def looks() -> dict[str, Choice]:
+    """Class or hypernym -> choice, from `looks.yaml`.
+
+    Raises:
+        HearthError: an entry names a recipe that does not exist.
+    """
+    text = (files("hearth.rendering.models") / "looks.yaml").read_text(encoding="utf-8")
+    table: dict[str, Any] = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    chosen = {
+        name: Choice(**(entry if isinstance(entry, dict) else {"recipe": entry})) for name, entry in table.items()
+    }
+    wrong = [f"{name}: {choice.recipe}" for name, choice in chosen.items() if choice.recipe not in RECIPES]
+    if wrong:
+        raise HearthError.of(Code.BAD_TABLE, f"no such recipe: {', '.join(wrong)}", file="rendering/models/looks.yaml")
+    return chosen
+
+
+def choice_of(class_name: str, knowledge: Knowledge) -> Choice:
+    """How a class is drawn; by the class it is another name of, or its nearest hypernym that has an entry."""
+    found = knowledge.objects.get(class_name)
+    names = (class_name, found.same_as if found else "", *knowledge.ancestors(class_name))
+    return next((looks()[name] for name in names if name in looks()), Choice(FALLBACK))
+
+
+def recipe_of(class_name: str, knowledge: Knowledge) -> Recipe:
+    """The recipe that draws a class."""
+    return RECIPES[choice_of(class_name, knowledge).recipe]
+
+
+def without_recipe(class_names: list[str], knowledge: Knowledge) -> list[str]:
+    """The classes among them that can only be drawn as a plain box, sorted."""
+    return sorted({name for name in class_names if choice_of(name, knowledge).recipe == FALLBACK})
+
+
+def model_of(
+    class_name: str, size: Size, states: frozenset[str], seed: int, knowledge: Knowledge, **more: Any
+) -> Model:
+    """The model of one object.
+
+    Args:
+        class_name: of the knowledge, or any.
+        size: width, height, depth of its box when it faces +z.
+        states: those it is in.
+        seed: of the object; decides variant and colours.
+        knowledge: for hypernyms.
+        more: further fields of `Look`.
+    """
+    choice = choice_of(class_name, knowledge)
+    recipe = RECIPES[choice.recipe]
+    variant = derive(seed, "variant") % recipe.variants if choice.variant is None else choice.variant
+    visible = states & {"OPEN", "ON", "DIRTY", "PLUGGED_OUT"}
+    look = Look(_rounded(size), variant, seed, visible, choice.color, choice.kind)
+    return Model(choice.recipe, replace(look, **more))
+
+
+def _rounded(size: Size) -> Size:
+    x, y, z = (max(round(float(value), 4), 0.002) for value in size)
+    return x, y, z
+
+
+@lru_cache(maxsize=4096)
+def draw(model: Model) -> Mesh:
+    """The mesh of a model, standing on y = 0 and facing +z."""
+    mesh = RECIPES[model.recipe].draw(model.look)
+    return _soiled(mesh) if "DIRTY" in model.look.states else mesh
+
+
+def _soiled(mesh: Mesh) -> Mesh:
+    """With stains on everything that has no texture of its own."""
+    bare = mesh.textures == SLOTS["plain"]
+    textures, uvs, surface = mesh.textures.copy(), mesh.uvs.copy(), mesh.surface.copy()
+    textures[bare] = SLOTS["grime"]
+    extent = float(max(*(mesh.bounds()[1] - mesh.bounds()[0]), 0.05))
+    uvs[bare] *= 1.2 / extent
+    surface[~bare, :3] *= 0.75
+    surface[:, 4] *= 0.3
+    return replace(mesh, textures=textures, uvs=uvs, surface=surface)

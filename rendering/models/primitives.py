@@ -1,0 +1,85 @@
+"""What the model files can say: shapes, functions, paints, and the quantities of the object that is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TypeVar
+
+from hearth.rendering.models import paint as paints
+from hearth.rendering.models import shapes
+from hearth.rendering.models.expressions import MATH, Values
+from hearth.rendering.models.leaf import leaf
+from hearth.rendering.models.look import Look, Region, nowhere, over, shelves, top
+from hearth.rendering.models.mesh import Mesh
+from hearth.rendering.models.paint import Paint
+from hearth.rendering.models.pictures import PAINTINGS, SHOWS
+
+Value = TypeVar("Value")
+
+SHAPES: dict[str, Callable[..., Mesh]] = {
+    "ball": shapes.ball,
+    "block": shapes.block,
+    "box": shapes.box,
+    "cushion": shapes.cushion,
+    "cylinder": shapes.cylinder,
+    "lathe": shapes.lathe,
+    "leaf": leaf,
+    "medallion": shapes.medallion,
+    "panel": shapes.panel,
+    "prism": shapes.prism,
+    "quads": shapes.quads,
+    "rod": shapes.rod,
+    "tube": shapes.tube,
+}
+LINES = frozenset(("lathe", "prism", "quads", "tube"))
+"""Shapes whose list is one line or outline; the others list what they take in order."""
+
+
+def _lookup(table: Mapping[str, Value], key: str, default: Value) -> Value:
+    return table.get(key, default)
+
+
+FUNCTIONS: Values = {
+    **MATH,
+    "arc": shapes.arc,
+    "Paint": Paint,
+    "tinted": Paint.tinted,
+    "lit": Paint.lit,
+    "color_of": lambda paint: paint.color,
+    "lookup": _lookup,
+    "region": Region,
+    **{name: value for name, value in vars(paints).items() if name.isupper()},
+    "PAINTINGS": PAINTINGS,
+    "SHOWS": SHOWS,
+}
+"""What every expression of a model knows."""
+
+
+def names_of(look: Look) -> Values:
+    """What an expression of a model knows about the object: its size w, h, d and all that decides how it looks."""
+    w, h, d = look.size
+    return {
+        **FUNCTIONS,
+        "w": w, "h": h, "d": d,
+        "kind": look.kind, "color": look.color, "variant": look.variant, "seed": look.seed, "hole": look.hole,
+        "open": look.open, "on": look.on, "closed": "CLOSED" in look.states,
+        "rest_height": look.seat, "pick": look.pick, "painted": look.paint, "tint": look.tint,
+        "top": partial(top, look), "nowhere": partial(nowhere, look), "over": partial(_over, look),
+        "shelves": partial(shelves, look), "bottom": partial(_bottom, look),
+    }  # fmt: skip
+
+
+def _over(look: Look, y: float, inset: float = 0.02, **more: float) -> Region:
+    """The whole footprint at height `y`, but for its rim; `more` replaces further sides."""
+    return over(look, y, inset)._replace(**more)
+
+
+def _bottom(look: Look) -> tuple[Region, ...]:
+    """The bottom of a vessel."""
+    w, h, d = look.size
+    return (Region(min(0.03, h * 0.2), -w * 0.25, w * 0.25, -d * 0.25, d * 0.25, h),)
+
+
+KNOWN = frozenset(names_of(Look((1.0, 1.0, 1.0))))
+"""Every name that `names_of` gives a value."""

@@ -1,0 +1,1 @@
+"""Bodies: skeleton, figure, gestures, and what they do at each moment."""

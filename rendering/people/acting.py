@@ -1,0 +1,387 @@
+"""Characters through a program: where each stands, sits or lies at a tick, and what its body does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import atan2, cos, degrees, radians, sin
+
+from hearth.homes.forms import form
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.people.figure import BODIES, Body, Figure
+from hearth.rendering.people.gestures import Gesture, gesture_of
+from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.scene.places import HANDS, Places, Pose
+from hearth.rendering.scene.prepared import local_size
+from hearth.rendering.scene.standing_places import Ground
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
+from hearth.schemas.program import Step
+from hearth.schemas.rng import derive
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+
+ARM = 0.85
+"""Metres from which one steps nearer before using the hands."""
+
+WEARABLE_TOP = ("shirt", "jacket", "dress", "pajamas")
+SEAT_FRONT = 0.12
+"""How far before the middle of a seat the hips are."""
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """One character at one moment.
+
+    Attributes:
+        node: the character's.
+        body: its looks.
+        spot: where it is on the floor plan (sitting: below its hips; lying: below its middle).
+        level: height of the floor there.
+        yaw: the way it faces, degrees from +z towards +x.
+        stance: what its body does.
+        room: id of the room it is in.
+        place: id of what it sits or lies on, or 0.
+    """
+
+    node: Node
+    body: Body
+    spot: Spot
+    level: float
+    yaw: float
+    stance: Stance
+    room: int
+    place: int = 0
+
+    @property
+    def position(self) -> Point:
+        """On the floor."""
+        return self.spot[0], self.level, self.spot[1]
+
+    def local(self, point: Point) -> Point:
+        """A world point in the figure's frame."""
+        x, z = point[0] - self.spot[0], point[2] - self.spot[1]
+        c, s = cos(radians(self.yaw)), sin(radians(self.yaw))
+        return x * c - z * s, point[1] - self.level, x * s + z * c
+
+    def world(self, point: Point) -> Point:
+        """A point of the figure's frame in the world."""
+        c, s = cos(radians(self.yaw)), sin(radians(self.yaw))
+        return (
+            self.spot[0] + point[0] * c + point[2] * s,
+            self.level + point[1],
+            self.spot[1] - point[0] * s + point[2] * c,
+        )
+
+    def figure(self) -> Figure:
+        """What is drawn."""
+        return Figure(self.body, self.stance)
+
+    def hand(self, side: str) -> Point:
+        """Where its `right` or `left` hand is, in the world."""
+        joint = self.figure().joints()[f"hand_{side[0]}"]
+        return self.world((float(joint[0]), float(joint[1]), float(joint[2])))
+
+
+def cast(graph: EnvironmentGraph, ground: Ground, places: Places, seed: int) -> tuple[Actor, ...]:
+    """The characters of a graph as a program begins, in the order of their ids."""
+    names = sorted(BODIES)
+    actors: list[Actor] = []
+    for number, node in enumerate(n for n in graph.nodes if n.category == CHARACTER_CATEGORY):
+        body = BODIES[names[(derive(seed, "body") + number) % len(names)]]
+        room = room_of(graph, node.id)
+        spot = _initial(node, room, ground, [a.spot for a in actors])
+        actors.append(Actor(node, body, spot, ground.level, node.yaw or 0.0, Stance(), room))
+    return tuple(_seated(actor, graph, places, None) for actor in actors)
+
+
+def _initial(node: Node, room: int, ground: Ground, taken: list[Spot]) -> Spot:
+    """Where the graph has the character if that is in its room; else the middle of the room's free floor."""
+    if node.box:
+        x, z = node.box.center[0], node.box.center[2]
+        near = ground.spot_for(node.box, None, room, (x, z), taken)
+        if near is not None and abs(near[0] - x) + abs(near[1] - z) < 1.2:
+            return (x, z) if not taken else near
+    return ground.spot_in(room, taken) or ((node.box.center[0], node.box.center[2]) if node.box else (0.0, 0.0))
+
+
+def room_of(graph: EnvironmentGraph, node_id: int) -> int:
+    """The id of the room a node is INSIDE, or 0."""
+    rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
+    return next(
+        (e.target for e in graph.edges if e.source == node_id and e.relation == "INSIDE" and e.target in rooms), 0
+    )
+
+
+def moved(
+    actor: Actor, graph: EnvironmentGraph, places: Places, ground: Ground, step: Step | None, others: list[Spot]
+) -> Actor:
+    """The character after a step: gone where it must be, seated if it is; hands still at rest."""
+    room = room_of(graph, actor.node.id) or actor.room
+    if _states(graph, actor.node.id) & {"SITTING", "LYING"}:
+        return _seated(replace(actor, room=room), graph, places, step)
+    if actor.place:
+        actor = _risen(actor, places, ground, others)
+    actor = replace(actor, stance=Stance(), place=0)
+    goes = room != actor.room or gesture_of(step).stride > 0
+    what = _goal(step)
+    pose, front = reachable(what, places) if what and what != room else (None, None)
+    if pose is None:
+        spot = ground.spot_in(room, others) if goes else None
+        return replace(actor, spot=spot or actor.spot, room=room)
+    acts = step is not None and (gesture_of(step).near or step.action == "Find")
+    if goes or (acts and _gap(actor.spot, pose.box) > ARM):
+        there = room_of(graph, what) or room
+        now = actor.spot if there == actor.room else None
+        spot = ground.spot_for(pose.box, front, there, now, others, outermost(what, places)[0])
+        actor = replace(actor, spot=spot or actor.spot, room=there)
+    return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
+
+
+def _goal(step: Step | None) -> int:
+    """The node that a step is about: what hands or eyes go to; 0 for none."""
+    if step is None or not step.objects:
+        return 0
+    return step.objects[min(gesture_of(step).about, len(step.objects) - 1)].node or 0
+
+
+def _risen(actor: Actor, places: Places, ground: Ground, others: list[Spot]) -> Actor:
+    """Standing before what it sat or lay on."""
+    pose = places.poses.get(actor.place)
+    spot = ground.spot_for(pose.box, pose.yaw, actor.room, actor.spot, others) if pose else None
+    return replace(actor, spot=spot or actor.spot)
+
+
+def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
+    """The character with its hands and eyes where the step has them."""
+    held = _held(graph, actor.node.id)
+    height = actor.body.height
+    low = actor.stance.seat + 0.3 if actor.stance.posture == "sitting" else 0.6 * height
+    carry = {side: (sign * 0.16, low, 0.34) for side, sign in (("right", 1.0), ("left", -1.0)) if side in held}
+    hands: dict[str, Point | None] = {"right": carry.get("right"), "left": carry.get("left")}
+    gesture = gesture_of(step)
+    target = _target(step, gesture.hand, places, actor)
+    acting = _acting_side(step, graph, actor.node.id, held)
+    wanted = _hand_target(gesture, target, actor, acting)
+    if wanted is not None and actor.stance.posture != "lying":
+        for side, sign in (("right", 1.0), ("left", -1.0)):
+            if side == acting or gesture.both:
+                spread = 0.12 * sign if gesture.both else 0.0
+                hands[side] = (wanted[0] + spread, wanted[1], wanted[2])
+    if actor.stance.posture == "lying":
+        hands = {"right": None, "left": None}
+    look = _target(step, gesture.gaze, places, actor) if gesture.gaze else None
+    gaze = actor.local(look) if look else None
+    stance = replace(actor.stance, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
+    if stance.posture == "standing":
+        stance = replace(stance, stride=gesture.stride)
+    return replace(actor, stance=stance, body=_dressed(actor.body, graph, actor.node.id))
+
+
+def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
+    """The character as its hand arrives, before anything changes.
+
+    Args:
+        here: where it acts, hands at rest.
+        there: as it will be after the step.
+        places: of the moment before.
+        step: what it does.
+    """
+    if step.action != "Grab" or there.stance.posture == "lying":
+        return there
+    target = _target(step, "object", places, here)
+    if target is None:
+        return there
+    # What is out of reach is approached as far as the body bends.
+    side = _acting_side(step, places.graph, here.node.id, _held(places.graph, here.node.id))
+    at = here.local(target)
+    hands = {"right": here.stance.right, "left": here.stance.left} | {side: at}
+    return replace(there, stance=replace(there.stance, right=hands["right"], left=hands["left"], gaze=at))
+
+
+def _held(graph: EnvironmentGraph, me: int) -> set[str]:
+    return {HANDS[e.relation] for e in graph.edges if e.source == me and e.relation in HANDS}
+
+
+def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
+    """The pose of a thing, and the way one comes at it: its own front, or that of what it is inside."""
+    pose = places.poses.get(node_id)
+    top, inside = outermost(node_id, places)
+    outer = places.poses.get(top)
+    if pose is None:
+        return outer, outer.yaw if outer else None
+    return (outer if inside and outer else pose), (outer.yaw if outer else pose.yaw)
+
+
+def outermost(node_id: int, places: Places) -> tuple[int, bool]:
+    """The furniture that a thing is on or in, itself if it is on none; and whether it is inside something."""
+    top, inside = node_id, False
+    for _ in range(6):
+        spot = places.where.get(top)
+        if spot is None or spot.how not in ("on", "inside"):
+            break
+        if spot.what not in places.poses or spot.what in places.building:
+            break
+        inside |= spot.how == "inside"
+        top = spot.what
+    return top, inside
+
+
+def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
+    """On the seat or bed that the graph says, if it says so."""
+    states = _states(graph, actor.node.id)
+    seat = _seat(actor, graph, step)
+    pose = places.poses.get(seat)
+    if not states & {"SITTING", "LYING"}:
+        return actor
+    if pose is None:
+        return replace(actor, stance=Stance("sitting", 0.45))
+    node = next(n for n in graph.nodes if n.id == seat)
+    yaw, size = pose.yaw or 0.0, local_size(pose.box.size, pose.yaw or 0.0)
+    foot = pose.box.center[1] - pose.box.size[1] / 2
+    known = form(node.class_name, places.knowledge)
+    level = known.levels[0] if known and known.levels and known.levels[0] < size[1] else 0.0
+    regions = recipe_of(node.class_name, places.knowledge).on(Look(size, level=level))
+    region = regions[0]
+    frame = replace(actor, spot=(pose.box.center[0], pose.box.center[2]), level=foot, yaw=yaw, place=seat)
+    seat_height = foot - actor.level + region.y
+    if "LYING" in states:
+        along = yaw if size[2] >= 1.5 else yaw + 90
+        side = size[0] * -0.22 if size[0] > 1.25 and size[2] >= 1.5 else 0.0
+        x, _, z = frame.world((side, 0.0, 0.0))
+        return replace(actor, spot=(x, z), yaw=along, place=seat, stance=Stance("lying", seat_height))
+    places_free = [(region.x0 + region.x1) / 2]
+    if region.x1 - region.x0 > 1.0:
+        places_free = [places_free[0], region.x0 + 0.35, region.x1 - 0.35]
+    if size[2] >= 1.5 and size[0] > 0.85:
+        # On the side of a bed, feet on the floor.
+        x, _, z = frame.world((size[0] / 2 - 0.2, 0.0, 0.15))
+        return replace(actor, spot=(x, z), yaw=yaw + 90, place=seat, stance=Stance("sitting", seat_height))
+    x, _, z = frame.world(
+        (
+            min(places_free, key=lambda at: _crowd(frame.world((at, 0, 0)), places, seat)),
+            0.0,
+            _depth(region.z0, region.z1),
+        )
+    )
+    return replace(actor, spot=(x, z), yaw=yaw, place=seat, stance=Stance("sitting", seat_height))
+
+
+def _depth(z0: float, z1: float) -> float:
+    return min((z0 + z1) / 2, z1 - 0.22) if z1 - z0 > 0.5 else (z0 + z1) / 2 - 0.02
+
+
+def _crowd(at: Point, places: Places, seat: int) -> float:
+    """How many things lie on a seat near a point of it."""
+    on = [
+        places.poses[i].box.center
+        for i, spot in places.where.items()
+        if spot.what == seat and spot.how == "on" and i in places.poses
+    ]
+    return sum(1.0 for center in on if abs(center[0] - at[0]) + abs(center[2] - at[2]) < 0.5)
+
+
+def _states(graph: EnvironmentGraph, node_id: int) -> frozenset[str]:
+    return frozenset(next((node.states for node in graph.nodes if node.id == node_id), ()))
+
+
+def _seat(actor: Actor, graph: EnvironmentGraph, step: Step | None) -> int:
+    """What the character sits or lies on; it stays ON what it has risen from, so the step and the past decide."""
+    on = sorted(e.target for e in graph.edges if e.source == actor.node.id and e.relation == "ON")
+    named = _goal(step) if gesture_of(step).rests else actor.place
+    return named if named in on else next(iter(on), 0)
+
+
+def _gap(spot: Spot, box: Box) -> float:
+    """Metres from a spot to a box's footprint."""
+    dx = max(abs(spot[0] - box.center[0]) - box.size[0] / 2, 0)
+    dz = max(abs(spot[1] - box.center[2]) - box.size[2] / 2, 0)
+    return float((dx * dx + dz * dz) ** 0.5)
+
+
+def _towards(spot: Spot, point: Point, usual: float) -> float:
+    dx, dz = point[0] - spot[0], point[2] - spot[1]
+    return degrees(atan2(dx, dz)) if abs(dx) + abs(dz) > 1e-3 else usual
+
+
+def _target(step: Step | None, which: str, places: Places, actor: Actor) -> Point | None:
+    """The point of a step's object that hands and eyes go to, in the world: on its box, nearest to the chest."""
+    if step is None or not step.objects:
+        return None
+    ref = step.objects[-1 if which == "second" else 0]
+    pose = places.poses.get(ref.node or -1) or reachable(ref.node or -1, places)[0]
+    if pose is None:
+        return None
+    chest = actor.world((0.15, actor.body.height * 0.75, 0.1))
+    x, y, z = (min(max(p, c - s / 2), c + s / 2) for p, c, s in zip(chest, pose.box.center, pose.box.size, strict=True))
+    return x, y, z
+
+
+def _acting_side(step: Step | None, graph: EnvironmentGraph, me: int, held: set[str]) -> str:
+    """The hand that acts: the one that holds the object, else a free one, the right first."""
+    for edge in graph.edges:
+        if (
+            step
+            and edge.source == me
+            and edge.relation in HANDS
+            and any(ref.node == edge.target for ref in step.objects)
+        ):
+            return HANDS[edge.relation]
+    return "left" if "right" in held and "left" not in held else "right"
+
+
+def _hand_target(gesture: Gesture, target: Point | None, actor: Actor, side: str) -> Point | None:
+    """Where the acting hand goes, in the figure's frame."""
+    height, sign = actor.body.height, 1.0 if side == "right" else -1.0
+    base = actor.stance.seat - 0.44 * height * 1.1 if actor.stance.posture == "sitting" else 0.0
+    fixed: dict[str, Point] = {
+        "mouth": (sign * 0.05, 0.87 * height + base, 0.2),
+        "chest": (0.0, 0.68 * height + base, 0.33),
+        "carry": (sign * 0.14, 0.66 * height + base, 0.34),
+        "wave": (sign * 0.34, 1.0 * height + base, 0.15),
+    }
+    if gesture.hand in fixed:
+        return fixed[gesture.hand]
+    return actor.local(target) if gesture.hand in ("object", "second") and target else None
+
+
+def _dressed(body: Body, graph: EnvironmentGraph, me: int) -> Body:
+    """The body in what it wears: a shirt or trousers change its colours."""
+    classes = {node.id: node.class_name for node in graph.nodes}
+    for edge in sorted(e for e in graph.edges if e.target == me and e.relation == "ON"):
+        name = classes.get(edge.source, "")
+        color = ("#4a6f9a", "#b5564a", "#5f8a5a", "#d8b04a")[derive(edge.source, "worn") % 4]
+        if any(part in name for part in WEARABLE_TOP):
+            body = replace(body, top=color, weave="stripes" if "pajamas" in name else "fabric")
+        elif "pants" in name:
+            body = replace(body, bottom=color, skirt=False)
+        elif "shoes" in name or "slippers" in name:
+            body = replace(body, shoes=color)
+    return body
+
+
+def carried(actors: tuple[Actor, ...], places: Places) -> Mapping[int, Pose]:
+    """Where what hands hold and heads wear is."""
+    found: dict[int, Pose] = {}
+    nodes = {node.id: node for node in places.graph.nodes}
+    for actor in actors:
+        for edge in places.graph.edges:
+            if edge.source == actor.node.id and edge.relation in HANDS:
+                size = places.size_of(nodes[edge.target])
+                found[edge.target] = _in_hand(actor, actor.hand(HANDS[edge.relation]), size)
+            elif edge.target == actor.node.id and edge.relation == "ON" and "hat" in nodes[edge.source].class_name:
+                head = actor.figure().joints()["head"]
+                size = places.size_of(nodes[edge.source])
+                x, y, z = actor.world((float(head[0]), float(head[1]) + 0.05 + size[1] / 2, float(head[2])))
+                found[edge.source] = Pose(Box((x, y, z), size), 0.0)
+    return found
+
+
+def _in_hand(actor: Actor, hand: Point, size: Point) -> Pose:
+    """The box of a thing in a hand: gripped a little above its foot, in front of the palm."""
+    x, y, z = actor.local(hand)
+    lift = size[1] * 0.5 - min(size[1] * 0.4, 0.06)
+    center = actor.world((x, y + lift, z + min(size[2] * 0.3, 0.1) + 0.02))
+    turned = round(actor.yaw / 90) * 90
+    w, h, d = size
+    box = (w, h, d) if turned % 180 == 0 else (d, h, w)
+    return Pose(Box(center, box), float(turned))

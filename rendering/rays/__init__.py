@@ -1,0 +1,1 @@
+"""Casting rays and shading what they hit."""

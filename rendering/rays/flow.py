@@ -1,0 +1,82 @@
+"""Optical flow: where each visible point is in the next picture (thesis 2.4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.arrays import Floats
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.models.mesh import rotation
+from hearth.rendering.rays.maps import HORIZON, motion
+from hearth.rendering.rays.shading import chunks
+from hearth.rendering.rays.shot import Shot, everywhere, shoot_after
+from hearth.rendering.rays.threads import each
+from hearth.rendering.scene.instances import Thing, placed
+from hearth.rendering.scene.scene import Scene
+
+
+def flow(shot: Shot, after: Shot) -> Floats:
+    """(H, W, 2) how many pixels each point moves right and down until the next picture; NaN where it is not seen there.
+
+    Points move with their triangles, so limbs count as well as what is carried; things whose shape changes (a door
+    that opens) move as a whole. The sky turns with the camera only.
+
+    Args:
+        shot: a picture.
+        after: the next one, of any camera of the same size.
+    """
+    ids, later = each(_ids, (shot, after))
+    far = np.where(after.hits.triangle >= 0, after.distance, np.float32(HORIZON))
+    out = np.empty((len(shot.rays), 2), np.float32)
+    size = (shot.camera.width, shot.camera.height)
+    shifts, first, frame = _shifts(shot, after), shot.geometry.first, _frame(after.camera)
+    distance, triangle, u, v = shot.hits
+
+    def work(chunk: NDArray[np.int32]) -> None:
+        part = int(chunk[0]), int(chunk[-1]) + 1
+        motion(shot.rays, distance, triangle, u, v, shifts, first, frame, *size, *part, ids, later, far, out)
+
+    each(work, chunks(everywhere(len(out))))
+    return shot.image(out)
+
+
+def flow_of(scene: Scene, shot: Shot) -> Floats:
+    """Flow from a shot to the same camera's picture of a later scene."""
+    return flow(shot, shoot_after(scene, shot))
+
+
+def _ids(shot: Shot) -> NDArray[np.int32]:
+    """(N,) node ids of what is seen, -1 for nothing."""
+    return np.array([*(thing.id for thing in shot.geometry.things), -1], np.int32).take(shot.owner, mode="wrap")
+
+
+def _frame(camera: Camera) -> Floats:
+    pose = camera.pose
+    return np.array([*camera.eye, *pose[:3, 0], *pose[:3, 1], *pose[:3, 2], camera.intrinsics[0, 0]], np.float32)
+
+
+def _shifts(shot: Shot, after: Shot) -> Floats:
+    """(M, 3, 3) by how much the corners of the triangles that move do so until the later moment."""
+    part = shot.geometry.moving
+    shifts = np.zeros_like(part.mesh.corners)
+    later: dict[int, Thing] = {}
+    for thing in after.geometry.moving.things:
+        later.setdefault(thing.id, thing)
+    there = set(after.geometry.moving.things)
+    for thing, start in zip(part.things, part.starts.tolist(), strict=True):
+        if thing not in there and thing.id in later:
+            before = placed(thing).corners
+            shifts[start : start + len(before)] = _displaced(before, thing, later[thing.id])
+    return np.ascontiguousarray(shifts, np.float32)
+
+
+def _displaced(before: Floats, thing: Thing, other: Thing) -> Floats:
+    """(T, 3, 3) by how much corners move when one thing becomes another."""
+    now = placed(other).corners
+    if len(before) == len(now):
+        return now - before
+    # Another shape: it moves as a whole.
+    turn = rotation("y", other.yaw - thing.yaw).T
+    moved: Floats = (before - np.array(thing.position, np.float32)) @ turn + np.array(other.position, np.float32)
+    return moved - before

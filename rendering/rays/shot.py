@@ -1,0 +1,168 @@
+"""Shots: a camera's rays, cast once at a scene, that every modality is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.arrays import Floats, Image
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.rays import shading
+from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays.kernels import taken
+from hearth.rendering.rays.shading import Setting
+from hearth.rendering.rays.threads import each
+from hearth.rendering.scene.lights import from_above
+from hearth.rendering.scene.scene import Scene
+from hearth.rendering.scene.triangles import Geometry
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One cast of a camera's rays, shared by all modalities.
+
+    Attributes:
+        scene, camera, geometry: what, from where.
+        rays: (H*W, 6); moved down to the cut for views from above.
+        skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; empty without a cut.
+        hits: what they hit.
+        class_ids: class -> number.
+        after: the next moment, if it is known: for optical flow.
+        behind: what the rays hit of the part that stays; for the next moment, too.
+    """
+
+    scene: Scene
+    camera: Camera
+    geometry: Geometry
+    rays: Floats
+    skipped: Floats
+    hits: Hits
+    class_ids: Mapping[str, int]
+    after: Scene | None = None
+    behind: Hits | None = None
+
+    @cached_property
+    def owner(self) -> NDArray[np.int32]:
+        """(H*W,) index of the thing that is seen, -1 for none."""
+        return self.geometry.owner(self.hits.triangle)
+
+    @cached_property
+    def distance(self) -> Floats:
+        """(H*W,) along the camera's axis, metres; infinite for none."""
+        far: Floats = self.hits.distance + self.skipped if len(self.skipped) else self.hits.distance
+        return far
+
+    def image(self, values: NDArray[Any]) -> Image:
+        """(H*W, ...) values as (H, W, ...)."""
+        return values.reshape(self.camera.height, self.camera.width, *values.shape[1:])
+
+
+def shoot(scene: Scene, camera: Camera, class_ids: Mapping[str, int] | None = None, after: Scene | None = None) -> Shot:
+    """Cast a camera's rays."""
+    rays, skipped = camera_rays(camera)
+    geometry = scene.geometry if camera.cut is None else scene.opened
+    hits = Hits.none(len(rays))
+    cast_at(geometry, rays, everywhere(len(rays)), hits)
+    behind = hits.copy() if after else None
+    overlay(geometry, camera, rays, hits)
+    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {}, after, behind)
+
+
+def shoot_after(scene: Scene, shot: Shot) -> Shot:
+    """A later scene by the camera of a shot, whose rays are only cast again at what may have moved."""
+    camera = shot.camera
+    geometry = scene.geometry if camera.cut is None else scene.opened
+    if shot.behind is None or geometry.still is not shot.geometry.still:
+        return shoot(scene, camera)
+    prepare(geometry)
+    hits = shot.behind.copy()
+    overlay(geometry, camera, shot.rays, hits)
+    return replace(shot, scene=scene, geometry=geometry, hits=hits, after=None)
+
+
+def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:
+    """Fill in what some pixels' rays hit of the part that stays."""
+    prepare(geometry)
+
+    def work(chunk: NDArray[np.int32]) -> None:
+        part = slice(int(chunk[0]), int(chunk[-1]) + 1)
+        for values, found in zip(hits, geometry.still.caster.cast(rays[part]), strict=True):
+            values[part] = found
+
+    each(work, shading.chunks(pixels))
+
+
+def prepare(geometry: Geometry) -> None:
+    """Build what threads share, before they do."""
+    for part in (geometry.still, geometry.moving):
+        _ = part.caster, part.shadows, part.rows
+
+
+def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDArray[np.int32]:
+    """Cast the rays that can meet moving things at them; gives the pixels that show one."""
+    moving = geometry.moving
+    if not len(moving.mesh):
+        return everywhere(0)
+    covered = np.zeros(camera.height * camera.width, np.bool_)
+    for box in moving.boxes:
+        left, top, right, bottom = camera.extent(box)
+        covered.reshape(camera.height, camera.width)[top:bottom, left:right] = True
+    pixels = np.flatnonzero(covered).astype(np.int32)
+
+    def work(chunk: NDArray[np.int32]) -> NDArray[np.int32]:
+        some = np.empty((len(chunk), 6), np.float32)
+        taken(rays, chunk, some)
+        return geometry.overlay(chunk, some, hits)
+
+    found = each(work, shading.chunks(pixels))
+    return np.concatenate(found) if found else everywhere(0)
+
+
+@lru_cache(maxsize=8)
+def everywhere(size: int) -> NDArray[np.int32]:
+    """All pixels. Not to be written to."""
+    return np.arange(size, dtype=np.int32)
+
+
+NO_CUT: Floats = np.zeros(0, np.float32)
+
+
+@lru_cache(maxsize=6)
+def camera_rays(camera: Camera, offset: tuple[float, float] = (0.5, 0.5)) -> tuple[Floats, Floats]:
+    """(N, 6) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
+    rays = camera.rays(offset)
+    if camera.cut is None:
+        return rays, NO_CUT
+    skipped = np.maximum((rays[:, 1] - camera.cut) / np.maximum(-rays[:, 4], 1e-6), 0).astype(np.float32)
+    rays[:, :3] += rays[:, 3:] * skipped[:, None]
+    return rays, skipped
+
+
+def draft(shot: Shot) -> NDArray[np.uint8]:
+    """(H*W, 3) colours with one ray a pixel and hard shadows."""
+    out = np.empty((len(shot.rays), 3), np.uint8)
+    shading.whole(
+        shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting_of(shot), out
+    )
+    return out
+
+
+def setting_of(shot: Shot, *, fine: bool = False, share: float = 1.0) -> Setting:
+    """The light of a shot; `share` of a pixel is what one ray stands for."""
+    above = shot.camera.cut is not None
+    day = from_above(shot.scene.day) if above else shot.scene.day
+    return Setting.of(shot.scene.lights, day, plain=above, angle=pixel_angle(shot) * share, fine=fine)
+
+
+def pixel_angle(shot: Shot) -> float:
+    """Radians a pixel spans, as distances along the rays have it."""
+    angle = 1 / float(shot.camera.intrinsics[0, 0])
+    if shot.camera.cut is None:
+        return angle
+    # Distances count from the cut, and textures must shrink with the distance from the eye.
+    return angle * (1 + float(np.median(shot.skipped)) / max((shot.camera.cut - shot.camera.target[1]) / 2, 0.1))

@@ -1,0 +1,1 @@
+"""From a graph with boxes to triangles: what stands where, what shines."""

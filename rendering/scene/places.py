@@ -1,0 +1,299 @@
+"""Where things are when a world says only ON, INSIDE or held: boxes for what was moved, put down or added."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import cos, radians, sin
+from typing import NamedTuple
+
+from hearth.homes.forms import form
+from hearth.kb.knowledge import Knowledge
+from hearth.rendering.models.look import Look, Region
+from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.scene.prepared import LIQUIDS, liquid, local_size
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point
+from hearth.schemas.rng import derive
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+
+HANDS = {"HOLDS_RH": "right", "HOLDS_LH": "left"}
+BUILDING = frozenset({"floor", "wall", "ceiling", "doorjamb", "window"})
+STEP = 0.04
+"""Metres between the places that are tried."""
+
+
+class Where(NamedTuple):
+    """Where a thing is by the graph: `held` by, `worn` by, `on` or `inside` what; `room` when only that is known."""
+
+    how: str
+    what: int
+
+
+class Pose(NamedTuple):
+    """A box and the way it faces."""
+
+    box: Box
+    yaw: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where everything is at one moment. Immutable; `settled` gives the next.
+
+    Attributes:
+        graph: of the moment.
+        where: node id -> where it is by the graph.
+        poses: node id -> box and yaw; what is held, worn or has no place has none.
+        knowledge: for recipes and sizes.
+    """
+
+    graph: EnvironmentGraph
+    where: Mapping[int, Where]
+    poses: Mapping[int, Pose]
+    knowledge: Knowledge
+
+    @cached_property
+    def building(self) -> frozenset[int]:
+        """Floors, walls and the like, which nobody walks up to for what stands on them."""
+        return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
+
+    @classmethod
+    def start(cls, home: EnvironmentGraph, knowledge: Knowledge) -> Places:
+        """A home as it was built: boxes as given."""
+        poses = {node.id: Pose(node.box, node.yaw) for node in home.nodes if node.box}
+        return cls(home, whereabouts(home), poses, knowledge)
+
+    def settled(self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None) -> Places:
+        """The places after the graph changed: what it does not say to have moved stays, the rest finds a place.
+
+        Args:
+            graph: of the next moment.
+            near: character id -> where it stands; things are put down on that side.
+        """
+        where = whereabouts(graph)
+        nodes = {node.id: node for node in graph.nodes}
+        poses: dict[int, Pose] = {}
+        for node_id in _parents_first(nodes, where):
+            node, spot = nodes[node_id], where.get(node_id)
+            if node.category in (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts"):
+                if node_id in self.poses:
+                    poses[node_id] = self.poses[node_id]
+                continue
+            pose = self._pose(node, spot, nodes, poses, tuple((near or {}).values()))
+            if pose is not None:
+                poses[node_id] = pose
+        return Places(graph, where, poses, self.knowledge)
+
+    def nodes(self) -> list[Node]:
+        """The graph's nodes with their boxes of this moment."""
+        found = []
+        for node in self.graph.nodes:
+            pose = self.poses.get(node.id)
+            if pose is None:
+                found.append(replace(node, box=None) if node.box else node)
+            else:
+                same = node.box == pose.box and node.yaw == pose.yaw
+                found.append(node if same else replace(node, box=pose.box, yaw=pose.yaw))
+        return found
+
+    def size_of(self, node: Node) -> Point:
+        """Width, height and depth of a thing in its own frame."""
+        pose = self.poses.get(node.id)
+        if pose:
+            return local_size(pose.box.size, pose.yaw or 0.0)
+        if node.box:
+            return local_size(node.box.size, node.yaw or 0.0)
+        known = form(node.class_name, self.knowledge)
+        return known.size if known and all(known.size) else recipe_of(node.class_name, self.knowledge).size
+
+    def _pose(
+        self,
+        node: Node,
+        spot: Where | None,
+        nodes: Mapping[int, Node],
+        poses: Mapping[int, Pose],
+        near: tuple[Point, ...],
+    ) -> Pose | None:
+        before = self.poses.get(node.id)
+        if spot is None or spot.how in ("held", "worn"):
+            return before if spot is None else None
+        if before and self.where.get(node.id) == spot:
+            old, new = self.poses.get(spot.what), poses.get(spot.what)
+            if spot.how == "room" or old is None or new is None or old == new:
+                return before
+        parent = nodes.get(spot.what)
+        if parent is None:
+            return before
+        support = poses.get(spot.what)
+        if spot.how == "room" or parent.class_name == "floor" or support is None:
+            return self._on_floor(node, parent, poses, near) if spot.how != "on" or support else before
+        if node.class_name in LIQUIDS and spot.how == "inside" and max(support.box.size) < 0.5:
+            return Pose(liquid(node, support.box).box or support.box, support.yaw)
+        return self._placed(node, parent, support, spot.how, poses, near)
+
+    def _placed(
+        self, node: Node, parent: Node, support: Pose, how: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
+    ) -> Pose:
+        """On or in a thing that has a box: at the free place nearest to whoever is there."""
+        recipe = recipe_of(parent.class_name, self.knowledge)
+        yaw = support.yaw or 0.0
+        known = form(parent.class_name, self.knowledge)
+        size = local_size(support.box.size, yaw)
+        level = known.levels[0] if known and known.levels and known.levels[0] < size[1] else 0.0
+        regions = (recipe.inside if how == "inside" else recipe.on)(Look(size, level=level, kind=""))
+        regions = regions or (Region(0.02, -size[0] * 0.3, size[0] * 0.3, -size[2] * 0.3, size[2] * 0.3, size[1]),)
+        wanted = (
+            _laid(self.size_of(node))
+            if how == "on" and recipe_of(node.class_name, self.knowledge).size[1] < 0.05
+            else self.size_of(node)
+        )
+        others = self._around(support.box, poses, (node.id, parent.id))
+        return _best(wanted, regions, support, others, near, derive(0, "place", node.id))
+
+    def _around(self, box: Box, poses: Mapping[int, Pose], but: tuple[int, ...]) -> list[Box]:
+        """The boxes of other things over or in a box."""
+        (x, y, z), (w, h, d) = box
+        space = Box((x, y + 0.5, z), (w, h + 1.0, d))
+        bulky = {node.id for node in self.graph.nodes if node.category == ROOM_CATEGORY}
+        found = (pose.box for other, pose in poses.items() if other not in but and other not in bulky)
+        return [other for other in found if _overlap(other, space) > 0]
+
+    def _on_floor(self, node: Node, room: Node, poses: Mapping[int, Pose], near: tuple[Point, ...]) -> Pose | None:
+        """On the floor, beside whoever is there, else in the middle of the room."""
+        base = poses.get(room.id)
+        if base is None:
+            return self.poses.get(node.id)
+        (x, y, z), (w, h, d) = base.box.center, base.box.size
+        top = y + h / 2 if room.class_name == "floor" else y - h / 2
+        ground = Pose(Box((x, top, z), (w, 0.0, d)), 0.0)
+        region = Region(0.0, -w / 2 + 0.1, w / 2 - 0.1, -d / 2 + 0.1, d / 2 - 0.1)
+        others = self._around(Box((x, top + 0.05, z), (w, 0.1, d)), poses, (node.id, room.id))
+        people = [Box((px, top + 0.9, pz), (0.4, 1.8, 0.4)) for px, _, pz in near]
+        inside = [p for p in near if abs(p[0] - x) < w / 2 and abs(p[2] - z) < d / 2]
+        return _best(self.size_of(node), (region,), ground, others + people, tuple(inside), derive(0, "place", node.id))
+
+
+def whereabouts(graph: EnvironmentGraph) -> dict[int, Where]:
+    """For every thing the most particular place that a graph names: hand, wearer, support, container or room."""
+    nodes = {node.id: node for node in graph.nodes}
+    ranks = {"held": 0, "worn": 1, "on": 2, "inside": 3, "on building": 4, "room": 5}
+    best: dict[int, tuple[int, int, Where]] = {}
+    for edge in graph.edges:
+        how, thing, what = _read(edge.relation, edge.source, edge.target, nodes)
+        if not how:
+            continue
+        rank = (ranks[how], what, Where(how.removesuffix(" building"), what))
+        if thing not in best or rank < best[thing]:
+            best[thing] = rank
+    return {thing: found[2] for thing, found in sorted(best.items())}
+
+
+def _read(relation: str, source: int, target: int, nodes: Mapping[int, Node]) -> tuple[str, int, int]:
+    """(how, thing, what) that an edge says about a thing's place; how is empty if nothing."""
+    if source not in nodes or target not in nodes:
+        return "", source, target
+    if relation in HANDS:
+        return "held", target, source
+    if nodes[source].category == CHARACTER_CATEGORY:
+        return "", source, target
+    if relation == "ON":
+        if nodes[target].category == CHARACTER_CATEGORY:
+            return "worn", source, target
+        return "on building" if nodes[target].class_name in BUILDING else "on", source, target
+    if relation == "INSIDE":
+        return "room" if nodes[target].category == ROOM_CATEGORY else "inside", source, target
+    return "", source, target
+
+
+def _parents_first(nodes: Mapping[int, Node], where: Mapping[int, Where]) -> list[int]:
+    """Ids so that what something is on or in comes before it."""
+    done: dict[int, None] = {}
+
+    def visit(node_id: int, trail: tuple[int, ...]) -> None:
+        spot = where.get(node_id)
+        if spot and spot.what in nodes and spot.what not in done and spot.what not in trail:
+            visit(spot.what, (*trail, node_id))
+        done.setdefault(node_id)
+
+    # What stays where it is comes first by being older: low ids are the home's own.
+    for node_id in sorted(nodes):
+        visit(node_id, ())
+    return list(done)
+
+
+def _laid(size: Point) -> Point:
+    """The size of a flat thing lying down."""
+    w, h, d = size
+    return (w, d, h) if h > d else size
+
+
+def _best(
+    size: Point, regions: Iterable[Region], support: Pose, others: list[Box], near: tuple[Point, ...], seed: int
+) -> Pose:
+    """The free place nearest to someone; the first region that has one. Stacked where there is none."""
+    yaw = support.yaw or 0.0
+    fallback: tuple[float, Pose] | None = None
+    for region in regions:
+        fitted = _fitted(size, region)
+        for pose in _candidates(fitted, region, support, yaw, near, seed):
+            crowd = sum(_overlap(pose.box, other) for other in others)
+            if crowd <= 1e-9:
+                return pose
+            if fallback is None or crowd < fallback[0]:
+                fallback = (crowd, pose)
+    assert fallback is not None
+    return _stacked(fallback[1], others)
+
+
+def _fitted(size: Point, region: Region) -> Point:
+    """Scaled down where the region is too small for it."""
+    room = (region.x1 - region.x0, region.clear, region.z1 - region.z0)
+    share = min(1.0, *(max(r, 0.01) / max(s, 1e-6) for r, s in zip(room, size, strict=True)))
+    return size[0] * share, size[1] * share, size[2] * share
+
+
+def _candidates(
+    size: Point, region: Region, support: Pose, yaw: float, near: tuple[Point, ...], seed: int
+) -> list[Pose]:
+    """Places all over a region, the best first."""
+    (cx, cy, cz), height = support.box.center, support.box.size[1]
+    c, s = cos(radians(yaw)), sin(radians(yaw))
+    y = cy - height / 2 + region.y + size[1] / 2 + 0.001
+    xs = _ticks(region.x0 + size[0] / 2, region.x1 - size[0] / 2)
+    zs = _ticks(region.z0 + size[2] / 2, region.z1 - size[2] / 2)
+    found = []
+    for i, x in enumerate(xs):
+        for k, z in enumerate(zs):
+            at = (cx + x * c + z * s, y, cz - x * s + z * c)
+            away = min((abs(at[0] - p[0]) + abs(at[2] - p[2]) for p in near), default=0.0)
+            middle = abs(x) * 0.3 + abs(z - (region.z0 + region.z1) / 2) * 0.15
+            found.append((round(away * 0.7 + middle + 0.02 * ((seed + i * 7919 + k * 104729) % 101) / 101, 6), at))
+    w, d = (size[0], size[2]) if abs(c) > abs(s) else (size[2], size[0])
+    return [Pose(Box(at, (w, size[1], d)), yaw) for _, at in sorted(found)]
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    if high <= low:
+        return [(low + high) / 2]
+    count = min(max(1, int((high - low) / STEP)), 40)
+    return [low + (high - low) * k / count for k in range(count + 1)]
+
+
+def _overlap(a: Box, b: Box) -> float:
+    """Volume shared by two boxes."""
+    volume = 1.0
+    for p, q, s, t in zip(a.center, b.center, a.size, b.size, strict=True):
+        side = (s + t) / 2 - abs(p - q)
+        if side <= 1e-4:
+            return 0.0
+        volume *= min(side, s, t)
+    return volume
+
+
+def _stacked(pose: Pose, others: list[Box]) -> Pose:
+    """Lifted onto what is in its place, if that is small enough to stand on."""
+    (x, y, z), size = pose.box.center, pose.box.size
+    low = y - size[1] / 2
+    tops = [o.center[1] + o.size[1] / 2 for o in others if _overlap(pose.box, o) > 1e-9 and o.size[1] < 0.35]
+    return Pose(Box((x, max([low, *tops]) + size[1] / 2, z), size), pose.yaw)

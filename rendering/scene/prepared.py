@@ -1,0 +1,328 @@
+"""From an environment graph to a scene: which model stands where, and what shines."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from math import cos, radians, sin
+
+from hearth.homes.forms import form
+from hearth.kb.knowledge import Knowledge
+from hearth.rendering.models.catalog import RECIPES
+from hearth.rendering.models.look import Look, Size
+from hearth.rendering.models.looks import Model, choice_of, model_of
+from hearth.rendering.people.figure import Figure
+from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.lights import SPILL, Daylight, Light, daylight, lamp, window
+from hearth.rendering.scene.room_shell import OPENINGS, around_openings, walls_of
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
+from hearth.schemas.rng import derive
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+
+UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
+"""Categories that are not objects to be drawn; characters are drawn as figures."""
+
+BUILDING = ("floor", "wall", "ceiling")
+
+LIQUIDS = {
+    "water": "#a9d2e6",
+    "coffee": "#4a2c1a",
+    "tea": "#a8662c",
+    "milk": "#f4f1ea",
+    "juice": "#e8922e",
+    "wine": "#6b1d2e",
+    "beer": "#d8a23a",
+    "alcohol": "#b87a34",
+    "soup": "#c88a3a",
+    "sauce": "#a8342e",
+    "oil": "#d8c04a",
+    "dish_soap": "#8fd0c0",
+    "cleaning_solution": "#9fc8d8",
+    "milkshake": "#e9c3cc",
+}
+"""Classes that fill what they are INSIDE, and their colours."""
+
+SURFACE = 0.004
+"""Height of the box of a liquid in a vessel: only its surface is drawn."""
+
+STRENGTH = {"ceiling_lamp": 2.3, "ceiling_fan": 1.8, "floor_lamp": 1.4, "candle": 0.15, "fireplace": 1.2}
+"""How bright a lamp is by its recipe; others 0.7."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A graph, prepared for taking scenes of it at many moments.
+
+    Attributes:
+        graph: the home, with boxes.
+        knowledge: for classes without a recipe of their own.
+        seed: decides colours and variants.
+        hour: of the day, 0 to 24.
+    """
+
+    graph: EnvironmentGraph
+    knowledge: Knowledge
+    seed: int = 0
+    hour: float = 10.0
+    _drawn: dict[Hashable, tuple[tuple[Thing, ...], tuple[Light, ...]]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def day(self) -> Daylight:
+        """Sun and sky."""
+        return daylight(self.hour)
+
+    @cached_property
+    def rooms(self) -> dict[int, Node]:
+        """Rooms by id."""
+        return {node.id: node for node in self.graph.nodes if node.category == ROOM_CATEGORY}
+
+    @cached_property
+    def room_of(self) -> dict[int, int]:
+        """Node id -> id of the room it is INSIDE."""
+        return {e.source: e.target for e in self.graph.edges if e.relation == "INSIDE" and e.target in self.rooms}
+
+    @cached_property
+    def laden(self) -> frozenset[int]:
+        """Nodes that something is ON or INSIDE."""
+        return frozenset(e.target for e in self.graph.edges if e.relation in ("ON", "INSIDE"))
+
+    @cached_property
+    def sunk(self) -> dict[int, Box]:
+        """Counter id -> box of the basin that is sunk into it."""
+        nodes = {node.id: node for node in self.graph.nodes}
+        found = {}
+        for edge in self.graph.edges:
+            source, target = nodes.get(edge.source), nodes.get(edge.target)
+            if edge.relation not in ("ON", "INSIDE") or not (source and target and source.box and target.box):
+                continue
+            if source.class_name == "sink" and choice_of(target.class_name, self.knowledge).recipe == "counter":
+                found[target.id] = source.box
+        return found
+
+    @cached_property
+    def jambs(self) -> tuple[Node, ...]:
+        """The doorways."""
+        return tuple(node for node in self.graph.nodes if node.class_name == "doorjamb" and node.box)
+
+    @cached_property
+    def openings(self) -> tuple[Box, ...]:
+        """What opens in walls."""
+        return tuple(node.box for node in self.graph.nodes if node.class_name in OPENINGS and node.box)
+
+    def seed_of(self, node: Node) -> int:
+        """What decides a node's colours: furniture of one class in one room is alike."""
+        if (
+            node.category in ("Furniture", "Doors", "Windows", "Walls", "Floor", "Ceiling")
+            or "curtain" in node.class_name
+        ):
+            return derive(self.seed, "look", self.room_of.get(node.id, 0), node.class_name)
+        return derive(self.seed, "look", node.id)
+
+    def scene(
+        self, nodes: Iterable[Node] | None = None, figures: Iterable[tuple[Node, Figure, Point, float]] = ()
+    ) -> Scene:
+        """The scene of a moment.
+
+        Args:
+            nodes: the graph's nodes as they are now: boxes, yaws and states; as in the graph when None. A node
+                without a box is not there.
+            figures: for each character its node, pose, place on the floor and yaw.
+        """
+        present = [
+            node for node in (self.graph.nodes if nodes is None else nodes) if node.box and node.category not in UNSEEN
+        ]
+        drawn = [self._remembered(node) for node in present]
+        people = tuple(Thing(node.id, node.class_name, pose, place, yaw) for node, pose, place, yaw in figures)
+        things = tuple(thing for found, _ in drawn for thing in found)
+        lights = tuple(light for _, found in drawn for light in found)
+        return Scene(things + self.walls + people, lights, self.day)
+
+    @cached_property
+    def walls(self) -> tuple[Thing, ...]:
+        """Walls, floors and ceilings that the graph does not name."""
+        return tuple(walls_of(self.graph, tuple(self.rooms.values())))
+
+    def _remembered(self, node: Node) -> tuple[tuple[Thing, ...], tuple[Light, ...]]:
+        """A node's things and lights; most nodes are the same at most moments."""
+        key = (node.id, node.class_name, node.states, node.box, node.yaw)
+        found = self._drawn.get(key)
+        if found is None:
+            found = self._drawn[key] = tuple(self.things(node)), tuple(self.lights(node))
+        return found
+
+    def things(self, node: Node, ajar: float = 1.0) -> Iterator[Thing]:
+        """What a node is drawn as; `ajar` is how far it is open if it is OPEN."""
+        if node.box is None:
+            return
+        room = self.rooms.get(self.room_of.get(node.id, -1))
+        choice = choice_of(node.class_name, self.knowledge)
+        parts = around_openings(node.box, self.openings) if choice.recipe == "wall" else [node.box]
+        if parts != [node.box]:
+            for part in parts:
+                yield from self.things(replace(node, box=part))
+            return
+        box, yaw = node.box, node.yaw or 0.0
+        turned = self._leaf(box, 0.0 if "CLOSED" in node.states else ajar) if choice.recipe == "door" else None
+        if turned:
+            box, yaw = turned
+        building = choice.recipe in BUILDING
+        if building:
+            yaw = 0.0
+        size = box.size if turned else local_size(box.size, yaw)
+        more: dict[str, object] = {"level": self._level(node.class_name, size[1]), "ajar": round(ajar, 4)}
+        if building and room:
+            more["kind"] = room.class_name
+        elif choice.recipe == "bookshelf" and node.id in self.laden:
+            more["kind"] = "bare"
+        elif choice.recipe == "counter" and node.id in self.sunk:
+            more["hole"] = _local_hole(self.sunk[node.id], box, yaw)
+        poured = node.class_name in LIQUIDS and size[1] <= SURFACE
+        seed = derive(self.seed, "look", room.id, "walls") if building and room else self.seed_of(node)
+        model = model_of(node.class_name, size, frozenset(node.states), seed, self.knowledge, **more)
+        if poured:
+            model = Model("liquid", Look(size, color=LIQUIDS[node.class_name]))
+        (x, y, z), h = box.center, box.size[1]
+        above = choice.recipe in ("ceiling", "ceiling_lamp", "ceiling_fan")
+        shining = RECIPES[choice.recipe].lamp is not None and "ON" in node.states
+        yield Thing(node.id, node.class_name, model, (x, y - h / 2, z), yaw, above, building, shining)
+
+    def lights(self, node: Node) -> Iterator[Light]:
+        """The light a node gives."""
+        if node.box is None:
+            return
+        choice = choice_of(node.class_name, self.knowledge)
+        (x, y, z), size = node.box.center, node.box.size
+        room = self.rooms.get(self.room_of.get(node.id, -1))
+        share = RECIPES[choice.recipe].lamp
+        if share is not None and "ON" in node.states:
+            bounds = _bounds(room.box) if room and room.box else None
+            spill = 0.0 if self.day.sun else SPILL
+            yield lamp((x, y + (share - 0.5) * size[1], z), STRENGTH.get(choice.recipe, 0.7), bounds, spill)
+        if choice.recipe == "window" and room and room.box and node.yaw is not None:
+            facing = (sin(radians(node.yaw)), 0.0, cos(radians(node.yaw)))
+            yield window(node.box.center, size, _rounded(facing), _bounds(room.box), self.day)
+
+    def _level(self, class_name: str, height: float) -> float:
+        """The height at which things stand on it, if the home's forms say so and it is not the top."""
+        known = form(class_name, self.knowledge)
+        if known is None or not known.levels or known.levels[0] >= height:
+            return 0.0
+        return known.levels[0]
+
+    def _leaf(self, leaf: Box, share: float) -> tuple[Box, float] | None:
+        """Middle, size in its own frame and yaw of a door that is open by a share of its way; None without a doorway.
+
+        Its own +x points away from the hinge.
+        """
+        shut = self._shut(leaf)
+        if shut is None:
+            return None
+        width, thick = (f(leaf.size[0], leaf.size[2]) for f in (max, min))
+        width = width if share else max(shut.size[0], shut.size[2])
+        hung, one, other = _hinge(shut, leaf)
+        hinge = [a + (b - a) * share for a, b in zip(*hung, strict=True)]
+        angle = one + ((other - one + 180) % 360 - 180) * share
+        x, z = cos(radians(angle)) * width / 2, sin(radians(angle)) * width / 2
+        center = (hinge[0] + x, leaf.center[1] - 0.025 * (1 - share), hinge[1] + z)
+        return Box(center, (width, leaf.size[1], thick)), round(-angle, 4)
+
+    def _shut(self, leaf: Box) -> Box | None:
+        """The box of a closed door: in the nearest doorway."""
+        if not self.jambs:
+            return None
+        jamb = min(self.jambs, key=lambda node: _distance(node.box, leaf) if node.box else 1e9)
+        if jamb.box is None or _distance(jamb.box, leaf) > 1.0:
+            return None
+        (w, _, d), (x, _, z) = jamb.box.size, jamb.box.center
+        height, thick = leaf.size[1], min(leaf.size[0], leaf.size[2])
+        size = (w - 0.1, height - 0.05, thick) if w > d else (thick, height - 0.05, d - 0.1)
+        return Box((x, leaf.center[1] - 0.025, z), size)
+
+
+def stage(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Stage:
+    """A graph prepared for rendering."""
+    return Stage(graph, knowledge, seed, hour)
+
+
+def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Scene:
+    """The scene of a graph as it is. Nodes without a box are not drawn.
+
+    Args:
+        graph: with boxes, yaws and states.
+        knowledge: for hypernyms.
+        seed: decides colours and variants.
+        hour: of the day, 0 to 24.
+    """
+    return stage(graph, knowledge, seed=seed, hour=hour).scene()
+
+
+def local_size(size: Size, yaw: float) -> Size:
+    """The size of a thing in its own frame, from its axis-aligned box in the world and its yaw."""
+    w, h, d = size
+    c, s = abs(cos(radians(yaw))), abs(sin(radians(yaw)))
+    if s < 0.02:
+        return size
+    if c < 0.02:
+        return d, h, w
+    # The box of a turned rectangle: X = a c + b s, Z = a s + b c; near 45 degrees that says nothing of a and b.
+    det = c * c - s * s
+    if abs(det) < 0.2:
+        side = min(w, d) / (c + s)
+        return side, h, side
+    a, b = (w * c - d * s) / det, (d * c - w * s) / det
+    return max(a, 0.02), h, max(b, 0.02)
+
+
+def liquid(node: Node, vessel: Box) -> Node:
+    """A liquid's node with the box of its surface in a vessel."""
+    (x, y, z), (w, h, d) = vessel.center, vessel.size
+    side = min(w, d) * 0.72
+    return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
+
+
+def _hinge(shut: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
+    """Where a door hangs (x, z), and the ways it points from there, degrees: when it is shut and when it is open."""
+    ends = []
+    for box in (shut, leaf):
+        along = 0 if box.size[0] >= box.size[2] else 2
+        ends.append([(sign, along, _end(box, along, sign)) for sign in (-1, 1)])
+    pairs = [(one, other) for one in ends[0] for other in ends[1]]
+    one, other = min(pairs, key=lambda pair: abs(pair[0][2][0] - pair[1][2][0]) + abs(pair[0][2][1] - pair[1][2][1]))
+    ways = [(90.0 if along else 0.0) + (180.0 if sign > 0 else 0.0) for sign, along, _ in (one, other)]
+    return (one[2], other[2]), ways[0], ways[1]
+
+
+def _end(box: Box, along: int, sign: int) -> Spot:
+    """(x, z) of one end of a leaf."""
+    x, z = box.center[0], box.center[2]
+    half = sign * box.size[along] / 2
+    return (x + half, z) if along == 0 else (x, z + half)
+
+
+def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, float, float]:
+    """The basin's outline in the counter's frame, without its rim."""
+    dx, dz = basin.center[0] - counter.center[0], basin.center[2] - counter.center[2]
+    c, s = cos(radians(yaw)), sin(radians(yaw))
+    x, z = dx * c - dz * s, dx * s + dz * c
+    w, _, d = local_size(basin.size, yaw)
+    return tuple(round(v, 4) for v in (x - w / 2 + 0.01, x + w / 2 - 0.01, z - d / 2 + 0.01, z + d / 2 - 0.01))  # type: ignore[return-value]
+
+
+def _bounds(box: Box) -> tuple[float, float, float, float]:
+    (x, _, z), (w, _, d) = box.center, box.size
+    return x - w / 2 - 0.07, x + w / 2 + 0.07, z - d / 2 - 0.07, z + d / 2 + 0.07
+
+
+def _rounded(direction: Point) -> Point:
+    x, y, z = (round(value, 6) + 0.0 for value in direction)
+    return x, y, z
+
+
+def _distance(a: Box | None, b: Box) -> float:
+    if a is None:
+        return 1e9
+    return max(
+        max(abs(p - q) - (s + t) / 2, 0) for p, q, s, t in zip(a.center, b.center, a.size, b.size, strict=True)
+    ) + 0.01 * sum(abs(p - q) for p, q in zip(a.center, b.center, strict=True))

@@ -1,0 +1,1 @@
+"""What breaks when conditions are perturbed, and how it is mended."""

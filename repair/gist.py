@@ -1,0 +1,181 @@
+"""What of a program is the activity, and what is due to where it was done (thesis 5.5.1).
+
+A sketch keeps the steps that any environment would ask for. What is here needs no run: which effects are the point of a
+program, which actions are never anybody's point, and what the words of the description ask for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import lru_cache
+
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.grounding.preconditions.postconditions import Postconditions, facts, nodes_of
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import HOLDS, Key, Literal
+from hearth.schemas.program import Program, Step
+from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.simulation.engine import Execution
+from hearth.simulation.world.world import World
+
+_WITH_TOOLS = {"Wipe": (), "Cut": ("knife",)}
+"""Actions that need something in hand that they do not name; part of its name where only some things will do."""
+
+_ANYTHING = frozenset({"thing", "artefact", "being"})
+"""Kinds whose words ask for nothing in particular."""
+
+_INSERTED = ("preparation", "unsaid", "takes", "frees_hand", "rests", "operates", "dresses")
+
+
+def replaceable(knowledge: Knowledge) -> frozenset[str]:
+    """Actions that repairs insert by themselves, or that leave the world as it was; every other is the activity."""
+    return frozenset().union(*map(knowledge.group, _INSERTED))
+
+
+def meant(goal: Postconditions, program: Program, conditions: Preconditions, knowledge: Knowledge) -> Postconditions:
+    """The effects that a program is for, without those that are by the way.
+
+    By the way are: the room where the character or a thing ends up; that something stays open that was opened to get at
+    things; that something is still in the hand that was taken to be used, since whoever uses it has to hold it; and
+    what is in what it was poured into, since pouring is a step that is kept anyway.
+    """
+    reached_into = {c.objects[1]: c.objects[0] for c in conditions if c.name in ("in", "inside")}
+    preparation = knowledge.group("preparation")
+    poured = {tuple(ref.key for ref in step.objects) for step in program.steps if step.action == "Pour"}
+
+    def is_meant(fact: Literal[Key]) -> bool:
+        name, subject, target = fact.name, fact.subject, fact.target
+        if name == "INSIDE" and target is not None:
+            return (
+                not knowledge.is_room(target[0]) and subject[0] != CHARACTER_CLASS and (subject, target) not in poured
+            )
+        if name == "OPEN":
+            return subject not in reached_into and not _used_after(program, "Open", subject, preparation)
+        if name == HOLDS and target is not None:
+            return not _used_after(program, "Grab", target, preparation) and not _is_tool(program, target)
+        return True
+
+    return tuple(fact for fact in goal if is_meant(fact))
+
+
+def milestones(execution: Execution) -> Postconditions:
+    """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
+
+    Only what is switched on and what is put somewhere counts; what is held or open is so for another step's sake.
+    """
+    program, worlds = execution.program, execution.worlds
+    nodes = nodes_of(program, worlds[0])
+    steps = [tick[0] for tick in program.ticks()]
+    knowledge = worlds[0].home.knowledge
+    preparing = knowledge.group("preparation") | knowledge.group("takes") | knowledge.group("lets_go")
+    first, last = frozenset(_worked_with(worlds[0], nodes)), frozenset(_worked_with(worlds[-1], nodes))
+    found: list[Literal[Key]] = []
+    since: dict[Literal[Key], int] = {}
+    for tick, world in enumerate(worlds):
+        now = frozenset(_worked_with(world, nodes))
+        for fact in sorted(since.keys() - now, key=str):
+            began = since.pop(fact)
+            if fact not in first | last and any(s.action not in preparing for s in steps[began : tick - 1]):
+                found.append(fact)
+        for fact in now:
+            since.setdefault(fact, tick)
+    return tuple(dict.fromkeys(found))
+
+
+def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
+    """What is switched on, and what is ON or INSIDE what, characters left out."""
+    found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
+    return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0])]
+
+
+def _used_after(program: Program, action: str, key: Key, preparation: frozenset[str]) -> bool:
+    """Whether a thing is of use in a step after the last such action on it, preparations aside."""
+    last = max((n for n, s in enumerate(program.steps) if s.action == action and _first(s) == key), default=-1)
+    later = program.steps[last + 1 :]
+    return any(step.action not in preparation and key in (ref.key for ref in step.objects) for step in later)
+
+
+def _is_tool(program: Program, key: Key) -> bool:
+    """Whether a thing was the last one taken before something was done that takes such a thing."""
+    held: Key | None = None
+    for step in program.steps:
+        if step.action == "Grab":
+            held = _first(step)
+        parts = _WITH_TOOLS.get(step.action)
+        if parts is not None and held == key and _first(step) != key and all(part in key[0] for part in parts):
+            return True
+    return False
+
+
+def _first(step: Step) -> Key | None:
+    return step.objects[0].key if step.objects else None
+
+
+def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
+    """For each step, whether title or description ask for it in words: its verb, and its object by any of its names.
+
+    Steps that only lead to others are never asked for, nor is taking back what the program itself has done.
+    """
+    sentences = [_words(text) for text in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", _told(program))]
+    return tuple(
+        step.action not in knowledge.group("preparation")
+        and not _takes_back(program, number, knowledge)
+        and any(_says(step, sentence, knowledge) for sentence in sentences)
+        for number, step in enumerate(program.steps)
+    )
+
+
+def _told(program: Program) -> str:
+    return f"{program.title}. {program.description}".lower()
+
+
+def _takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
+    """Whether a step tidies up: puts away what was taken, or switches off what was switched on."""
+    step = program.steps[number]
+    if step.action in knowledge.group("forgets"):
+        done = knowledge.group("takes")
+    else:
+        done = knowledge.achieving("ON") if knowledge.state_of(step.action) == "OFF" else frozenset()
+    return any(earlier.action in done and earlier.objects == step.objects for earlier in program.steps[:number])
+
+
+def _says(step: Step, sentence: frozenset[str], knowledge: Knowledge) -> bool:
+    verbs = any(way <= sentence for way in _ways(step.action, knowledge))
+    return verbs and (not step.objects or any(_names(ref.name, knowledge) & sentence for ref in step.objects))
+
+
+@lru_cache(maxsize=1 << 12)
+def _ways(action: str, knowledge: Knowledge) -> tuple[frozenset[str], ...]:
+    """The words of each way to say an action, objects left out."""
+    known = knowledge.actions.get(action)
+    if known is None:
+        return ()
+    said = (re.sub(r"\{\d\}", " ", known.template), *known.words)
+    return tuple(_words(way) - {"in", "at", "into"} for way in said)
+
+
+@lru_cache(maxsize=1 << 12)
+def _names(name: str, knowledge: Knowledge) -> frozenset[str]:
+    """The words by which a thing may go: those of its class's names, and of the kind above it."""
+    thing = knowledge.object_class(name)
+    names = {name, *knowledge.same_class(name)}
+    if thing is not None:
+        names |= {*thing.synonyms, *knowledge.ancestors(name)} - _ANYTHING
+    return _words(" ".join(names).replace("_", " "))
+
+
+@lru_cache(maxsize=1 << 14)
+def _words(text: str) -> frozenset[str]:
+    """Stems of the words of a text."""
+    return frozenset(_stem(word) for word in re.findall(r"[a-z]+", text.lower()))
+
+
+def _stem(word: str) -> str:
+    """A word without plural, -ing and -ed: near enough to compare."""
+    for ending in ("ching", "ing", "ied", "ed", "es", "s"):
+        if word.endswith(ending) and len(word) - len(ending) >= 3:
+            word = word[: -len(ending)] + ("ch" if ending == "ching" else "")
+            break
+    word = word[:-1] if len(word) > 3 and word[-1] == word[-2] else word
+    return word[:-1] if len(word) > 3 and word[-1] == "e" else word

@@ -1,0 +1,176 @@
+"""What the handlers share: the trouble they are given, and the edits they answer with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from hearth.grounding.preconditions.postconditions import Postconditions
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Failure
+from hearth.schemas.literals import Key
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.rules import Rules
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.states import LYING, SITTING
+from hearth.simulation.world.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Trouble:
+    """A step that can't be done, and everything there is to know about it.
+
+    Attributes:
+        program: bound to nodes.
+        at: number of the failing step, from 0; one past the last when the program ran but missed its goal.
+        failure: why it fails.
+        world: the world as the step is tried.
+        knowledge, rules: what the world goes by.
+        goal: what the program has to reach (thesis eq. A.1).
+        nodes: the nodes of the objects that the goal speaks of.
+        missed: the facts of the goal that do not hold, where the program ran to its end.
+    """
+
+    program: Program
+    at: int
+    failure: Failure
+    world: World
+    knowledge: Knowledge
+    rules: Rules
+    goal: Postconditions = ()
+    nodes: Mapping[Key, int] = field(default_factory=dict)
+    missed: Postconditions = ()
+
+    @property
+    def step(self) -> Step:
+        """The failing step."""
+        return self.program.steps[self.at]
+
+    @property
+    def agent(self) -> Agent:
+        """The character whose step it is."""
+        return self.world.agents[self.failure.agent]
+
+    @property
+    def resting(self) -> bool:
+        """Whether that character sits or lies."""
+        states = self.world.states
+        return bool((states[SITTING] | states[LYING]) & self.agent.bit)
+
+    def index(self, position: int = 0) -> int:
+        """Index of a node that the failure names."""
+        return self.world.home.index[self.failure.objects[position]]
+
+    def object(self, position: int = 0) -> ObjectRef:
+        """A node that the failure names, as an object of the program."""
+        return self.ref(self.index(position))
+
+    def refs(self, indices: Iterable[int]) -> tuple[ObjectRef, ...]:
+        """Nodes as objects of the program: those bound to them, else new instances of their classes."""
+        mine = self.step.objects if self.at < len(self.program.steps) else ()
+        objects = self.program.objects()
+        known = {ref.node: ref for ref in (*reversed(objects), *reversed(mine)) if ref.node is not None}
+        last: dict[str, int] = {}
+        for ref in objects:
+            last[ref.name] = max(last.get(ref.name, 0), ref.instance)
+        return tuple(self._ref(index, known, last) for index in indices)
+
+    def _ref(self, index: int, known: dict[int, ObjectRef], last: dict[str, int]) -> ObjectRef:
+        node = self.world.home.ids[index]
+        if node not in known:
+            name = self.world.home.classes[index]
+            thing = self.knowledge.object_class(name)
+            name = thing.name if thing is not None else name
+            last[name] = last.get(name, 0) + 1
+            known[node] = ObjectRef(name, last[name], node)
+        return known[node]
+
+    def ref(self, index: int) -> ObjectRef:
+        """One node as an object of the program."""
+        return self.refs((index,))[0]
+
+    def group(self, name: str) -> frozenset[str]:
+        """The actions of a group (see `kb.groups`)."""
+        return self.knowledge.group(name)
+
+    def is_close(self, index: int) -> bool:
+        """Whether the character is close to a node."""
+        return rows.is_close(self.world, self.agent, index)
+
+    def does(self, action: str, *objects: ObjectRef) -> Step:
+        """A new step of the same character."""
+        return Step(action, objects, self.failure.agent)
+
+    def seat_taken(self) -> tuple[int, str, ObjectRef] | None:
+        """Where, how and on what the program itself has made the character rest: (number of the step, "Sit", couch)."""
+        for number in range(self.at - 1, -1, -1):
+            step = self.program.steps[number]
+            if step.agent == self.failure.agent and step.action in self.group("rests"):
+                return number, step.action, step.objects[0]
+            if step.agent == self.failure.agent and step.action in self.group("rises"):
+                return None
+        return None
+
+
+class Splice(NamedTuple):
+    """Some steps instead of others: `removed` steps from number `at` on give way to `inserted`."""
+
+    at: int
+    removed: int
+    inserted: tuple[Step, ...] = ()
+
+
+class Edit(NamedTuple):
+    """A repair: its name, as in the knowledge's repairs where it stands there, and its splices in ascending order."""
+
+    name: str
+    splices: tuple[Splice, ...]
+
+
+Handler = Callable[[Trouble], Edit | None]
+"""From a failure to its repair; None when nothing can be done about it."""
+
+
+def removed(trouble: Trouble, name: str) -> Edit:
+    """Leave the failing step out; what was to happen together with it happens all the same."""
+    steps = trouble.program.steps
+    at = trouble.at
+    if not steps[at].joins and at + 1 < len(steps) and steps[at + 1].joins:
+        rest = steps[at + 1]
+        alone = Step(rest.action, rest.objects, rest.agent, False, rest.modifiers)
+        return Edit(name, (Splice(at, 2, (alone,)),))
+    return Edit(name, (Splice(at, 1),))
+
+
+def before(trouble: Trouble, name: str, *steps: Step) -> Edit:
+    """Do something first."""
+    return Edit(name, (Splice(tick_start(trouble.program, trouble.at), 0, steps),))
+
+
+def around(trouble: Trouble, name: str, first: Iterable[Step], after: int, then: Iterable[Step]) -> Edit:
+    """Do something before the failing step, and something else right after step number `after`."""
+    start = tick_start(trouble.program, trouble.at)
+    end = tick_end(trouble.program, after)
+    return Edit(name, (Splice(start, 0, tuple(first)), Splice(end, 0, tuple(then))))
+
+
+def replaced(trouble: Trouble, name: str, *steps: Step) -> Edit:
+    """Do something instead."""
+    return Edit(name, (Splice(trouble.at, 1, steps),))
+
+
+def tick_start(program: Program, at: int) -> int:
+    """Number of the first step of the tick that step `at` belongs to."""
+    while 0 < at < len(program.steps) and program.steps[at].joins:
+        at -= 1
+    return at
+
+
+def tick_end(program: Program, at: int) -> int:
+    """Number of the first step after the tick that step `at` belongs to."""
+    at += 1
+    while at < len(program.steps) and program.steps[at].joins:
+        at += 1
+    return min(at, len(program.steps))

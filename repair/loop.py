@@ -1,0 +1,218 @@
+"""Repairing: run, look the failure up, edit the program, run on from there (thesis 5.5.4, A.2, algorithm 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of
+from hearth.kb.knowledge import Knowledge
+from hearth.repair import trim
+from hearth.repair.handlers.common import Edit, Handler, Trouble
+from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.literals import Key
+from hearth.schemas.program import Program, Step
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.world import World
+
+TRIES = 20
+"""Repairs of one program in one environment before it is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One repair: a broken program, what broke, and the program after it.
+
+    Attributes:
+        number: from 0.
+        step: number of the step that failed, from 0; the program's length when it ran but missed its goal.
+        failure: why.
+        handler: name of the repair, or of the handler that gave up.
+        before: the steps that broke.
+        after: the steps instead; empty when nothing could be done.
+        missed: the facts of the goal that did not hold, where the program ran to its end.
+    """
+
+    number: int
+    step: int
+    failure: Failure
+    handler: str
+    before: tuple[Step, ...]
+    after: tuple[Step, ...]
+    missed: Postconditions = ()
+
+    @property
+    def cause(self) -> tuple[Code, str, tuple[int, ...], Postconditions]:
+        """What it is for: two attempts at one cause are about the same failure, whenever it occurs."""
+        return self.failure.code, self.failure.action, self.failure.objects, self.missed
+
+
+@dataclass(frozen=True, slots=True)
+class Repaired:
+    """What became of a program in an environment that it was not made for.
+
+    Attributes:
+        program: the last version.
+        execution: of the last version.
+        attempts: every repair, in order.
+        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
+        failure: why it was given up; None when it runs and reaches its goal.
+    """
+
+    program: Program
+    execution: Execution
+    attempts: tuple[Attempt, ...]
+    sources: tuple[int, ...]
+    failure: Failure | None = None
+
+
+def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:
+    """Which of one program's attempts helped: something was changed, and what it was for did not come back at once.
+
+    Args:
+        attempts: in order.
+        failure: why the program was given up after the last of them; None if it was not.
+    """
+    # A program that was given up still has the last attempt's failure.
+    following = [*(attempt.cause for attempt in attempts[1:]), attempts[-1].cause if failure and attempts else None]
+    return tuple(bool(each.after) and each.cause != later for each, later in zip(attempts, following, strict=False))
+
+
+class _Task(NamedTuple):
+    """What a program is repaired for: its goal, said of these nodes."""
+
+    goal: Postconditions
+    nodes: Mapping[Key, int]
+    knowledge: Knowledge
+    rules: Rules
+
+
+@dataclass(frozen=True, slots=True)
+class _Draft:
+    """A program under repair; `sources` as in `Repaired`."""
+
+    program: Program
+    sources: tuple[int, ...]
+    execution: Execution
+
+
+def repair(
+    program: Program,
+    world: World,
+    goal: Postconditions,
+    knowledge: Knowledge,
+    rules: Rules = DEFAULT,
+    handlers: Mapping[Code, Handler] = HANDLERS,
+    tries: int = TRIES,
+    canonical_only: bool = True,
+) -> Repaired:
+    """Repair a program until it runs and reaches its goal.
+
+    Args:
+        program: bound to nodes of the world's home.
+        world: the start.
+        goal: what the original achieves in its own environment.
+        knowledge, rules: what the world goes by.
+        handlers: what to do about each failure.
+        tries: repairs at most.
+        canonical_only: take out of the repaired program what it does not need; costs more than the repairs.
+
+    Returns:
+        The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
+        repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
+    """
+    draft = _Draft(program, tuple(range(len(program.steps))), run(world, program, rules))
+    task = _Task(goal, nodes_of(program, world), knowledge, rules)
+    attempts: list[Attempt] = []
+    seen = {program.steps}
+    while True:
+        trouble = _trouble(draft, task)
+        if trouble is None:
+            break
+        if len(attempts) == tries:
+            return _given_up(draft, attempts, trouble, Code.TOO_MANY_TRIES, f"{tries} repairs were not enough")
+        name, edit, refusal = _consult(handlers, trouble)
+        if edit is None:
+            attempts.append(_attempt(attempts, trouble, name, ()))
+            code = Code.GOAL_LOST if trouble.failure.code is Code.GOAL_LOST else Code.NO_HANDLER
+            return _given_up(draft, attempts, trouble, Code.HANDLER_ERROR if refusal else code, refusal)
+        draft = _edited(draft, edit, rules)
+        attempts.append(_attempt(attempts, trouble, edit.name, draft.program.steps))
+        tried = len(seen)
+        seen.add(draft.program.steps)
+        if len(seen) == tried:
+            return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
+    if not attempts or not canonical_only:
+        return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources)
+    trimmed, sources = trim.trim(program, draft.execution, draft.sources, goal, rules)
+    return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
+
+
+def _trouble(draft: _Draft, task: _Task) -> Trouble | None:
+    """The first thing wrong with a program: a step that fails, or a goal that is missed."""
+    execution = draft.execution
+    failure, at = execution.failure, len(draft.program.steps)
+    lost = () if failure else missing(task.goal, task.nodes, execution.final)
+    if failure is not None:
+        at = _failing(draft.program, failure)
+    elif not lost:
+        return None
+    else:
+        wanted = "; ".join(map(str, lost))
+        failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
+    return Trouble(draft.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes, lost)
+
+
+def _failing(program: Program, failure: Failure) -> int:
+    """Number of the step that a failure is about: in its tick, that of its agent."""
+    number = 0
+    for tick, steps in enumerate(program.ticks()):
+        if tick == failure.tick:
+            mine = (place for place, step in enumerate(steps) if step.agent == failure.agent)
+            return number + next(mine, 0)
+        number += len(steps)
+    return number
+
+
+def _consult(handlers: Mapping[Code, Handler], trouble: Trouble) -> tuple[str, Edit | None, str]:
+    """(name, edit, what the handler raised): a handler that raises costs only this program."""
+    handler = handlers.get(trouble.failure.code)
+    if handler is None:
+        return "", None, ""
+    name = getattr(handler, "__name__", str(handler))
+    try:
+        return name, handler(trouble), ""
+    except Exception as error:  # whatever a handler does wrong is data too
+        return name, None, f"{name} raised {type(error).__name__}: {error}"
+
+
+def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
+    """The program after an edit, run on from the last world that the edit does not touch."""
+    steps, sources = list(draft.program.steps), list(draft.sources)
+    known = {id(step): source for step, source in zip(steps, sources, strict=True)}
+    for splice in reversed(edit.splices):
+        end = splice.at + splice.removed
+        replaced = sources[splice.at : end]
+        new = [known.get(id(step), -1) for step in splice.inserted]
+        new[: len(replaced)] = replaced[: len(new)]
+        steps[splice.at : end] = splice.inserted
+        sources[splice.at : end] = new
+    program = draft.program.with_steps(steps)
+    first = min(splice.at for splice in edit.splices)
+    return _Draft(program, tuple(sources), trim.resume(draft.execution, program, first, rules))
+
+
+def _attempt(attempts: Sequence[Attempt], trouble: Trouble, name: str, after: tuple[Step, ...]) -> Attempt:
+    return Attempt(len(attempts), trouble.at, trouble.failure, name, trouble.program.steps, after, trouble.missed)
+
+
+def _given_up(draft: _Draft, attempts: list[Attempt], trouble: Trouble, code: Code, why: str) -> Repaired:
+    """The failure keeps saying what could not be repaired."""
+    last = trouble.failure
+    reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
+    told = f"{last.code}: {last.expected}" if last.expected else str(last.code)
+    failure = replace(last, code=code, expected=told, actual=f"{last.actual}; {reason}" if last.actual else reason)
+    return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources, failure)

@@ -1,0 +1,225 @@
+"""Augmenting a program in a home: perturb what it relies on, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+from hearth.grounding.environments.default_state import Base, prepared
+from hearth.grounding.environments.sampling import Environment, Size, draw, sample
+from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.grounding.preconditions.postconditions import Postconditions, achieved
+from hearth.repair.loop import TRIES, Attempt, repair
+from hearth.repair.perturb import MOST, PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import Program
+from hearth.schemas.rng import rng
+from hearth.simulation.engine import Execution
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.home import Home
+
+DRAWS = 3
+"""Environments drawn for one perturbation before it is given up."""
+
+CHANCES_FILE = Path(__file__).with_name("perturbations.yaml")
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How a program is augmented.
+
+    Attributes:
+        count: perturbed environments at most; there are fewer when no more distinct ones are found.
+        tries: repairs of one program in one environment.
+        chances: how likely perturbations are; those of perturbations.yaml when None.
+        rules: for the runs.
+    """
+
+    count: int = 5
+    tries: int = TRIES
+    chances: Chances | None = None
+    rules: Rules = DEFAULT
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A program in a perturbed environment, and what became of it.
+
+    Attributes:
+        number: which of its program's pairs, from 0.
+        perturbations: what was made otherwise.
+        environment: the perturbed environment, with the original program bound in it.
+        program: the repaired program, bound.
+        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
+        execution: its run.
+        attempts: every repair, in order; also of pairs that were given up.
+        failure: why there is no new program; None where there is one.
+    """
+
+    number: int
+    perturbations: tuple[Perturbation, ...]
+    environment: Environment
+    program: Program
+    sources: tuple[int, ...]
+    execution: Execution
+    attempts: tuple[Attempt, ...]
+    failure: Failure | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Augmented:
+    """Everything that came of one program in one home.
+
+    Attributes:
+        execution: the original's own.
+        goal: what it achieves there.
+        pairs: the perturbed environments, in the order in which they were drawn.
+    """
+
+    execution: Execution
+    goal: Postconditions
+    pairs: tuple[Pair, ...]
+
+
+def augment(
+    program: Program,
+    home: Home,
+    seed: int,
+    record_id: str = "",
+    options: Options = Options(),
+    original: tuple[Preconditions, Execution] | None = None,
+) -> Augmented | Failure:
+    """Repaired versions of a program for environments in which something it relies on is otherwise.
+
+    Args:
+        program: with instances as counters.
+        home: any home.
+        seed, record_id: all the randomness there is.
+        options: how many environments, and how they are perturbed and programs repaired.
+        original: what it needs, and its execution in its own environment; sampled when None.
+
+    Returns:
+        Every pair, successful or not. A pair that needed no repair fails as UNPERTURBED, one whose program came up
+        before as DUPLICATE. A failure when the original itself can't be sampled.
+    """
+    base = prepared(home)
+    if original is None:
+        sampled = sample(program, home, seed, record_id, rules=options.rules)
+        if isinstance(sampled, Failure):
+            return sampled
+        original = sampled[0].conditions, sampled[1]
+    conditions, execution = original
+    goal = achieved(execution)
+    chances = options.chances or default_chances()
+    generator = rng(seed, "perturb", base.home.name, record_id)
+    seen: set[object] = {_shape(program)}
+    pairs: list[Pair] = []
+    for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, options.count)):
+        drawn = _drawn(program, base, perturbed, seed, f"{record_id}/{number}")
+        pairs.append(_judged(_pair(number, perturbed, drawn, goal, options), seen))
+    return Augmented(execution, goal, tuple(pairs))
+
+
+@lru_cache(maxsize=8)
+def load_chances(path: Path) -> Chances:
+    """Read probabilities as perturbations.yaml says them.
+
+    Raises:
+        HearthError: BAD_TABLE, naming an unknown perturbation or draw, or a value that is no probability.
+    """
+    import yaml
+
+    data = yaml.safe_load(path.read_text("utf-8"))
+    faults = list(_faults(data))
+    if faults:
+        raise HearthError.of(Code.BAD_TABLE, "; ".join(faults), file=str(path), suggestion=_PARTS)
+    return Chances(dict(data["kinds"]), dict(data["draws"]), data.get("most", MOST))
+
+
+_PARTS = "`kinds` gives each perturbation a probability; `draws` gives each, one and two a weight"
+
+
+def _faults(data: object) -> Iterator[str]:
+    if not isinstance(data, dict) or not all(isinstance(data.get(part), dict) for part in ("kinds", "draws")):
+        yield "`kinds` or `draws` is missing"
+        return
+    for part, known in (("kinds", PERTURBATIONS.keys()), ("draws", ("each", "one", "two"))):
+        for name, value in data[part].items():
+            if name not in known:
+                yield f"`{name}` is none of the {part}"
+            elif not isinstance(value, int | float) or value < 0 or (part == "kinds" and value > 1):
+                yield f"{value!r} is no {'probability' if part == 'kinds' else 'weight'} of `{name}`"
+    if not any(isinstance(weight, int | float) and weight > 0 for weight in data["draws"].values()):
+        yield "no draw has a weight"
+    most = data.get("most", MOST)
+    if not isinstance(most, int) or most < 1:
+        yield "`most` is no count"
+
+
+def default_chances() -> Chances:
+    """Those of perturbations.yaml."""
+    return load_chances(CHANCES_FILE)
+
+
+def _drawn(
+    program: Program, base: Base, perturbed: Perturbed, seed: int, record_id: str
+) -> Environment | tuple[Environment, Condition]:
+    """An environment in which the perturbed conditions hold, or the last one drawn and what does not hold there."""
+    for attempt in range(DRAWS):
+        environment = draw(program, base, perturbed.conditions, seed, record_id, attempt, Size())
+        nodes = {ref.key: ref.node for ref in environment.program.objects() if ref.node is not None}
+        missing = unmet(perturbed.conditions, environment.world, nodes)
+        if not missing:
+            return environment
+    return environment, missing[0]
+
+
+def _pair(
+    number: int,
+    perturbed: Perturbed,
+    drawn: Environment | tuple[Environment, Condition],
+    goal: Postconditions,
+    options: Options,
+) -> Pair:
+    """A perturbed environment's program, repaired."""
+    if isinstance(drawn, tuple):
+        environment, condition = drawn
+        failure = Failure(Code.CONDITION_UNMET, expected=str(condition), actual=f"not so in {DRAWS} environments drawn")
+        program, execution = environment.program, Execution(environment.program, (environment.world,), failure)
+        sources = tuple(range(len(program.steps)))
+        return Pair(number, perturbed.perturbations, environment, program, sources, execution, (), failure)
+    done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, options.rules, tries=options.tries)
+    return Pair(
+        number,
+        perturbed.perturbations,
+        drawn,
+        done.program,
+        done.sources,
+        done.execution,
+        done.attempts,
+        done.failure,
+    )
+
+
+def _judged(pair: Pair, seen: set[object]) -> Pair:
+    """The pair, refused when its program is the original's or one that came up before."""
+    if pair.failure is not None:
+        return pair
+    shape = _shape(pair.program)
+    if shape not in seen:
+        seen.add(shape)
+        return pair
+    code, why = (Code.DUPLICATE, "an earlier pair has the same steps")
+    if not pair.attempts:
+        code, why = Code.UNPERTURBED, "the original runs here as it is"
+    failure = Failure(code, expected="a program of its own", actual=why)
+    return replace(pair, failure=failure)
+
+
+def _shape(program: Program) -> object:
+    """What makes two programs of one parent the same: their steps, whatever they are bound to."""
+    return tuple((s.action, tuple(ref.key for ref in s.objects), s.agent, s.joins) for s in program.steps)

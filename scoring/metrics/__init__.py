@@ -1,0 +1,1 @@
+"""The metrics: LCS, graph F1, executability, parsability, goals."""

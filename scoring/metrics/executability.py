@@ -1,0 +1,225 @@
+"""Executability: whether a program runs in its environment, and if not, where it first fails and why (A.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import lru_cache
+
+from hearth.kb.grammar import affordances, check
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.scoring.lines import Lines, steps_of
+from hearth.scoring.metrics.final_graph import nodes_of
+from hearth.scoring.metrics.parsability import parsability
+from hearth.scoring.predicted_nodes import bind
+from hearth.scoring.signature import signature
+from hearth.simulation.engine import act, run
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world import rows
+from hearth.simulation.world.world import World
+
+SIGNATURE = signature("executable", level="program", empty="apart")
+
+
+class ErrorClass(StrEnum):
+    """Why a program first fails.
+
+    A `wrong order` is one that the program's own steps could mend: it would get past the failing step if that step
+    stood where it could last be done, or if a later step stood before it. An `additional step` asks for what is already
+    so. What is neither is a `missing step`.
+    """
+
+    SYNTAX = "syntax"
+    UNKNOWN_NAME = "unknown name"
+    ARITY = "arity"
+    AFFORDANCE = "affordance"
+    NOT_SIMULATED = "not simulated"
+    ADDITIONAL_STEP = "additional step"
+    WRONG_ORDER = "wrong order"
+    MISSING_STEP = "missing step"
+
+
+STATIC: dict[Code, ErrorClass] = {
+    Code.SYNTAX: ErrorClass.SYNTAX,
+    Code.UNKNOWN_ACTION: ErrorClass.UNKNOWN_NAME,
+    Code.UNKNOWN_OBJECT: ErrorClass.UNKNOWN_NAME,
+    Code.UNKNOWN_AGENT: ErrorClass.UNKNOWN_NAME,
+    Code.UNBOUND: ErrorClass.UNKNOWN_NAME,
+    Code.WRONG_ARITY: ErrorClass.ARITY,
+    Code.NOT_AFFORDED: ErrorClass.AFFORDANCE,
+    Code.NOT_SIMULATED: ErrorClass.NOT_SIMULATED,
+}
+"""The class of a failure that does not depend on what was done before; UNBOUND names what the environment lacks."""
+
+ALREADY_IN: dict[Code, str] = {
+    Code.IS_OPEN: "OPEN",
+    Code.IS_CLOSED: "CLOSED",
+    Code.IS_ON: "ON",
+    Code.IS_OFF: "OFF",
+    Code.IS_PLUGGED: "PLUGGED_IN",
+    Code.IS_UNPLUGGED: "PLUGGED_OUT",
+    Code.SITTING: "SITTING",
+    Code.LYING: "LYING",
+}
+"""The failures that say of an action that its state holds already."""
+
+ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code.NOT_HOLDING: "lets_go"}
+"""The failures that say of a group of actions that what it would bring about holds already."""
+
+
+PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
+"""The actions that put one thing on or in another, and the row that then says so; done again, they are additional."""
+
+First = tuple[int, ErrorClass, Code]
+
+
+@dataclass(frozen=True, slots=True)
+class Executability:
+    """What became of a predicted program.
+
+    Attributes:
+        program: what was run, canonical and bound; lines that are no steps left out.
+        empty: there was nothing to run. Such a program runs (thesis 4.5.2), and is counted apart.
+        afforded: every step fits its objects, by the grammar.
+        runs: every line is a step, and all of them can be done.
+        failed_line: the first line that does not fit or can't be done, from 0; None when there is none.
+        error: why.
+        code: the same, finer.
+        final: the world at its end; None unless it runs.
+    """
+
+    program: Program
+    empty: bool
+    afforded: bool
+    runs: bool
+    failed_line: int | None = None
+    error: ErrorClass | None = None
+    code: Code | None = None
+    final: World | None = None
+
+    @property
+    def executable(self) -> bool:
+        """As in A.3: every step fits its objects, and all of them run."""
+        return self.afforded and self.runs
+
+
+def executability(
+    lines: Lines,
+    world: World,
+    reference: Program | None = None,
+    rules: Rules = DEFAULT,
+) -> Executability:
+    """Run a predicted program in an environment.
+
+    Args:
+        lines: the prediction.
+        world: the environment at its start.
+        reference: the bound program it is compared with, by which its objects are bound (see `binding`).
+        rules: how actions are read.
+    """
+    knowledge = world.home.knowledge
+    faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}
+    program = Program(steps=tuple([_canonical(step, knowledge) for step in steps_of(lines)]))
+    program = bind(program, nodes_of(world.home), knowledge, reference)
+    place = [number for number, line in enumerate(lines) if isinstance(line, Step)]
+    steps = zip(place, program.steps, strict=True)
+    unfit = [line for line, step in steps if line not in faults and not _fits(step, knowledge)]
+    sound = sum(line < min(faults, default=len(lines)) for line in place)
+    execution = run(world, program.with_steps(program.steps[:sound]), rules)
+    failures: list[First] = [(line, STATIC[code], code) for line, code in sorted(faults.items())]
+    failures += [(line, ErrorClass.AFFORDANCE, Code.NOT_AFFORDED) for line in unfit]
+    if execution.failure is not None:
+        failed = _failed_step(program.steps, execution.failure)
+        why = _classify(program.steps, failed, execution.worlds, execution.failure, rules)
+        failures.append((place[failed], why, execution.failure.code))
+    line, error, code = min(failures, key=lambda failure: failure[0]) if failures else (None, None, None)
+    runs = execution.executable and not faults
+    final = execution.final if runs else None
+    return Executability(program, not lines, not unfit and not faults, runs, line, error, code, final)
+
+
+def _canonical(step: Step, knowledge: Knowledge) -> Step:
+    """The step with the knowledge's own names; one with a fault as it is."""
+    names = tuple([ref.name for ref in step.objects])
+    action, canonical = _names(step.action, names, knowledge)
+    if action == step.action and canonical == names:
+        return step
+    objects = tuple(replace(ref, name=name) for ref, name in zip(step.objects, canonical, strict=True))
+    return replace(step, action=action, objects=objects)
+
+
+@lru_cache(maxsize=65_536)
+def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
+    """The canonical names of a step, whatever instances it is about: a corpus says the same thing many times."""
+    program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
+    return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
+
+
+def _fits(step: Step, knowledge: Knowledge) -> bool:
+    """Whether the grammar lets the step's objects be what they are to it."""
+    return _afforded(step.action, tuple([ref.name for ref in step.objects]), knowledge)
+
+
+@lru_cache(maxsize=65_536)
+def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool:
+    return not affordances(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
+
+
+def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
+    """Which step the failure is about: the agent's own, of the tick that could not be done."""
+    starts = [number for number, step in enumerate(steps) if not number or not step.joins]
+    start = starts[failure.tick]
+    end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)
+    return next((n for n in range(start, end) if steps[n].agent == failure.agent), start)
+
+
+def _classify(
+    steps: Sequence[Step], failed: int, worlds: Sequence[World], failure: Failure, rules: Rules
+) -> ErrorClass:
+    if failure.code in STATIC:
+        return STATIC[failure.code]
+    already = _is_so(steps[failed].action, failure.code, worlds[0].home.knowledge)
+    if already or (failure.code is Code.NOT_HOLDING and _is_put(steps[failed], worlds[-1])):
+        return ErrorClass.ADDITIONAL_STEP
+    alone = len(worlds) == failed + 1  # with several agents a tick, worlds and steps do not go together
+    if alone and _mended_by_order(steps, failed, worlds, rules):
+        return ErrorClass.WRONG_ORDER
+    return ErrorClass.MISSING_STEP
+
+
+def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
+    """Whether a failure says that what the action would bring about holds already."""
+    if code in ALREADY_IN:
+        return action in knowledge.achieving(ALREADY_IN[code])
+    return code in ALREADY_SO and action in knowledge.group(ALREADY_SO[code])
+
+
+def _is_put(step: Step, world: World) -> bool:
+    """Whether what is to be put somewhere is there."""
+    read = PUTS.get(step.action)
+    if read is None:
+        return False
+    o, s = (world.home.index[ref.node] for ref in step.objects if ref.node is not None)
+    return bool(read(world, o) >> s & 1)
+
+
+def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
+    """Whether moving one step, a later one before this or this one forward, gets the program past this one."""
+    step = steps[failed]
+    later = dict.fromkeys(steps[failed + 1 :])
+    if any(_runs(worlds[failed], (other, step), rules) for other in later):
+        return True
+    could = next((n for n in range(failed - 1, -1, -1) if _runs(worlds[n], (step,), rules)), None)
+    return could is not None and _runs(worlds[could], (step, *steps[could:failed]), rules)
+
+
+def _runs(world: World, steps: Sequence[Step], rules: Rules) -> bool:
+    for step in steps:
+        result = act(world, step, rules)
+        if isinstance(result, Failure):
+            return False
+        world = result
+    return True

@@ -1,0 +1,120 @@
+"""Goal satisfaction: whether a final graph is as it was wanted (thesis 6.3, tables B.1, C.2)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from hearth.schemas.goals import Goal
+from hearth.schemas.graph import Edge
+from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
+from hearth.schemas.vocabulary import STATES
+from hearth.scoring.metrics.final_graph import nodes_of
+from hearth.scoring.signature import signature
+from hearth.simulation.holds import candidates
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.moved import INSIDE, NOTHING, ON
+from hearth.simulation.world.world import World
+
+SIGNATURE = signature("goal", level="program", empty=1)
+
+LASTING = ("ON", "INSIDE", *HANDS)
+"""Relations that a goal made from an execution is about; CLOSE and FACING say only where the character stood."""
+
+
+@dataclass(frozen=True, slots=True)
+class Satisfaction:
+    """How much of a goal holds.
+
+    Attributes:
+        counts: of each literal: how often it holds, and how often it is wanted.
+    """
+
+    counts: tuple[tuple[Literal[Name], int, int], ...]
+
+    @property
+    def satisfied(self) -> bool:
+        """Whether every count is reached; an empty goal is."""
+        return all(found >= wanted for _, found, wanted in self.counts)
+
+    @property
+    def fraction(self) -> float:
+        """How much of what is wanted is found, from 0 to 1; 1 for an empty goal."""
+        wanted = sum(count for _, _, count in self.counts)
+        return sum(min(found, count) for _, found, count in self.counts) / wanted if wanted else 1.0
+
+    @property
+    def unmet(self) -> tuple[tuple[Literal[Name], int], ...]:
+        """What is missing, and how often."""
+        return tuple((literal, wanted - found) for literal, found, wanted in self.counts if found < wanted)
+
+
+def satisfaction(goal: Goal, final: World) -> Satisfaction:
+    """Count how often each literal of a goal holds; one about what there is not, never.
+
+    Args:
+        goal: counted literals.
+        final: the world that is to be as the goal says.
+    """
+    return Satisfaction(tuple((literal, _count(literal, final), wanted) for literal, wanted in goal))
+
+
+def _count(literal: Literal[Name], world: World) -> int:
+    return sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
+
+
+def goal_of(start: World, final: World) -> Goal:
+    """What an execution achieved, said of classes: states it set, and things it put ON, INSIDE or in a hand.
+
+    Being in a room is not counted, nor what was true at the start. Both worlds are of one home.
+    """
+    nodes = nodes_of(final.home)
+    counts: Counter[Literal[Name]] = Counter()
+
+    def name(node: int) -> str:
+        return AGENT if node in nodes.characters else nodes.classes[node]
+
+    entered, added = _achieved(start, final)
+    for node, state in entered:
+        counts[Literal(state, (name(node),))] += 1
+    met: dict[Literal[Name], set[tuple[int, ...]]] = {}
+    for source, relation, target in added:
+        if target not in nodes.left_out:
+            literal = Literal(HOLDS if relation in HANDS else relation, (name(source), name(target)))
+            met.setdefault(literal, set()).add((source, target) if source in nodes.characters else (source,))
+    counts.update({literal: len(found) for literal, found in met.items()})
+    return Goal.of(*sorted(counts.items(), key=lambda item: str(item[0])))
+
+
+def _achieved(start: World, final: World) -> tuple[Iterable[tuple[int, str]], Iterable[Edge]]:
+    """The states that came and the lasting edges that were added."""
+    if start.home is final.home and start.moved is NOTHING and len(final.agents) == 1 and not final.home.others:
+        return _states_set(start, final), _lasting(start, final)
+    change = final.changes(start)
+    return change.set_states, [edge for edge in change.added if edge.relation in LASTING]
+
+
+def _states_set(start: World, final: World) -> Iterator[tuple[int, str]]:
+    ids = final.home.ids
+    for name, before, after in zip(STATES, start.states, final.states, strict=True):
+        yield from ((ids[i], name) for i in indices(after & ~before))
+
+
+def _lasting(start: World, final: World) -> Iterator[Edge]:
+    """As `World.changes` tells them; what moved is a world's `extra` rows, and what else is near it is not read."""
+    home = final.home
+    ids = home.ids
+    for key, row in final.moved.extra.items():
+        i, kind = divmod(key, 8)
+        if kind in (ON, INSIDE):
+            before = home.on[i] if kind == ON else home.inside[i]
+            relation = "ON" if kind == ON else "INSIDE"
+            yield from (Edge(ids[i], relation, ids[j]) for j in indices(row & ~before))
+    old, new = start.agents[0], final.agents[0]
+    me = ids[new.index]
+    out = (("ON", old.on, new.on), ("INSIDE", old.inside, new.inside))
+    for relation, before, after in (*out, (HANDS[0], old.right, new.right), (HANDS[1], old.left, new.left)):
+        yield from (Edge(me, relation, ids[j]) for j in indices(after & ~before))
+    for relation, before, after in (("ON", old.worn, new.worn), ("INSIDE", old.contents, new.contents)):
+        yield from (Edge(ids[j], relation, me) for j in indices(after & ~before & ~new.bit))

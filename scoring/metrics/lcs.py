@@ -1,0 +1,150 @@
+"""Normalised longest common subsequence of programs (thesis 4.3, eq. 4.1, 4.2; tables 3.1, 4.4-4.6)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+
+from hearth.schemas.program import ObjectRef
+from hearth.scoring.lines import Line, Lines
+from hearth.scoring.signature import signature
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Level = Literal["step", "action", "object"]
+"""What is compared: whole instructions, their actions alone, or their objects alone (first, then second)."""
+
+LEVELS: tuple[Level, ...] = get_args(Level)
+
+Sequences = list[list[int]]
+
+
+class LcsScore(NamedTuple):
+    """One pair's scores, from 0 to 1, and their mean as in tables 4.4 to 4.6."""
+
+    step: float
+    action: float
+    object: float
+
+    @property
+    def mean(self) -> float:
+        """The mean of the three."""
+        return sum(self) / len(self)
+
+
+def lcs_signature(level: str = "step", instances: bool = False) -> str:
+    """The signature of a score by this module."""
+    return signature("lcs", norm="max", level=level, **({"instances": "yes"} if instances else {}))
+
+
+def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[Hashable]:
+    """The items that are compared at a level.
+
+    Names are compared without regard to case, spaces, hyphens and underscores. Instances are left out (eq. 4.2)
+    unless asked for; then an object is its node where it is bound, else its number in the program. Modifiers are left
+    out. A step of another agent than the first is another step. A line that does not parse is one item at every level.
+    """
+    return _levels(lines, instances)[LEVELS.index(level)]
+
+
+def similarity(predicted: Lines, reference: Lines, level: Level = "step", instances: bool = False) -> float:
+    """|LCS| / max(|predicted|, |reference|), from 0 to 1; two empty sequences score 1 (eq. 4.1)."""
+    from rapidfuzz.distance import LCSseq
+
+    (a,), (b,) = _encode([items(predicted, level, instances)], [items(reference, level, instances)])
+    longest = max(len(a), len(b))
+    return LCSseq.similarity(a, b) / longest if longest else 1.0
+
+
+def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsScore:
+    """The scores of one pair at every level."""
+    return LcsScore(*(similarity(predicted, reference, level, instances) for level in LEVELS))
+
+
+def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -> list[LcsScore]:
+    """The scores of many pairs, in order; the same as `score` on each, only faster."""
+    pairs = list(pairs)
+    sides = [[_levels(pair[side], instances) for pair in pairs] for side in (0, 1)]
+    columns = [_pairwise(*([found[level] for found in side] for side in sides)) for level in range(len(LEVELS))]
+    return [LcsScore(*row) for row in zip(*columns, strict=True)]
+
+
+def _levels(lines: Lines, instances: bool) -> list[list[Hashable]]:
+    """The items of every level."""
+    found = [_items(line, instances) for line in lines]
+    return [[item for each in found for item in each[place]] for place in range(len(LEVELS))]
+
+
+@lru_cache(maxsize=65_536)
+def _items(line: Line, instances: bool) -> tuple[tuple[Hashable, ...], ...]:
+    """The items of a line at every level."""
+    if isinstance(line, str):
+        return ((("text", line.casefold()),),) * len(LEVELS)
+    objects = tuple([_named(ref, instances) for ref in line.objects])
+    action = _plain(line.action)
+    return ((action, *objects, line.agent),), (action,), objects
+
+
+def matrix(
+    programs_a: Sequence[Lines],
+    programs_b: Sequence[Lines],
+    level: Level = "step",
+    instances: bool = False,
+    workers: int = -1,
+) -> NDArray[np.float32]:
+    """The similarity of every program of one list to every one of another, shape (len(a), len(b)).
+
+    5,000 x 5,000 programs of 10 steps take about a second on two cores, and 100 MB.
+
+    Args:
+        programs_a: one program a row.
+        programs_b: one program a column; it may be the same list.
+        level: what is compared.
+        instances: tell the instances of a class apart.
+        workers: threads; -1 takes all cores.
+    """
+    import numpy as np
+    from rapidfuzz.distance import LCSseq
+    from rapidfuzz.process import cdist
+
+    rows = [items(lines, level, instances) for lines in programs_a]
+    columns = rows if programs_a is programs_b else [items(lines, level, instances) for lines in programs_b]
+    a, b = _encode(rows, columns)  # two lists even when equal: of one with itself cdist does not use wide registers
+    found: NDArray[np.float32] = cdist(a, b, scorer=LCSseq.similarity, dtype=np.float32, workers=workers)
+    lengths = np.array([len(sequence) for sequence in b], dtype=np.float32)
+    for number, sequence in enumerate(a):
+        longest = np.maximum(lengths, len(sequence))
+        found[number] /= np.maximum(longest, 1)
+        found[number, longest == 0] = 1
+    return found
+
+
+def _pairwise(predicted: Sequence[Sequence[Hashable]], reference: Sequence[Sequence[Hashable]]) -> list[float]:
+    from rapidfuzz.distance import LCSseq
+
+    a, b = _encode(predicted, reference)
+    lengths = (max(len(x), len(y)) for x, y in zip(a, b, strict=True))
+    return [LCSseq.similarity(x, y) / longest if longest else 1.0 for x, y, longest in zip(a, b, lengths, strict=True)]
+
+
+def _encode(*sides: Sequence[Sequence[Hashable]]) -> tuple[Sequences, ...]:
+    """Items as integers, the frequent ones small: below 256 rapidfuzz looks a code up in a table, above in a hash."""
+    counts = Counter(item for side in sides for sequence in side for item in sequence)
+    codes = {item: number for number, (item, _) in enumerate(counts.most_common())}
+    return tuple([[codes[item] for item in sequence] for sequence in side] for side in sides)
+
+
+def _named(ref: ObjectRef, instances: bool) -> Hashable:
+    name = _plain(ref.name)
+    if not instances:
+        return name
+    return (name, "node", ref.node) if ref.node is not None else (name, "instance", ref.instance)
+
+
+@lru_cache(maxsize=65_536)
+def _plain(name: str) -> str:
+    return name.casefold().replace("_", "").replace(" ", "").replace("-", "")

@@ -1,0 +1,85 @@
+"""Parsability: whether a program could be a program at all, wherever it is to run (thesis 5.6.1, A.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code
+from hearth.scoring.lines import Line, Lines
+from hearth.scoring.signature import signature
+
+SIGNATURE = signature("parsable", level="program")
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What is wrong with one line.
+
+    Attributes:
+        line: which of the program's lines, from 0.
+        code: SYNTAX, UNKNOWN_ACTION, WRONG_ARITY or UNKNOWN_OBJECT.
+        found: the words at fault.
+    """
+
+    line: int
+    code: Code
+    found: str
+
+
+@dataclass(frozen=True, slots=True)
+class Parsability:
+    """How much of a program is well formed. A program without lines is: it is counted apart.
+
+    Attributes:
+        lines: how many there are.
+        arity: how many are steps of a known action with the right number of objects (A.3).
+        names: how many of those also name only known objects.
+        faults: at most one a line, the gravest.
+    """
+
+    lines: int
+    arity: int
+    names: int
+    faults: tuple[Fault, ...] = ()
+
+    @property
+    def parsable(self) -> bool:
+        """As published: every line's number of arguments is right."""
+        return self.arity == self.lines
+
+    @property
+    def named(self) -> bool:
+        """Ours: also every name is known."""
+        return self.names == self.lines
+
+
+def parsability(lines: Lines, knowledge: Knowledge) -> Parsability:
+    """Check each line: a step, of a known action, with the number of objects it takes, that are known."""
+    faults = tuple(fault for number, line in enumerate(lines) for fault in _first(line, number, knowledge))
+    unnamed = sum(fault.code is Code.UNKNOWN_OBJECT for fault in faults)
+    return Parsability(len(lines), len(lines) - len(faults) + unnamed, len(lines) - len(faults), faults)
+
+
+def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
+    """The gravest fault of a line, if any."""
+    if isinstance(line, str):
+        yield Fault(number, Code.SYNTAX, line[:200])
+        return
+    fault = _fault(line.action, tuple([ref.name for ref in line.objects]), knowledge)
+    if fault:
+        yield Fault(number, *fault)
+
+
+@lru_cache(maxsize=65_536)
+def _fault(name: str, objects: tuple[str, ...], knowledge: Knowledge) -> tuple[Code, str] | None:
+    """The gravest fault of a step, whatever instances it is about: a corpus says the same thing many times."""
+    action = knowledge.action(name)
+    if action is None:
+        return Code.UNKNOWN_ACTION, name
+    if len(objects) != action.arity:
+        return Code.WRONG_ARITY, f"{len(objects)} of {action.arity}"
+    unknown = next((name for name in objects if knowledge.object_class(name) is None), "")
+    return (Code.UNKNOWN_OBJECT, unknown) if unknown else None

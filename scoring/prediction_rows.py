@@ -1,0 +1,146 @@
+"""Rows of a JSON Lines or Parquet file of programs by id."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Step
+from hearth.scoring.lines import Source
+
+PARQUET = b"PAR1"
+"""How a Parquet file begins, whatever its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row with its id as text, and where it stands."""
+
+    id: str
+    values: Mapping[str, Any]
+    line: int
+
+
+Named = Callable[[Mapping[str, Any]], Sequence[str]]
+"""The ids that a row without one is about, by its other columns; none where it has not the columns either."""
+
+
+def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> Iterator[Row]:
+    """The rows that have these columns, the first of which is the id; the others' faults are added to `faults`.
+
+    Args:
+        path: JSON Lines or Parquet.
+        columns: that every row needs.
+        faults: gets what is wrong with rows.
+        named: says which ids rows are about that have none.
+
+    Raises:
+        HearthError: there is no such file, or it is neither JSON Lines nor Parquet.
+    """
+    data = _bytes(path)
+    needed = columns[1:] if named else columns
+    records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
+    for line, given in records:
+        values, *more = _told_apart(given, columns[0], named)
+        yield from (Row(each[columns[0]], each, line) for each in more)
+        missing = [name for name in columns if name not in values]
+        if missing:
+            listed = ", ".join(f"`{name}`" for name in missing)
+            faults.append(_fault(path, line, f"no {listed}", "every row needs " + ", ".join(columns)))
+            continue
+        name = values[columns[0]]
+        if isinstance(name, bool) or not isinstance(name, str | int) or name == "":
+            faults.append(_fault(path, line, f"`{columns[0]}` is {name!r}", "a text or a whole number"))
+            continue
+        yield Row(str(name), values, line)
+
+
+def _told_apart(values: dict[str, Any], column: str, named: Named | None) -> list[dict[str, Any]]:
+    """The row with its id, once for each that it is about."""
+    if named is None or column in values:
+        return [values]
+    return [{**values, column: name} for name in named(values)] or [values]
+
+
+def source_of(value: Any) -> Source | None:
+    """A value as a program - a text, or a list of texts and of steps as the published tables have them - or None."""
+    if isinstance(value, str):
+        return value
+    if not isinstance(value, list):
+        return None
+    steps = [item if isinstance(item, str) else _step(item) for item in value]
+    known = [step for step in steps if step is not None]
+    return known if len(known) == len(steps) else None
+
+
+def _step(item: Any) -> Step | None:
+    try:
+        objects = tuple(
+            ObjectRef(ref["name"], int(ref.get("instance") or 0), ref.get("node")) for ref in item.get("objects") or ()
+        )
+        return Step(item["action"], objects, int(item.get("agent") or 0), bool(item.get("joins")))
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(path)) from None
+    except OSError as error:
+        raise HearthError.of(
+            Code.UNSUPPORTED_FILE, error.strerror or "can't be read", file=str(path), suggestion="a JSON Lines file"
+        ) from None
+
+
+def _json_lines(data: bytes, path: Path, faults: list[Diagnostic]) -> Iterator[tuple[int, dict[str, Any]]]:
+    import orjson
+
+    text = decode(data, str(path))
+    if isinstance(text, Diagnostic):
+        raise HearthError(text)
+    for line, words in enumerate(text.split("\n"), 1):
+        if not words.strip():
+            continue
+        try:
+            values = orjson.loads(words)
+        except orjson.JSONDecodeError as error:
+            faults.append(
+                Diagnostic(Code.BAD_JSON, error.msg, str(path), line, error.colno, suggestion="one JSON object a line")
+            )
+            continue
+        if isinstance(values, dict):
+            yield line, values
+        else:
+            faults.append(_fault(path, line, f"a {type(values).__name__}, not an object", "one JSON object a line"))
+
+
+def _parquet(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    try:
+        table = parquet.ParquetFile(path)
+        missing = [name for name in columns if name not in table.schema_arrow.names]
+        if missing:
+            listed = ", ".join(f"`{name}`" for name in missing)
+            found = ", ".join(table.schema_arrow.names)
+            raise HearthError(_fault(path, 0, f"no column {listed}", f"its columns are {found}"))
+        line = 0
+        for batch in table.iter_batches():
+            for values in batch.to_pylist():
+                line += 1
+                yield line, values
+    except (pa.ArrowInvalid, pa.ArrowNotImplementedError, OSError) as error:
+        message = f"not readable as Parquet: {error}".splitlines()[0]
+        raise HearthError.of(Code.BAD_TABLE, message, file=str(path)) from None
+
+
+def _fault(path: Path, line: int, message: str, suggestion: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_TABLE, message, str(path), line, suggestion=suggestion)

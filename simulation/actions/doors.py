@@ -1,0 +1,85 @@
+"""Which rooms can be walked between, through doors that are open."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hearth.schemas.failures import Code, Failure
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.states import CLOSED
+
+if TYPE_CHECKING:
+    from hearth.simulation.world.world import World
+
+
+def blocking(world: World, agent: Agent, room: int) -> Failure | None:
+    """A DOOR_CLOSED failure when every way from the character's room to `room` leads through a closed door.
+
+    A home whose doors do not say what they part, or parts no one can walk between even with every door open, stops
+    nobody: the graph does not know the way. Doorways without a door are always open.
+    """
+    home = world.home
+    start = rows.agent_room(world, agent)
+    closed = home.doors & world.states[CLOSED]
+    if start < 0 or start == room or not closed:
+        return None
+    reached, _ = _flood(world, start, home.doors & ~closed)
+    if reached >> room & 1:
+        return None
+    beyond, _ = _flood(world, start, home.doors)
+    if not beyond >> room & 1:
+        return None
+    door = next(d for d in indices(closed) if home.between[d] & reached and home.between[d] & ~reached)
+    return Failure(
+        Code.DOOR_CLOSED,
+        objects=(home.ids[door], home.ids[room]),
+        names=(home.classes[door], home.classes[room]),
+        expected=f"an open way from {home.classes[start]}",
+        actual="the door CLOSED",
+    )
+
+
+def open_rooms(world: World, agent: Agent) -> int:
+    """The rooms that no closed door keeps from a character: those for which `blocking` finds nothing."""
+    home = world.home
+    start = rows.agent_room(world, agent)
+    closed = home.doors & world.states[CLOSED]
+    if start < 0 or not closed:
+        return home.rooms
+    reached, _ = _flood(world, start, home.doors & ~closed)
+    beyond, _ = _flood(world, start, home.doors)
+    return home.rooms & (reached | ~beyond)
+
+
+def side(world: World, agent: Agent, door: int, room: int) -> int:
+    """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
+    one that it is BETWEEN and that can be, the character's own before others; else `room` again.
+    """
+    start = rows.agent_room(world, agent)
+    if start < 0:
+        return room
+    reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED])
+    if room >= 0 and reached >> room & 1:
+        return room
+    within = world.home.between[door] & world.home.rooms & reached
+    if within >> start & 1:
+        return start
+    return lowest(within) if within else room
+
+
+def _flood(world: World, start: int, doors: int) -> tuple[int, int]:
+    """Rooms reached from `start` through these doors, and the doors not yet used."""
+    reached = 1 << start
+    rest = doors
+    grown = True
+    while grown:
+        grown = False
+        for door in indices(rest):
+            parts = world.home.between[door]
+            if parts & reached:
+                reached |= parts
+                rest &= ~(1 << door)
+                grown = True
+    return reached, rest

@@ -1,0 +1,98 @@
+"""Which instructions could be done now: a bit set for each argument of each action, instructions listed lazily."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.actions.registry import ACTIONS
+from hearth.simulation.actions.situation import Situation
+from hearth.simulation.observation import reach
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.bits import indices
+
+if TYPE_CHECKING:
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Legal:
+    """The instructions one agent could do in one world.
+
+    Attributes:
+        home: whose nodes the masks are about.
+        agent: whose instructions.
+        masks: action -> masks, for the executed actions that can be done.
+    """
+
+    home: Home
+    agent: int
+    masks: Mapping[str, tuple[int, ...]]
+
+    def __contains__(self, instruction: Step) -> bool:
+        masks = self.masks.get(instruction.action)
+        if masks is None or len(masks) != len(instruction.objects) or instruction.agent != self.agent:
+            return False
+        index = self.home.index
+        return all(
+            ref.node in index and mask >> index[ref.node] & 1
+            for ref, mask in zip(instruction.objects, masks, strict=True)
+        )
+
+    def __iter__(self) -> Iterator[Step]:
+        """Instructions by action name, then node ids; made one by one as they are asked for."""
+        for action in sorted(self.masks):
+            for objects in product(*map(self._references, self.masks[action])):
+                yield Step(action, objects, self.agent)
+
+    def __len__(self) -> int:
+        total = 0
+        for masks in self.masks.values():
+            count = 1
+            for mask in masks:
+                count *= mask.bit_count()
+            total += count
+        return total
+
+    def objects(self, action: str, position: int = 0) -> tuple[int, ...]:
+        """Ids of the nodes that an argument of an action may be, ascending; none when it can't be done."""
+        masks = self.masks.get(action)
+        return tuple(self.home.ids[i] for i in indices(masks[position])) if masks else ()
+
+    def _references(self, mask: int) -> Iterator[ObjectRef]:
+        home = self.home
+        return (ObjectRef(home.classes[i], 0, home.ids[i]) for i in indices(mask))
+
+
+def legal(
+    world: World, agent: int = 0, rules: Rules = DEFAULT, *, only_visible: bool = False, only_reachable: bool = False
+) -> Legal:
+    """What an agent could do now: exactly the instructions that `engine.act` would not refuse.
+
+    Args:
+        world: now.
+        agent: number of the agent.
+        rules: as the engine is to read the actions.
+        only_visible: leave out instructions about what the agent does not see (see `reach.visible`).
+        only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
+            action itself would not mind.
+    """
+    situation = Situation(world, agent, rules)
+    keep = -1
+    if only_visible:
+        keep &= reach.visible(world, situation.me)
+    if only_reachable:
+        keep &= reach.reachable(world, situation.me)
+    found: dict[str, tuple[int, ...]] = {}
+    for name, action in ACTIONS.items():
+        masks = action.mask(situation)
+        if masks is not None:
+            if keep != -1:
+                masks = tuple([mask & keep for mask in masks])
+            if all(masks):
+                found[name] = masks
+    return Legal(world.home, agent, found)

@@ -1,0 +1,69 @@
+"""A world as one agent meets it: what the masks of several actions ask, found once."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from hearth.simulation.observation import reach
+from hearth.simulation.rules import Rules
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import mask_of
+from hearth.simulation.world.states import LYING, SITTING
+from hearth.simulation.world.world import World
+
+
+class Situation:
+    """A world as one agent meets it; what several actions ask is found out once, when first asked."""
+
+    def __init__(self, world: World, number: int, rules: Rules) -> None:
+        self.world = world
+        self.home = world.home
+        self.number = number
+        self.rules = rules
+        self.me: Agent = world.agents[number]
+        self.states = world.states
+        self.held = self.me.held
+        self.free_hand = not (self.me.right and self.me.left)
+        self.sitting = bool(world.states[SITTING] & self.me.bit)
+        self.lying = bool(world.states[LYING] & self.me.bit)
+        self.resting = self.sitting or self.lying
+        self.close = reach.close_to(world, self.me)
+
+    @cached_property
+    def facing(self) -> int:
+        """What the agent faces."""
+        return reach.faced_by(self.world, self.me)
+
+    @cached_property
+    def hidden(self) -> int:
+        """What is shut away."""
+        return reach.hidden(self.world)
+
+    @cached_property
+    def walkable(self) -> int:
+        """What can be walked to, once the agent stands."""
+        return reach.walkable(self.world, self.me, self.rules.doors)
+
+    @cached_property
+    def touchable(self) -> int:
+        """What is close and not shut away."""
+        return self.close & ~self.hidden
+
+    @cached_property
+    def held_by_others(self) -> int:
+        """What other characters hold."""
+        found = 0
+        for number, other in enumerate(self.world.agents):
+            if number != self.number:
+                found |= other.held
+        return found
+
+    @cached_property
+    def full_handed(self) -> int:
+        """Other characters that can't be handed anything."""
+        others = (a for n, a in enumerate(self.world.agents) if n != self.number)
+        return mask_of(a.index for a in others if a.right and a.left)
+
+    def able(self, action: str, position: int = 0) -> int:
+        """What the knowledge allows for an argument."""
+        return self.home.able(action, position)

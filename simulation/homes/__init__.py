@@ -1,1 +1,0 @@
-"""Homes: floor plans, their geometry, and the scene graphs that follow from it."""

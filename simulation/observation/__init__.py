@@ -1,0 +1,1 @@
+"""What agents can see and reach."""

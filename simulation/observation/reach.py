@@ -1,0 +1,152 @@
+"""Questions about all nodes at once, answered as bit sets: what is close, faced, shut away, in a room, within reach."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hearth.simulation.actions import doors
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, NOTHING
+from hearth.simulation.world.states import CLOSED
+
+if TYPE_CHECKING:
+    from hearth.simulation.world.world import World
+
+
+def close_to(world: World, agent: Agent) -> int:
+    """Everything that a character is close to, by its own edges or by one hop (see `rows.is_close`)."""
+    mine = agent.close
+    found = _around(world, mine & ~world.home.characters)
+    for other in world.agents:
+        if mine & other.bit:
+            found |= other.close | other.worn
+        if mine & (other.close | other.on):
+            found |= other.bit
+    return mine | found
+
+
+def _around(world: World, places: int) -> int:
+    """The things CLOSE to, or ON, one of these things."""
+    home, moved = world.home, world.moved
+    beside = upon = 0
+    if moved is NOTHING:
+        for i in indices(places):
+            beside |= home.around[i]
+        return beside
+    for i in indices(places & ~moved.close):
+        beside |= home.close[i]
+    for i in indices(places & ~moved.on):
+        upon |= home.bears[i]
+    found = beside & ~moved.close | upon & ~moved.on
+    for key, row in moved.extra.items():
+        if key & 7 in (BEARS, CLOSE) and places >> (key >> 3) & 1:
+            found |= row
+    return found
+
+
+def faced_by(world: World, agent: Agent) -> int:
+    """Everything that a character faces, by its own edge or by one hop (see `rows.is_facing`)."""
+    mine = agent.facing
+    found = mine
+    for i in indices(mine & ~world.home.characters):
+        found |= rows.facing(world, i)
+    for other in world.agents:
+        if mine & other.bit:
+            found |= other.facing
+        if mine & other.faced:
+            found |= other.bit
+    return found
+
+
+def contained(world: World, containers: int) -> int:
+    """Everything directly INSIDE one of these, characters included."""
+    home, moved = world.home, world.moved
+    found = 0
+    for i in indices(containers & home.containing & ~moved.inside):
+        found |= home.contents[i]
+    found &= ~moved.inside
+    for key, row in moved.extra.items():
+        if key & 7 == CONTENTS and containers >> (key >> 3) & 1:
+            found |= row
+    for agent in world.agents:
+        if agent.inside & containers:
+            found |= agent.bit
+        if agent.bit & containers:
+            found |= agent.contents
+    return found
+
+
+def upon(world: World, places: int) -> int:
+    """Everything ON one of these, characters included."""
+    found = 0
+    for i in indices(places):
+        found |= rows.bearing(world, i)
+    return found
+
+
+def hidden(world: World) -> int:
+    """Everything directly INSIDE something closed that is no room: what cannot be grabbed or touched."""
+    return contained(world, world.states[CLOSED] & ~world.home.rooms)
+
+
+def out_of_sight(world: World) -> int:
+    """Everything inside something closed, directly or not, and what is on that."""
+    found = frontier = hidden(world)
+    while frontier:
+        frontier = (contained(world, frontier) | upon(world, frontier)) & ~found
+        found |= frontier
+    return found
+
+
+def in_room(world: World, room: int) -> int:
+    """The room, everything INSIDE it, directly or not, and the doors BETWEEN it and others."""
+    found = frontier = 1 << room
+    while frontier:
+        frontier = contained(world, frontier) & ~found
+        found |= frontier
+    for door in indices(world.home.doors):
+        if world.home.between[door] >> room & 1:
+            found |= 1 << door
+    return found
+
+
+def visible(world: World, agent: Agent) -> int:
+    """What a character sees: what is in its room and not inside something closed, what it holds and wears, itself.
+
+    It also knows which other rooms there are, or it could never ask to go to one.
+    """
+    seen = agent.held | agent.worn | agent.bit | world.home.rooms
+    room = rows.agent_room(world, agent)
+    if room < 0:
+        return seen
+    return seen | (in_room(world, room) & ~out_of_sight(world))
+
+
+def walkable(world: World, agent: Agent, through_doors: bool) -> int:
+    """Everything a standing character can walk to: what has a room, and no closed door in the way if doors count."""
+    home = world.home
+    direct = home.rooms | contained(world, home.rooms)
+    found = direct
+    open_rooms = doors.open_rooms(world, agent) if through_doors else -1
+    shut = home.rooms & ~open_rooms
+    apart = home.everything & ~direct
+    if shut:
+        apart |= shut | contained(world, shut)
+    if through_doors:
+        apart |= home.doors
+    for i in indices(apart):
+        room = rows.room_of(world, i)
+        if through_doors and home.between[i]:
+            room = doors.side(world, agent, i, room)
+        if room >= 0 and open_rooms >> room & 1:
+            found |= 1 << i
+        else:
+            found &= ~(1 << i)
+    return found
+
+
+def reachable(world: World, agent: Agent) -> int:
+    """What no closed door and no closed container keeps from a character."""
+    return walkable(world, agent, True) & ~hidden(world) | agent.held | agent.worn

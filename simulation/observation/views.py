@@ -1,0 +1,142 @@
+"""What an agent sees: nodes and edges, and how the others stand and what they did last."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+from hearth.schemas.failures import Failure
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Step
+from hearth.schemas.vocabulary import STATE_ID
+from hearth.simulation.observation import reach
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Deed:
+    """What an agent last tried: the instruction, and why it failed if it did."""
+
+    instruction: Step
+    failure: Failure | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """How a character stands.
+
+    Attributes:
+        agent: its number.
+        node: its node id.
+        room: id of the room it is in; None when it is in none.
+        posture: `standing`, `sitting` or `lying`.
+        on: ids of what it sits, lies or once sat on (it stays ON a seat it has got up from, as the release has it).
+        facing: ids of what it faces.
+        holding: ids of what it holds, right hand first.
+        wearing: ids of what is on it.
+        last: what it last tried, if anything.
+    """
+
+    agent: int
+    node: int
+    room: int | None
+    posture: str
+    on: tuple[int, ...] = ()
+    facing: tuple[int, ...] = ()
+    holding: tuple[int, ...] = ()
+    wearing: tuple[int, ...] = ()
+    last: Deed | None = None
+
+
+@dataclass(frozen=True)
+class View:
+    """What one agent sees of a world.
+
+    Attributes:
+        world: all of it; not for the agent's eyes when the view is partial.
+        agent: who sees.
+        mask: the nodes it sees, by index.
+        me: its own pose.
+        others: the poses of the other characters it sees, by number.
+        tick: how many ticks have passed.
+    """
+
+    world: World
+    agent: int
+    mask: int
+    me: Pose
+    others: tuple[Pose, ...]
+    tick: int = 0
+
+    @cached_property
+    def ids(self) -> tuple[int, ...]:
+        """The ids of the nodes it sees, ascending."""
+        ids = self.world.home.ids
+        return tuple(ids[i] for i in indices(self.mask))
+
+    @cached_property
+    def graph(self) -> EnvironmentGraph:
+        """The nodes it sees and the edges among them."""
+        return self.world.graph(self.mask)
+
+    def sees(self, node_id: int) -> bool:
+        """Whether a node is seen; a node that there is not is not."""
+        index = self.world.home.index.get(node_id)
+        return index is not None and bool(self.mask >> index & 1)
+
+
+_NOTHING: Mapping[int, Deed] = MappingProxyType({})
+
+
+def view(
+    world: World, agent: int = 0, *, partial: bool = True, deeds: Mapping[int, Deed] = _NOTHING, tick: int = 0
+) -> View:
+    """What an agent sees.
+
+    Args:
+        world: now.
+        agent: its number.
+        partial: only what is in its room and not inside something closed, and what it holds or wears (see
+            `reach.visible`); otherwise everything.
+        deeds: what each agent last tried.
+        tick: how many ticks have passed.
+    """
+    mask = reach.visible(world, world.agents[agent]) if partial else world.home.everything
+    others = tuple(
+        pose(world, number, deeds.get(number))
+        for number, other in enumerate(world.agents)
+        if number != agent and mask & other.bit
+    )
+    return View(world, agent, mask, pose(world, agent, deeds.get(agent)), others, tick)
+
+
+def pose(world: World, number: int, last: Deed | None = None) -> Pose:
+    """How a character stands."""
+    agent = world.agents[number]
+    ids = world.home.ids
+    room = rows.agent_room(world, agent)
+
+    def named(mask: int) -> tuple[int, ...]:
+        return tuple(ids[i] for i in indices(mask))
+
+    return Pose(
+        agent=number,
+        node=ids[agent.index],
+        room=ids[room] if room >= 0 else None,
+        posture=_posture(world, agent.bit),
+        on=named(agent.on),
+        facing=named(agent.facing),
+        holding=tuple(ids[i] for i in rows.held_indices(agent)),
+        wearing=named(agent.worn),
+        last=last,
+    )
+
+
+def _posture(world: World, bit: int) -> str:
+    if world.states[STATE_ID["LYING"]] & bit:
+        return "lying"
+    return "sitting" if world.states[STATE_ID["SITTING"]] & bit else "standing"

@@ -1,0 +1,236 @@
+"""Homes: what never changes while programs run, as rows of bit sets (see `bits`), shared by every world in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.graph import Edge, EnvironmentGraph, Node, read_node
+from hearth.simulation.world import building
+from hearth.simulation.world.affordance import allowed
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.building import Raw, Rows
+from hearth.simulation.world.nodes import with_states
+
+
+class Memo(dict[int, int]):
+    """A table filled on first use; what is never asked for costs nothing."""
+
+    def __init__(self, compute: Callable[[int], int]) -> None:
+        super().__init__()
+        self._compute = compute
+
+    def __missing__(self, key: int) -> int:
+        value = self[key] = self._compute(key)
+        return value
+
+
+class Home:
+    """The nodes of a graph and its edges at the start.
+
+    Nodes have indices 0..n-1 in the order of their ids. Rows hold only edges between things; a character's own edges
+    stand in its `Agent`, because they change with almost every step.
+
+    Attributes:
+        name: the home's name, or "".
+        ids: node ids by index.
+        index: index by node id.
+        classes: class names by index.
+        on, bears: what i is ON; what is ON i.
+        inside, contents: what i is INSIDE; what is INSIDE i.
+        close: what i is CLOSE to (symmetric).
+        facing, faced: what i is FACING; what is FACING i.
+        between: the rooms a door is BETWEEN.
+        states: the start's states, one set of nodes for each of `vocabulary.STATES`.
+        agents: indices of the characters, in id order.
+        agent_rows: each character's own edges.
+        others: edges that take no part in the simulation, kept for printing.
+        nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
+        restated: nodes whose states at the start are others than the node says.
+        absent: indices of nodes that were taken away by `edit`: nothing refers to them any more.
+        base: the home this one was derived from, and the nodes whose rows differ from it; None of a home of its own.
+    """
+
+    def __init__(
+        self,
+        nodes: Iterable[Mapping[str, Any]] | Iterable[Node],
+        edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw],
+        name: str,
+        knowledge: Knowledge,
+    ) -> None:
+        self.name = name
+        self.knowledge = knowledge
+        self.restated = self.absent = 0
+        self.base: tuple[Home, int] | None = None
+        read = building.read_nodes(nodes)
+        self.nodes, self.ids, self.index, self.classes = read.nodes, read.ids, read.index, read.classes
+        self.by_class, self.properties, self.rooms = read.by_class, read.properties, read.rooms
+        self.states, self.agents = read.states, read.agents
+        rows = building.read_edges(edges, read)
+        self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced = rows[:7]
+        self.between, self.agent_rows, self.others = rows[7:]
+        self.reach = Memo(self._reach)
+        self.direct_room = Memo(self._direct_room)
+
+    @classmethod
+    def from_release(cls, data: Mapping[str, Any], name: str, knowledge: Knowledge) -> Home:
+        """A home straight from the release's JSON, without an `EnvironmentGraph` between.
+
+        Raises:
+            HearthError: BAD_GRAPH (see `building`).
+        """
+        try:
+            nodes, edges = list(data["nodes"]), list(data["edges"])
+        except (KeyError, TypeError) as error:
+            raise building.bad_graph(f"no environment graph: {type(error).__name__} {error}") from error
+        return cls(nodes, edges, name, knowledge)
+
+    @classmethod
+    def from_graph(cls, graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Home:
+        """A home from a graph.
+
+        Raises:
+            HearthError: BAD_GRAPH (see `building`).
+        """
+        return cls(graph.nodes, graph.edges, name, knowledge)
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    def __repr__(self) -> str:
+        return f"Home({self.name!r}, {len(self.index)} nodes)"
+
+    def node(self, index: int) -> Node:
+        """The node as it was given, in the states of the start."""
+        given = self.nodes[index]
+        node = given if isinstance(given, Node) else read_node(given)
+        return with_states(node, index, self.states) if self.restated >> index & 1 else node
+
+    def copy(self) -> Home:
+        """A home of equal content whose rows may be written to until somebody else sees it."""
+        new: Home = object.__new__(Home)
+        new.name, new.knowledge, new.states, new.agents = self.name, self.knowledge, self.states, self.agents
+        new.rooms, new.restated, new.absent, new.base = self.rooms, self.restated, self.absent, self.base
+        new.others, new.nodes, new.ids, new.classes = self.others, self.nodes[:], self.ids[:], self.classes[:]
+        new.index, new.by_class, new.properties = self.index.copy(), self.by_class.copy(), self.properties.copy()
+        new.on, new.bears, new.inside, new.contents = self.on[:], self.bears[:], self.inside[:], self.contents[:]
+        new.close, new.facing, new.faced, new.between = self.close[:], self.facing[:], self.faced[:], self.between[:]
+        new.agent_rows = self.agent_rows[:]
+        new.reach = Memo(new._reach)
+        new.direct_room = Memo(new._direct_room)
+        return new
+
+    def derive(self, base: Home, touched: int) -> None:
+        """Note where this home comes from, so that what is known of `base` need not be found out again.
+
+        Args:
+            base: its nodes are the first of this home's.
+            touched: the nodes whose rows differ from the base's, new ones included.
+        """
+        self.base = (base, touched)
+
+    @property
+    def rows(self) -> tuple[Rows, ...]:
+        """All tables of rows between things."""
+        return (
+            self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced, self.between,
+        )  # fmt: skip
+
+    @property
+    def tables(self) -> dict[str, tuple[Rows, Rows]]:
+        """The rows of each simulated relation between things, and of its inverse."""
+        return {
+            "ON": (self.on, self.bears),
+            "INSIDE": (self.inside, self.contents),
+            "CLOSE": (self.close, self.close),
+            "FACING": (self.facing, self.faced),
+        }
+
+    def able(self, action: str, position: int = 0) -> int:
+        """The nodes that an action's argument may be, by the knowledge's requirement for it."""
+        try:
+            return self._able[action, position]
+        except KeyError:
+            pass
+        needs = self.knowledge.actions[action].needs[position]
+        mask = self._able[action, position] = allowed(
+            needs, self.properties, self.by_class, self.rooms, self.everything
+        )
+        return mask
+
+    @cached_property
+    def _able(self) -> dict[tuple[str, int], int]:
+        return {}
+
+    @cached_property
+    def everything(self) -> int:
+        """All nodes."""
+        return (1 << len(self.ids)) - 1 & ~self.absent
+
+    @cached_property
+    def characters(self) -> int:
+        """All characters."""
+        return mask_of(self.agents)
+
+    @cached_property
+    def doors(self) -> int:
+        """All nodes that are BETWEEN rooms."""
+        return mask_of(i for i, row in enumerate(self.between) if row)
+
+    @cached_property
+    def furniture(self) -> int:
+        """All nodes of the category Furniture."""
+        if self.base is not None:
+            base = self.base[0]
+            new = (i for i in range(len(base), len(self)) if self.nodes[i].category == "Furniture")
+            return base.furniture & ~self.absent | mask_of(new)
+        return mask_of(i for i in range(len(self)) if self.node(i).category == "Furniture")
+
+    @cached_property
+    def around(self) -> Rows:
+        """For each node, what is close to who is CLOSE to it: its CLOSE row and what is ON it."""
+        return [a | b for a, b in zip(self.close, self.bears, strict=True)]
+
+    @cached_property
+    def containing(self) -> int:
+        """All nodes that something is INSIDE at the start."""
+        return mask_of(i for i, row in enumerate(self.contents) if row)
+
+    @cached_property
+    def edges(self) -> list[Raw]:
+        """Every edge between things at the start, the characters' own left out."""
+        found: list[Raw] = []
+        for relation, rows in zip(
+            ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"),
+            (self.on, self.inside, self.close, self.facing, self.between),
+            strict=True,
+        ):
+            for i, row in enumerate(rows):
+                found.extend((self.ids[i], relation, self.ids[j]) for j in indices(row))
+        return found
+
+    def instances(self, name: str) -> int:
+        """What a class name stands for: the nodes of that class, else those of the first of its other names that the
+        home knows.
+        """
+        names = (name, *self.knowledge.same_class(name))
+        return next((mask for each in names if (mask := self.by_class.get(each, 0))), 0)
+
+    def limit(self, index: int, lying: bool = False) -> int:
+        """How many things may be ON a seat before one may sit, or on a bed before one may lie."""
+        name = self.classes[index]
+        return self.knowledge.bed_limit(name) if lying else self.knowledge.seat_limit(name)
+
+    def _reach(self, o: int) -> int:
+        """What a walk to o brings the character close to, while nothing has moved."""
+        mask = 1 << o | self.properties["BODY_PART"] | (self.inside[o] & ~self.rooms)
+        return mask | self.bears[o] if self.properties["SURFACES"] >> o & 1 else mask
+
+    def _direct_room(self, o: int) -> int:
+        """Index of the room that o is, or is directly INSIDE (the first by id), or -1."""
+        if self.rooms >> o & 1:
+            return o
+        rooms = self.inside[o] & self.rooms
+        return (rooms & -rooms).bit_length() - 1

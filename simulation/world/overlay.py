@@ -1,0 +1,106 @@
+"""Adding and taking away single edges in the middle of an execution, whichever kind of node they join."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from hearth.simulation.world import moved as kinds
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.moved import Moved, link, unlink
+from hearth.simulation.world.rows import Numbered
+from hearth.simulation.world.world import World
+
+_KINDS = {"ON": kinds.ON, "INSIDE": kinds.INSIDE, "CLOSE": kinds.CLOSE, "FACING": kinds.FACING}
+
+_READ: dict[str, tuple[Callable[[World, int], int], Callable[[World, int], int]]] = {
+    "ON": (rows.on, rows.bears),
+    "INSIDE": (rows.inside, rows.contents),
+    "CLOSE": (rows.close, rows.close),
+    "FACING": (rows.facing, rows.faced),
+}
+
+
+def linked(world: World, edges: Iterable[Numbered]) -> World:
+    """With more edges, given by indices; BETWEEN and what takes no part in the simulation are not for this."""
+    extra = dict(world.moved.extra)
+    agents = list(world.agents)
+    for i, relation, j in edges:
+        if not _each_agent(agents, (i, relation, j), _put) and relation in _KINDS:
+            link(extra, i, _KINDS[relation], j)
+    return World(world.home, world.states, tuple(agents), world.moved._replace(extra=extra))
+
+
+def unlinked(world: World, edges: Iterable[Numbered]) -> World:
+    """With fewer edges; one that is not there is no error.
+
+    A home's own edge can't be taken out of its shared row: the end of it that has fewer edges of the relation is made
+    gone from the relation, and what it keeps becomes extra.
+    """
+    for i, relation, j in edges:
+        agents = list(world.agents)
+        if _each_agent(agents, (i, relation, j), _clear):
+            world = World(world.home, world.states, tuple(agents), world.moved)
+        elif relation in _KINDS:
+            moved = _without(world, i, relation, j)
+            world = World(world.home, world.states, world.agents, moved)
+    return world
+
+
+def _without(world: World, i: int, relation: str, j: int) -> Moved:
+    forward, backward = _READ[relation]
+    if not forward(world, i) >> j & 1:
+        return world.moved
+    kind = _KINDS[relation]
+    moved = world.moved
+    extra = dict(moved.extra)
+    gone = {"ON": moved.on, "INSIDE": moved.inside, "CLOSE": moved.close, "FACING": moved.facing}[relation]
+    if not (gone >> i | gone >> j) & 1:
+        out = {k: (forward(world, k), backward(world, k)) for k in (i, j)}
+        k = min(out, key=lambda end: (out[end][0] | out[end][1]).bit_count())
+        for other in indices(out[k][0]):
+            link(extra, k, kind, other)
+        for other in indices(out[k][1]):
+            link(extra, other, kind, k)
+        moved = _voided(moved, relation, 1 << k)
+    unlink(extra, i, kind, j)
+    return moved._replace(extra=extra)
+
+
+def _voided(moved: Moved, relation: str, bit: int) -> Moved:
+    on, inside, close, facing, extra = moved
+    if relation == "ON":
+        return Moved(on | bit, inside, close, facing, extra)
+    if relation == "INSIDE":
+        return Moved(on, inside | bit, close, facing, extra)
+    if relation == "CLOSE":
+        return Moved(on, inside, close | bit, facing, extra)
+    return Moved(on, inside, close, facing | bit, extra)
+
+
+def _put(row: int, bit: int) -> int:
+    return row | bit
+
+
+def _clear(row: int, bit: int) -> int:
+    return row & ~bit
+
+
+def _each_agent(agents: list[Agent], edge: Numbered, change: Callable[[int, int], int]) -> bool:
+    """Change the rows of the characters at either end; whether there were any. Edges between two characters stand in
+    the row of the one they go out from, CLOSE in both.
+    """
+    i, relation, j = edge
+    part = False
+    for me, fields, other in ((i, AGENT_OUT, j), (j, AGENT_IN, i)):
+        number = next((n for n, agent in enumerate(agents) if agent.index == me), -1)
+        field = fields.get(relation)
+        if number < 0 or field is None or (part and relation != "CLOSE"):
+            continue
+        part = True
+        agent = agents[number]
+        row: dict[str, Any] = {field: change(getattr(agent, field), 1 << other)}
+        agents[number] = agent._replace(**row)
+    return part

@@ -1,0 +1,236 @@
+"""Reading rows of a world: the home's, less what is gone, plus what is extra.
+
+All take and give indices and bit sets. Edges between a character and anything stand in the character's `Agent`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hearth.schemas.graph import Edge
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
+from hearth.simulation.world.state import WorldState
+from hearth.simulation.world.states import CLOSED
+
+Numbered = tuple[int, str, int]
+
+
+def on(world: WorldState, i: int) -> int:
+    """The things that i is ON."""
+    return _row(world.home.on[i], world.moved.on, world.moved.extra, i, ON)
+
+
+def bears(world: WorldState, i: int) -> int:
+    """The things ON i."""
+    return _row(world.home.bears[i], world.moved.on, world.moved.extra, i, BEARS)
+
+
+def inside(world: WorldState, i: int) -> int:
+    """The things and rooms that i is INSIDE."""
+    return _row(world.home.inside[i], world.moved.inside, world.moved.extra, i, INSIDE)
+
+
+def contents(world: WorldState, i: int) -> int:
+    """The things INSIDE i."""
+    return _row(world.home.contents[i], world.moved.inside, world.moved.extra, i, CONTENTS)
+
+
+def close(world: WorldState, i: int) -> int:
+    """The things that i is CLOSE to."""
+    return _row(world.home.close[i], world.moved.close, world.moved.extra, i, CLOSE)
+
+
+def facing(world: WorldState, i: int) -> int:
+    """The things that i is FACING."""
+    return _row(world.home.facing[i], world.moved.facing, world.moved.extra, i, FACING)
+
+
+def faced(world: WorldState, i: int) -> int:
+    """The things that are FACING i."""
+    return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
+
+
+def _row(row: int, gone: int, extra: dict[int, int], i: int, kind: int) -> int:
+    if gone:
+        row = 0 if gone >> i & 1 else row & ~gone
+    return row | extra.get(8 * i + kind, 0)
+
+
+def is_close(world: WorldState, agent: Agent, i: int) -> bool:
+    """Whether a character is close to i: by its own CLOSE edge, or by one hop from what it is CLOSE to (to something
+    CLOSE to it, or to something that i is ON).
+    """
+    mine = agent.close
+    if mine >> i & 1:
+        return True
+    moved = world.moved
+    if moved is NOTHING:
+        if mine & (world.home.close[i] | world.home.on[i]):
+            return True
+    elif mine & (close(world, i) | on(world, i)):
+        return True
+    home = world.home
+    if home.characters >> i & 1:
+        other = character(world, i)
+        if mine & (other.close | other.on):
+            return True
+    if len(world.agents) == 1 and not mine & agent.bit:
+        return False
+    return any(mine & other.bit and (other.close | other.worn) >> i & 1 for other in world.agents)
+
+
+def is_facing(world: WorldState, agent: Agent, i: int) -> bool:
+    """Whether a character faces i, by its own FACING edge or by one hop."""
+    mine = agent.facing
+    if mine >> i & 1 or mine & faced(world, i):
+        return True
+    home = world.home
+    if not mine & home.characters and not home.characters >> i & 1:
+        return False
+    if home.characters >> i & 1 and mine & character(world, i).faced:
+        return True
+    return any(mine & other.bit and other.facing >> i & 1 for other in world.agents)
+
+
+def room_of(world: WorldState, i: int) -> int:
+    """Index of the room that i is, or is INSIDE directly or through its containers; -1 when there is none.
+
+    Of several rooms the first by id; a cycle of INSIDE is left once it closes.
+    """
+    home = world.home
+    if not world.moved.inside >> i & 1:
+        room = home.direct_room[i]
+        if room >= 0:
+            return room
+    if home.characters >> i & 1:
+        return agent_room(world, character(world, i))
+    return _search_room(world, containers(world, i), 1 << i)
+
+
+def agent_room(world: WorldState, agent: Agent) -> int:
+    """Index of the room a character is in, or -1."""
+    rooms = agent.inside & world.home.rooms
+    if rooms:
+        return (rooms & -rooms).bit_length() - 1
+    return _search_room(world, agent.inside, agent.bit)
+
+
+def _search_room(world: WorldState, frontier: int, seen: int) -> int:
+    rooms = world.home.rooms
+    while frontier:
+        found = frontier & rooms
+        if found:
+            return (found & -found).bit_length() - 1
+        seen |= frontier
+        outer = 0
+        for i in indices(frontier):
+            outer |= containers(world, i)
+        frontier = outer & ~seen
+    return -1
+
+
+def closed_container(world: WorldState, i: int) -> int:
+    """Index of a closed thing that hides i, or -1."""
+    hiding = containers(world, i) & ~world.home.rooms & world.states[CLOSED]
+    return (hiding & -hiding).bit_length() - 1
+
+
+def character(world: WorldState, i: int) -> Agent:
+    """The character whose node has that index."""
+    for agent in world.agents:
+        if agent.index == i:
+            return agent
+    raise LookupError(i)
+
+
+def containers(world: WorldState, i: int) -> int:
+    """What i is INSIDE, characters included, and whether or not it is a character itself."""
+    if world.home.characters >> i & 1:
+        return character(world, i).inside
+    found = inside(world, i)
+    for agent in world.agents:
+        if agent.contents >> i & 1:
+            found |= agent.bit
+    return found
+
+
+def bearing(world: WorldState, i: int) -> int:
+    """Everything ON i, characters included, and whether or not it is a character itself."""
+    found = character(world, i).worn if world.home.characters >> i & 1 else bears(world, i)
+    for agent in world.agents:
+        if agent.on >> i & 1:
+            found |= agent.bit
+    return found
+
+
+def held_indices(agent: Agent) -> Iterator[int]:
+    """What a character holds, right hand first."""
+    yield from indices(agent.right)
+    yield from indices(agent.left & ~agent.right)
+
+
+def thing_edges(world: WorldState, among: int = -1) -> Iterator[Numbered]:
+    """Every edge between things (of these), as (index, relation, index)."""
+    home = world.home
+    for i in indices(among & home.everything):
+        for relation, row in (
+            ("ON", on(world, i)),
+            ("INSIDE", inside(world, i)),
+            ("CLOSE", close(world, i)),
+            ("FACING", facing(world, i)),
+            ("BETWEEN", home.between[i]),
+        ):
+            for j in indices(row & among):
+                yield i, relation, j
+
+
+def agent_edges(agent: Agent) -> Iterator[Numbered]:
+    """Every edge of a character, in both directions, as (index, relation, index)."""
+    me = agent.index
+    out = (("ON", agent.on), ("INSIDE", agent.inside), ("CLOSE", agent.close), ("FACING", agent.facing))
+    for relation, row in (*out, ("HOLDS_RH", agent.right), ("HOLDS_LH", agent.left)):
+        for j in indices(row):
+            yield me, relation, j
+    into = (("ON", agent.worn), ("INSIDE", agent.contents), ("CLOSE", agent.close), ("FACING", agent.faced))
+    for relation, row in into:
+        for j in indices(row):
+            yield j, relation, me
+
+
+def edges(world: WorldState, among: int = -1) -> set[Edge]:
+    """Every edge (among these nodes), by ids."""
+    home = world.home
+    ids, index = home.ids, home.index
+    found = {Edge(ids[i], relation, ids[j]) for i, relation, j in thing_edges(world, among)}
+    for agent in world.agents:
+        pairs = ((i, r, j) for i, r, j in agent_edges(agent) if among >> i & 1 and among >> j & 1)
+        found.update(Edge(ids[i], relation, ids[j]) for i, relation, j in pairs)
+    for source, relation, target in home.others:
+        if among >> index[source] & 1 and among >> index[target] & 1:
+            found.add(Edge(source, relation, target))
+    return found
+
+
+def difference(world: WorldState) -> frozenset[tuple[int, int, int]]:
+    """Rows of things that differ from the home's, as (index, kind, row): equal for equal graphs."""
+    moved = world.moved
+    if moved is NOTHING:
+        return frozenset()
+    home = world.home
+    found = set()
+    touched = {key >> 3 for key in moved.extra} | set(indices(moved.on | moved.inside | moved.close | moved.facing))
+    for i in touched:
+        for kind, now, before in (
+            (ON, on(world, i), home.on[i]),
+            (BEARS, bears(world, i), home.bears[i]),
+            (INSIDE, inside(world, i), home.inside[i]),
+            (CONTENTS, contents(world, i), home.contents[i]),
+            (CLOSE, close(world, i), home.close[i]),
+            (FACING, facing(world, i), home.facing[i]),
+            (FACED, faced(world, i), home.faced[i]),
+        ):
+            if now != before:
+                found.add((i, kind, now))
+    return frozenset(found)

@@ -1,0 +1,55 @@
+"""A world in the middle of an execution as JSON and back, with nothing lost.
+
+The graph is the release's own format, so that other tools read it; what a graph cannot say, where grabbed things came
+from, stands beside it under `memories`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import from_release, to_release
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved import CLOSE, INSIDE, ON
+from hearth.simulation.world.world import World
+
+_KINDS = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE"}
+_NUMBERS = {name: kind for kind, name in _KINDS.items()}
+
+
+def export(world: World) -> dict[str, Any]:
+    """The world as a JSON-able mapping: `home`, `graph`, `memories`."""
+    ids = world.home.ids
+    memories = [
+        {"agent": ids[agent.index], "thing": ids[thing], "place": ids[place], "relation": _KINDS[kind]}
+        for agent in world.agents
+        for thing, place, kind in agent.origins
+    ]
+    return {"home": world.home.name, "graph": to_release(world.graph()), "memories": memories}
+
+
+def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
+    """The world that was exported; a plain scene graph under `graph` will do.
+
+    Raises:
+        HearthError: BAD_GRAPH: it is no exported world, or a memory names a node that the graph lacks.
+    """
+    try:
+        graph, memories = data["graph"], list(data.get("memories", ()))
+        world = World.start(Home.from_graph(from_release(graph), str(data.get("home", "")), knowledge))
+        by_agent: dict[int, list[tuple[int, int, int]]] = {}
+        index = world.home.index
+        for memory in memories:
+            entry = (index[memory["thing"]], index[memory["place"]], _NUMBERS[memory["relation"]])
+            by_agent.setdefault(index[memory["agent"]], []).append(entry)
+    except (KeyError, TypeError, AttributeError) as error:
+        message = f"not an exported world: {type(error).__name__} {error}"
+        raise HearthError.of(
+            Code.BAD_GRAPH, message, suggestion="it needs `graph`, and `memories` of nodes in it"
+        ) from error
+    agents = tuple(agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
+    return World(world.home, world.states, agents, world.moved)

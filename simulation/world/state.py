@@ -1,0 +1,26 @@
+"""What the state of a world is made of: all that reading its rows needs (see `rows`)."""
+
+from __future__ import annotations
+
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved import Moved
+
+
+class WorldState:
+    """A home, and what differs from it at one moment.
+
+    Attributes:
+        home: what never changes.
+        states: one set of nodes for each of `vocabulary.STATES`.
+        agents: the characters, in id order.
+        moved: what differs from the home's edges between things.
+    """
+
+    __slots__ = ("agents", "home", "moved", "states")
+
+    def __init__(self, home: Home, states: tuple[int, ...], agents: tuple[Agent, ...], moved: Moved) -> None:
+        self.home = home
+        self.states = states
+        self.agents = agents
+        self.moved = moved

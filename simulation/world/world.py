@@ -1,0 +1,82 @@
+"""Worlds: immutable values, each the home it shares with all others plus what differs from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hearth.schemas.change import Change
+from hearth.schemas.graph import Edge, EnvironmentGraph
+from hearth.schemas.vocabulary import STATE_ID
+from hearth.simulation.world import rows
+from hearth.simulation.world.agent import Agent, replaced
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.change import encode
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved import NOTHING
+from hearth.simulation.world.nodes import with_states
+from hearth.simulation.world.state import WorldState
+
+
+class World(WorldState):
+    """The state of everything at one moment.
+
+    Two worlds are equal when they show the same graph with the same memories, however they came about.
+    """
+
+    __slots__ = ("_key",)
+    _key: tuple[object, ...]
+
+    @classmethod
+    def start(cls, home: Home) -> World:
+        """The home as it is given."""
+        agents = tuple(Agent.start(i, row) for i, row in zip(home.agents, home.agent_rows, strict=True))
+        return cls(home, home.states, agents, NOTHING)
+
+    def with_agent(self, number: int, agent: Agent) -> World:
+        """The same world with one agent's edges replaced."""
+        agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)
+        return World(self.home, self.states, agents, self.moved)
+
+    def has_state(self, node_id: int, state: str) -> bool:
+        """Whether a node is in a state."""
+        return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
+
+    def graph(self, among: int = -1) -> EnvironmentGraph:
+        """The graph, rebuilt, or the part of it among these nodes: nodes in id order, edges sorted."""
+        home = self.home
+        nodes = tuple(with_states(home.node(i), i, self.states) for i in indices(among & home.everything))
+        return EnvironmentGraph(nodes, tuple(sorted(self.edges(among))))
+
+    def edges(self, among: int = -1) -> list[Edge]:
+        """Every edge (among these nodes), each once, in no particular order."""
+        return list(rows.edges(self, among))
+
+    def changes(self, since: World) -> Change:
+        """What is different from an earlier world of the same home; cost follows what differs."""
+        return encode(since, self)
+
+    def key(self) -> tuple[object, ...]:
+        """What makes it equal to another: its difference from its home, and what the agents remember."""
+        try:
+            return self._key
+        except AttributeError:
+            pass
+        memories = tuple(frozenset(agent.origins) for agent in self.agents)
+        self._key = (self.states, rows.difference(self), tuple(a[:-1] for a in self.agents), memories)
+        return self._key
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        return isinstance(other, World) and self.home is other.home and self.key() == other.key()
+
+    def __hash__(self) -> int:
+        return hash(self.key())
+
+    def __repr__(self) -> str:
+        return f"World({self.home!r}, {len(self.agents)} agents)"
+
+    def holding(self) -> Mapping[int, tuple[int, ...]]:
+        """What each agent holds, by agent number: node ids, right hand first."""
+        ids = self.home.ids
+        return {number: tuple(ids[i] for i in rows.held_indices(agent)) for number, agent in enumerate(self.agents)}

@@ -1,0 +1,1 @@
+"""Bytes on disk: atomic files, digests, partitions, manifests, locks, archives, stores. Knows nothing of programs."""

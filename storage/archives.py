@@ -1,0 +1,182 @@
+"""Packed sources read in place: members of a zip, gzip and zstd files; refused where they unpack to far too much."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import stat
+import zipfile
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import IO, BinaryIO, cast
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.rejects import Reject
+
+GZIP = b"\x1f\x8b"
+ZSTD = b"\x28\xb5\x2f\xfd"
+
+LARGEST_MEMBER = 4_000_000_000
+"""Bytes that a packed file may unpack to while it is read as a stream."""
+
+MOST_PACKED = 200
+"""How many times its size a packed file may unpack to, once that is more than `_HARMLESS` bytes."""
+
+_HARMLESS = 64_000_000
+
+_READ = 1 << 15
+"""Bytes unpacked at a time: where a file breaks off, no more than these are lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A file inside a zip, read where it is."""
+
+    archive: Path
+    name: str
+
+    @property
+    def suffix(self) -> str:
+        """As of a path."""
+        return PurePosixPath(self.name).suffix
+
+    def info(self) -> zipfile.ZipInfo:
+        """Its entry in the archive's directory."""
+        return archive(self.archive).getinfo(self.name)
+
+
+Place = Path | Member
+"""Where a file is."""
+
+
+class DamagedError(HearthError):
+    """A packed file that can't be read to its end."""
+
+
+@lru_cache(maxsize=4)
+def _archive(path: str, changed: int) -> zipfile.ZipFile:
+    try:
+        return zipfile.ZipFile(path)
+    except (zipfile.BadZipFile, EOFError, NotImplementedError, OSError, ValueError) as error:
+        message = f"a damaged or truncated archive: {error}"
+        raise HearthError.of(Code.BAD_ARCHIVE, message, file=path, suggestion="download it again") from error
+
+
+def archive(path: Path) -> zipfile.ZipFile:
+    """The archive at a path, open once a process.
+
+    Raises:
+        HearthError: BAD_ARCHIVE.
+    """
+    return _archive(str(path), path.stat().st_mtime_ns)
+
+
+def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+    """What an archive holds, folders left out; `is_dir` itself breaks at a name that is empty."""
+    return [info for info in found.infolist() if not info.filename.endswith("/")]
+
+
+def leaves(name: str) -> bool:
+    """Whether a member's name points outside the archive."""
+    path = PurePosixPath(name.replace("\\", "/"))
+    return path.is_absolute() or ".." in path.parts or (len(name) > 1 and name[1] == ":")
+
+
+def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
+    """Why a member is not read, from what the directory says of it."""
+    if leaves(info.filename):
+        message = f"`{info.filename[:100]}` leaves the archive"
+        return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack it anew")
+    if not info.filename:
+        return Reject.of(Code.BAD_ARCHIVE, "a file without a name", file=place, suggestion="pack it anew")
+    if stat.S_ISLNK(info.external_attr >> 16):
+        message = "a link, which could point anywhere: never followed"
+        return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack the file")
+    if info.flag_bits & 1:
+        return Reject.of(Code.BAD_ARCHIVE, "it is encrypted", file=place, suggestion="pack it without a password")
+    if bomb(info.file_size, info.compress_size):
+        return Reject.of(Code.FILE_TOO_LARGE, _told(info.file_size, info.compress_size), file=place)
+    return None
+
+
+def bomb(size: int, packed: int) -> bool:
+    """Whether so many bytes of so few are more than any text packs to."""
+    return size > LARGEST_MEMBER or (size > _HARMLESS and size > packed * MOST_PACKED)
+
+
+def _told(size: int, packed: int) -> str:
+    return f"a zip bomb: {packed:,} bytes that unpack to {size:,}"
+
+
+def size_of(place: Place) -> int:
+    """Bytes as they are read, of packed members unpacked; of gzip and zstd files, packed."""
+    return place.info().file_size if isinstance(place, Member) else place.stat().st_size
+
+
+def raw(place: Place) -> BinaryIO:
+    """A file's bytes, unpacked."""
+    if isinstance(place, Member):
+        member = _opened(place)
+        guarded: io.RawIOBase = _Guarded(member, place.name, place.info().compress_size)
+        return io.BufferedReader(guarded)
+    file = place.open("rb")
+    start = file.read(4)
+    file.seek(0)
+    if start.startswith(GZIP):
+        return _buffered(_Guarded(cast("IO[bytes]", gzip.open(file)), str(place), place.stat().st_size, file))
+    if start.startswith(ZSTD):
+        file.close()
+        import pyarrow as pa
+
+        stream = pa.CompressedInputStream(pa.OSFile(str(place)), "zstd")
+        return _buffered(_Guarded(stream, str(place), place.stat().st_size))
+    return file
+
+
+def _opened(member: Member) -> IO[bytes]:
+    try:
+        return archive(member.archive).open(member.name)
+    except Exception as error:  # a directory that lies: BadZipFile, KeyError, NotImplementedError, RuntimeError, ...
+        raise _damaged(member.name, f"can't be unpacked: {error}") from error
+
+
+def _damaged(name: str, message: str) -> DamagedError:
+    return DamagedError(Reject.of(Code.BAD_ARCHIVE, message, file=name, suggestion="download it again").diagnostics)
+
+
+def _buffered(stream: io.RawIOBase) -> BinaryIO:
+    return io.BufferedReader(stream)
+
+
+class _Guarded(io.RawIOBase):
+    """A stream that is unpacked, which ends in `DamagedError` where it is broken or too much comes of it."""
+
+    def __init__(self, stream: IO[bytes], name: str, packed: int, behind: IO[bytes] | None = None) -> None:
+        self._stream, self._name, self._packed, self._behind = stream, name, packed, behind
+        self._size = 0
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: bytearray) -> int:  # type: ignore[override]
+        try:
+            data = self._stream.read(min(len(buffer), _READ))
+        except Exception as error:  # archives raise what their compression raises: zlib, lzma, EOFError, ArrowIOError
+            raise _damaged(self._name, f"can't be unpacked: {error}") from error
+        self._size += len(data)
+        if bomb(self._size, self._packed):
+            fault = Reject.of(Code.FILE_TOO_LARGE, _told(self._size, self._packed), file=self._name)
+            raise DamagedError(fault.diagnostics)
+        buffer[: len(data)] = data
+        return len(data)
+
+    def close(self) -> None:
+        if not self.closed:
+            with suppress(Exception):
+                self._stream.close()
+            if self._behind:
+                self._behind.close()
+        super().close()

@@ -1,0 +1,114 @@
+"""Files that are either whole or absent: temporary names, fsync, rename; and their hashes."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+TEMPORARY = ".tmp"
+
+
+def is_temporary(name: str) -> bool:
+    """Whether a file's name is that of something half written, or of what a library keeps beside such a file."""
+    return TEMPORARY in Path(name).suffixes
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a temporary name beside `path`; on success it is fsynced and takes the place of `path`."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}{TEMPORARY}")
+    try:
+        yield temporary
+        commit(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def commit(temporary: Path, path: Path) -> None:
+    """Fsync a written file and rename it into place."""
+    with temporary.open("rb+") as file:
+        os.fsync(file.fileno())
+    temporary.replace(path)
+    sync_folder(path.parent)
+
+
+def sync_folder(folder: Path) -> None:
+    """Make renames in a folder last through a power cut."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a whole file, or none."""
+    with replacing(path) as temporary:
+        temporary.write_bytes(data)
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write JSON that people can read, keys in the order given."""
+    write_bytes(path, orjson.dumps(value, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+
+
+def read_json(path: Path) -> Any | None:
+    """The JSON of a file; None when it is absent or is not JSON."""
+    try:
+        return orjson.loads(path.read_bytes())
+    except (OSError, orjson.JSONDecodeError):
+        return None
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of a file's bytes, as hexadecimal; read once a process while the file stays as it is."""
+    stat = path.stat()
+    return _file_digest(path, stat.st_size, stat.st_mtime_ns)
+
+
+@lru_cache(maxsize=100_000)
+def _file_digest(path: Path, size: int, changed: int) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def tree_digest(path: Path) -> str:
+    """SHA-256 over a file, or over the names and bytes of all files of a folder, hidden ones left out.
+
+    Raises:
+        HearthError: MISSING_FILE.
+    """
+    if path.is_file():
+        return file_digest(path)
+    if not path.is_dir():
+        raise HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path))
+    digest = hashlib.sha256()
+    for file in walk(path):
+        digest.update(f"{file.relative_to(path).as_posix()}\0{file_digest(file)}\n".encode("utf-8", "surrogateescape"))
+    return digest.hexdigest()
+
+
+def walk(folder: Path) -> Iterator[Path]:
+    """The files under a folder in the order of their names, hidden ones and links that leave it left out."""
+    root = folder.resolve()
+    for path in sorted(folder.rglob("*"), key=lambda p: p.relative_to(folder).as_posix()):
+        inside = path.relative_to(folder)
+        hidden = any(part.startswith(".") for part in inside.parts)
+        # Links to folders are not followed, so that only a file that is one itself can lead elsewhere.
+        if not hidden and path.is_file() and (not path.is_symlink() or path.resolve().is_relative_to(root)):
+            yield path
+
+
+def value_digest(value: Any) -> str:
+    """SHA-256 of a JSON value, keys sorted."""
+    return hashlib.sha256(orjson.dumps(value, option=orjson.OPT_SORT_KEYS)).hexdigest()

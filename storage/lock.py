@@ -1,0 +1,42 @@
+"""One build at a time in a folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold a folder for this process; may be entered again by the process that holds it.
+
+    Raises:
+        HearthError: LOCKED, naming the process that builds there now; UNWRITABLE, when the folder cannot be made.
+    """
+    path = folder.resolve() / ".lock"
+    # What is called a lock here is held by the system, and so is free as soon as its process is no more.
+    lock = FileLock(path, blocking=False, thread_local=False, is_singleton=True, fallback_to_soft=False)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lock.acquire()
+    except Timeout:
+        holder = path.read_text().strip() or "?"
+        suggestion = "wait until it has ended, or choose another folder with --out"
+        message = f"process {holder} is building here"
+        raise HearthError.of(Code.LOCKED, message, file=str(folder), suggestion=suggestion) from None
+    except OSError as error:
+        message = f"nothing can be written here: {(error.strerror or str(error)).lower()}"
+        suggestion = "choose another folder with --out, or make this one writable"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(folder), suggestion=suggestion) from None
+    try:
+        path.write_text(f"{os.getpid()}\n")
+        yield
+    finally:
+        lock.release()

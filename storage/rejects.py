@@ -1,0 +1,79 @@
+"""What a stage refuses, and why: the other half of every ledger."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import PurePath
+
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.rows import Row
+
+INTERNAL_ERROR = str(Code.INTERNAL_ERROR)
+"""The code of a record that made a stage's own code fail: a fault of ours, not of the record."""
+
+_LONGEST = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Reject:
+    """A record, or a part of one, that does not go on.
+
+    Attributes:
+        diagnostics: every fault, the one it counts under first.
+        internal: the fault is ours: an exception that no stage expected.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    internal: bool = False
+
+    @classmethod
+    def of(
+        cls, code: Code, message: str, *, file: str = "", line: int = 0, found: str = "", suggestion: str = ""
+    ) -> Reject:
+        """A reject for one fault."""
+        return cls((Diagnostic(code, message, file, line, found=found, suggestion=suggestion),))
+
+    @classmethod
+    def because(cls, faults: Iterable[Diagnostic], file: str = "") -> Reject:
+        """A reject for several faults; `file` is put where they name none."""
+        return cls(tuple(fault if fault.file or not file else fault.at(file) for fault in faults))
+
+    @classmethod
+    def failed(cls, failure: Failure, file: str = "", line: int = 0, where: str = "") -> Reject:
+        """A reject for a failure of the engine or of grounding; `where` tells in which home or environment."""
+        message = f"{failure.message()}, {where}" if where else failure.message()
+        return cls((Diagnostic(failure.code, message, file, line, found=" ".join(failure.names)),))
+
+    @classmethod
+    def caused(cls, error: Exception, file: str = "") -> Reject:
+        """A reject for an exception: a `HearthError` keeps its faults, another is ours and says where it arose."""
+        if isinstance(error, HearthError):
+            return cls.because(error.diagnostics, file)
+        frames = traceback.extract_tb(error.__traceback__)
+        where = f"{PurePath(frames[-1].filename).name}:{frames[-1].lineno}" if frames else "?"
+        message = f"{type(error).__name__} at {where}: {error}"[:_LONGEST]
+        fault = Diagnostic(Code.INTERNAL_ERROR, message, file, suggestion="this is a fault of Hearth; please report it")
+        return cls((fault,), internal=True)
+
+    @property
+    def code(self) -> str:
+        """What it counts under."""
+        return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
+
+    def rows(self) -> list[Row]:
+        """For each fault, what the rejects table says of it."""
+        return [
+            {
+                "code": self.code if self.internal else str(fault.code),
+                "file": fault.file,
+                "line": fault.line,
+                "column": fault.column,
+                "found": fault.found[:_LONGEST],
+                "message": fault.message[:_LONGEST],
+                "suggestion": fault.suggestion,
+            }
+            for fault in self.diagnostics
+        ]

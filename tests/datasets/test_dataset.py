@@ -1,0 +1,218 @@
+"""The published dataset: tables, SQL, macros, the loader, and moving the folder."""
+
+from __future__ import annotations
+
+import shutil
+from collections import Counter
+
+import duckdb
+import pytest
+
+import hearth
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.cases import rerun
+from hearth.pipelines.engine.build_homes import Homes
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.graph import from_release
+from hearth.schemas.syntax import print_lines
+from hearth.schemas.tables import TABLES
+from hearth.storage.files import file_digest, read_json
+
+MILK = "release:batch-1/file1_1"
+TELEVISION = "crowd:P1"
+
+
+@pytest.fixture
+def ds(made):
+    return hearth.load(made.out)
+
+
+def cases(made):
+    return {row["execution_id"]: row for name in ("sample", "augment") for row in made.rows(name)}
+
+
+def test_every_table_has_its_columns(ds):
+    for name, schema in TABLES.items():
+        assert getattr(ds, name).columns == schema.names, name
+
+
+def test_the_program_as_text(ds):
+    (text,) = ds.rows("SELECT program_text($id)", id=MILK)[1][0]
+    assert text == "\n".join(print_lines(ds[MILK].program))
+    ids = [row[0] for row in ds.rows("SELECT program_id FROM programs WHERE program_text(program_id) LIKE '%milk%'")[1]]
+    assert MILK in ids
+    assert TELEVISION not in ids
+
+
+def test_graphs_are_the_engines_at_every_tick(made, ds):
+    homes = Homes(made.settings)
+    for execution_id, case in cases(made).items():
+        execution = rerun(case, homes)
+        run = next(run for run in ds[case["program_id"]].runs if run.row["execution_id"] == execution_id)
+        for tick, world in enumerate(execution.worlds):
+            expected = world.graph()
+            graph = run.graph(tick)
+            assert graph.edges == expected.edges
+            assert states(graph) == states(expected)
+
+
+def states(graph):
+    return {node.id: sorted(node.states) for node in graph.nodes}
+
+
+def test_macros_rebuild_the_same_graphs(ds):
+    for program_id in list(ds)[:6]:
+        for run in ds[program_id].runs:
+            for tick in range(len(run.row["ticks"]) + 1):
+                told = {"id": run.row["execution_id"], "tick": tick}
+                graph = run.graph(tick)
+                _, edges = ds.rows("SELECT * FROM graph_edges($id, $tick) ORDER BY ALL", **told)
+                assert edges == [tuple(edge) for edge in graph.edges]
+                _, nodes = ds.rows("SELECT id, class_name, states FROM graph_nodes($id, $tick) ORDER BY id", **told)
+                assert nodes == [(node.id, node.class_name, sorted(node.states)) for node in graph.nodes]
+
+
+def test_final_states(ds):
+    run = ds[MILK].runs[0]
+    _, found = ds.rows(
+        "SELECT state FROM final_state($id) WHERE class_name = 'fridge' ORDER BY 1", id=run.row["execution_id"]
+    )
+    assert [state for (state,) in found] == ["CLEAN", "CLOSED", "OFF", "PLUGGED_IN"]
+
+
+def test_a_program_with_all_that_belongs_to_it(ds):
+    entry = ds[MILK]
+    (run,) = entry.runs
+    assert (entry.title, run.home, run.executable) == ("Fetch milk", "cottage", True)
+    assert entry.description.startswith("Take the milk")
+    assert run.bindings()["milk", 1] == 24
+    assert {row["name"] for row in run.conditions} == {"closed", "inside"}
+    assert run.networkx().has_edge(24, 23, "INSIDE")
+    assert run.networkx(len(run.row["ticks"])).has_edge(24, 20, "ON")
+    assert from_release(run.release_json(0)) == run.start
+    assert entry.repairs == ()
+    assert MILK in ds
+    assert len(ds) == len(list(ds))
+    with pytest.raises(KeyError):
+        ds["nobody"]
+    with pytest.raises(IndexError):
+        run.graph(99)
+
+
+def test_repairs_belong_to_their_programs(ds):
+    _, found = ds.rows("SELECT DISTINCT program_id, parent_id FROM repairs WHERE program_id IS NOT NULL")
+    assert found
+    for program_id, parent_id in found:
+        entry = ds[program_id]
+        assert entry.row["parent_id"] == parent_id
+        assert [row["attempt"] for row in entry.repairs] == list(range(len(entry.repairs)))
+        assert entry.row["split"] == ds[parent_id].row["split"]
+
+
+def test_what_the_release_stored_is_reproduced_or_not(ds):
+    _, found = ds.rows("SELECT program_id, executable, reproduces, failure.code FROM executions WHERE rules = 'replay'")
+    assert sorted(found)[:2] == [(MILK, True, True, None), ("release:batch-1/file1_2", False, False, "NOT_CLOSE")]
+
+
+def test_program_to_repairs_to_final_states(ds):
+    query = """
+        SELECT p.title, r.handler, s.class_name, s.state
+        FROM programs p JOIN repairs r USING (program_id) JOIN executions e USING (execution_id),
+        LATERAL (SELECT class_name, state FROM final_state('crowd:P1+cabin.0@cabin/0')) s
+        WHERE e.execution_id = 'crowd:P1+cabin.0@cabin/0' AND s.class_name = 'television' ORDER BY ALL
+    """
+    _, found = ds.rows(query)
+    assert {row[3] for row in found} >= {"ON"}
+
+
+def test_the_folder_may_be_moved(made, tmp_path):
+    folder = tmp_path / "it's, moved"
+    shutil.copytree(made.out / "publish", folder)
+    assert len(Dataset.open(folder)) == len(hearth.load(made.out))
+
+
+def test_plain_duckdb_reads_the_catalog_after_a_move(made, tmp_path):
+    folder = tmp_path / "moved"
+    shutil.copytree(made.out / "publish", folder)
+    with duckdb.connect(str(folder / "catalog.duckdb"), read_only=True) as connection:
+        connection.execute(f"SET file_search_path = '{folder}'")
+        (text,) = connection.execute(f"SELECT program_text('{MILK}')").fetchone()
+        assert text.startswith("[Walk] <kitchen> (1)")
+        (steps,) = connection.execute("SELECT count(*) FROM steps").fetchone()
+        (nested,) = connection.execute("SELECT sum(len(steps)) FROM programs").fetchone()
+        assert steps == nested
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "CREATE TABLE mine (i INT)",
+        "DROP VIEW programs",
+        "COPY programs TO '/tmp/elsewhere.csv'",
+        "SELECT 1; SELECT 2",
+        "ATTACH '/tmp/other.duckdb' AS other",
+        "SET threads = 1",
+        "INSTALL httpfs",
+        "",
+    ],
+)
+def test_a_dataset_can_only_be_read(ds, query):
+    with pytest.raises(HearthError):
+        ds.rows(query)
+
+
+@pytest.mark.parametrize("query", ["SELECT * FROM read_text('/etc/hostname')", "SELECT * FROM '/etc/passwd'"])
+def test_other_files_are_out_of_reach(ds, query):
+    with pytest.raises(HearthError):
+        ds.rows(query)
+
+
+@pytest.mark.parametrize("query", ["DESCRIBE programs", "SHOW TABLES", "EXPLAIN SELECT 1", "FROM steps LIMIT 1"])
+def test_ways_to_ask(ds, query):
+    assert ds.rows(query, limit=5)[1]
+
+
+def test_a_wrong_query_says_why(ds):
+    with pytest.raises(HearthError, match="titel"):
+        ds.rows("SELECT titel FROM programs")
+    with pytest.raises(HearthError, match="Conversion Error"):
+        ds.rows("SELECT title::INT FROM programs")
+
+
+def test_no_dataset_and_a_newer_one(made, tmp_path):
+    with pytest.raises(HearthError, match="no dataset here"):
+        hearth.load(tmp_path)
+    folder = shutil.copytree(made.out / "publish", tmp_path / "newer")
+    text = (folder / "manifest.json").read_text().replace('"format": 1', '"format": 99')
+    (folder / "manifest.json").write_text(text)
+    with pytest.raises(HearthError, match="format 99"):
+        hearth.load(folder)
+
+
+def test_the_manifest_has_the_digest_of_every_file(made):
+    folder = made.out / "publish"
+    told = read_json(folder / "manifest.json")["files"]
+    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert set(told) == there - {"manifest.json", "timing.json", "catalog.duckdb"}
+    for name, entry in told.items():
+        assert file_digest(folder / name) == entry["sha256"]
+
+
+def test_nothing_refers_to_what_is_not_there(ds):
+    for table, column, other in (
+        ("executions", "program_id", "programs"),
+        ("executions", "environment_id", "environments"),
+        ("environments", "home", "homes"),
+        ("programs", "activity_id", "activities"),
+        ("programs", "description_id", "descriptions"),
+        ("repairs", "program_id", "programs"),
+        ("repairs", "execution_id", "executions"),
+    ):
+        query = f"SELECT count(*) FROM {table} ANTI JOIN {other} USING ({column}) WHERE {column} IS NOT NULL"
+        assert ds.rows(query)[1] == [(0,)], (table, column)
+
+
+def test_relations_counted_from_differences(ds):
+    found = dict(ds.rows("SELECT relation, edges FROM start_relations WHERE edges > 0")[1])
+    runs = [run for program_id in ds for run in ds[program_id].runs]
+    assert found == Counter(edge.relation for run in runs for edge in run.start.edges)

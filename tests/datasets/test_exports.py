@@ -1,0 +1,147 @@
+"""Every form of export, read by a tool that is not the one that wrote it."""
+
+from __future__ import annotations
+
+import ast
+import json
+
+import networkx
+import pandas as pd
+import pytest
+
+import hearth
+from hearth.analysis.release_replay import replay
+from hearth.datasets.export.batches import Wanted, file_name
+from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.export.release_layout import ROOT
+from hearth.datasets.export.triples import iri, text
+from hearth.kb.language.phrases import hear
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
+
+MILK = "release:batch-1/file1_1"
+
+
+@pytest.fixture(scope="module")
+def ds(made):
+    return hearth.load(made.out)
+
+
+def test_the_release_comes_back_through_ingest(ds, tmp_path, built, made):
+    export(ds, "release", tmp_path / "out")
+    again = built(tmp_path / "out")
+    again.run("ingest", "validate", "sample")
+    assert not again.rejects("ingest")
+    first = {row["execution_id"]: row for row in made.rows("sample") if row["program_id"].startswith("release:")}
+    second = {row["execution_id"]: row for row in again.rows("sample")}
+    assert first
+    for name, row in first.items():
+        same = ("title", "description", "bindings", "ticks", "executable", "failure", "home")
+        assert {key: second[name][key] for key in same} == {key: row[key] for key in same}
+        stripped = [[{**step, "line": 0} for step in case["steps"]] for case in (row, second[name])]
+        assert stripped[0] == stripped[1]
+
+
+def test_what_was_exported_as_a_release_replays(ds, tmp_path):
+    export(ds, "release", tmp_path / "out")
+    found = list(replay(tmp_path / "out" / ROOT, default()))
+    assert len(found) == ds.rows("SELECT count(*) FROM executions")[1][0][0]
+    assert all(not one.faults for one in found)
+    mine = [one for one in found if one.program_id == "batch-1/file1_1"]
+    assert [one.exact for one in mine] == [True]
+
+
+def test_words_name_the_same_actions_and_objects(ds, tmp_path):
+    export(ds, "nl", tmp_path / "out")
+    rows = [json.loads(line) for line in (tmp_path / "out/steps.jsonl").read_text().splitlines()]
+    assert [row["program_id"] for row in rows] == list(ds)
+    for row in rows:
+        for said, step in zip(row["steps"], ds[row["program_id"]].program.steps, strict=True):
+            meant = {(action.name, names) for action, names in hear(default(), said)}
+            assert (step.action, tuple(ref.name for ref in step.objects)) in meant
+
+
+def test_pairs_for_tuning_and_examples(ds, tmp_path):
+    export(ds, "nl", tmp_path / "out", Wanted((MILK,)))
+    chat = pd.read_json(tmp_path / "out/chat.jsonl", lines=True)
+    (messages,) = chat["messages"]
+    assert [message["role"] for message in messages] == ["user", "assistant"]
+    assert "Fetch milk" in messages[0]["content"]
+    assert messages[1]["content"].startswith("1. Walk to kitchen\n2. ")
+    (example,) = json.loads((tmp_path / "out/examples.json").read_text())
+    assert example.startswith("Task: Fetch milk\nStep 1: Walk to kitchen\nStep 2: ")
+
+
+def test_json_lines_hold_every_row(ds, tmp_path):
+    export(ds, "jsonl", tmp_path / "out")
+    for table in ("programs", "executions", "home_edges", "ledger", "vocabulary"):
+        lines = (tmp_path / f"out/{table}.jsonl").read_text().splitlines()
+        rows = ds.sql(f"SELECT * FROM {table} ORDER BY 1, 2").to_arrow_table().to_pylist()
+        assert sorted(map(json.loads, lines), key=str) == sorted(rows, key=str)
+
+
+def test_code_is_python_that_makes_the_same_calls(ds, tmp_path):
+    export(ds, "code", tmp_path / "out")
+    tree = ast.parse((tmp_path / "out/programs.py").read_text())
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    assert len(functions) == len({function.name for function in functions}) == len(ds)
+    imported = {alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    for function, program_id in zip(functions, ds, strict=True):
+        calls = [node.value for node in function.body if isinstance(node, ast.Expr)]
+        steps = ds[program_id].program.steps
+        assert [[argument.value for argument in call.args] for call in calls] == [
+            [f"{ref.name}_{ref.instance}" for ref in step.objects] for step in steps
+        ]
+        assert [call.func.id.replace("_", "") for call in calls] == [step.action.lower() for step in steps]
+        assert {call.func.id for call in calls} <= imported
+
+
+@pytest.mark.parametrize("form", ["networkx", "graphml"])
+def test_graphs_read_by_networkx(ds, tmp_path, form):
+    export(ds, form, tmp_path / "out", Wanted((MILK,)))
+    (run,) = ds[MILK].runs
+    for moment, graph in (("start", run.start), ("final", run.final)):
+        base = tmp_path / f"out/{file_name(run.row['execution_id'])}.{moment}"
+        if form == "graphml":
+            found = networkx.read_graphml(f"{base}.graphml", node_type=int, force_multigraph=True)
+            states = {node: told["states"].split() for node, told in found.nodes(data=True)}
+            edges = {(source, told["relation"], target) for source, target, told in found.edges(data=True)}
+        else:
+            found = networkx.node_link_graph(json.loads(base.with_name(f"{base.name}.json").read_text()), edges="edges")
+            states = {node: told["states"] for node, told in found.nodes(data=True)}
+            edges = {(source, relation, target) for source, target, relation in found.edges(keys=True)}
+        assert states == {node.id: list(node.states) for node in graph.nodes}
+        assert edges == {tuple(edge) for edge in graph.edges}
+
+
+def test_triples_read_by_rdflib(ds, tmp_path):
+    rdflib = pytest.importorskip("rdflib", reason="rdflib is not installed: pip install rdflib")
+    export(ds, "rdf", tmp_path / "out")
+    found = rdflib.Graph().parse(tmp_path / "out/programs.ttl")
+    query = "SELECT (COUNT(?s) AS ?n) WHERE { ?p a <https://hearth.invalid/terms#Program> . ?p <%sstep> ?s }"
+    ((number,),) = found.query(query % "https://hearth.invalid/terms#")
+    assert int(number) == ds.rows("SELECT count(*) FROM steps")[1][0][0]
+    known = rdflib.Graph().parse(tmp_path / "out/knowledge.ttl")
+    assert len(known) > len(default().objects)
+
+
+def test_literals_and_identifiers_are_escaped():
+    assert text('say "hi"\\\n\0') == '"say \\"hi\\"\\\\\\n"'
+    assert iri("program", "a b>") == "<https://hearth.invalid/terms/program/a%20b%3E>"
+    assert file_name("crowd:a/../b") == "crowd%3aa%2f..%2fb"
+
+
+def test_only_what_was_asked_for(ds, tmp_path):
+    assert export(ds, "nl", tmp_path / "one", Wanted(limit=1)) == 1
+    assert export(ds, "code", tmp_path / "none", Wanted(limit=0)) == 0
+    assert set(FORMATS) >= {"release", "nl", "jsonl", "code", "networkx", "graphml", "rdf"}
+
+
+def test_what_cannot_be_exported_is_named(ds, tmp_path):
+    with pytest.raises(HearthError, match="no form"):
+        export(ds, "word", tmp_path / "out")
+    with pytest.raises(HearthError, match="no program `nobody`"):
+        export(ds, "nl", tmp_path / "out", Wanted(("nobody",)))
+    (tmp_path / "mine.txt").write_text("precious")
+    with pytest.raises(HearthError, match="something already"):
+        export(ds, "nl", tmp_path)

@@ -1,0 +1,176 @@
+"""The report: what it says is what the dataset says, nothing of it is taken for markup, and a browser opens it."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+
+import pytest
+
+import hearth
+from hearth.datasets.report.figures import figures
+from hearth.datasets.report.plans import draw
+from hearth.datasets.report.write import write_report
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.graph import Box, Node
+
+MILK = "release:batch-1/file1_1"
+NASTY = "<script>alert(1)</script><b>"
+
+
+@pytest.fixture(scope="module")
+def ds(made):
+    return hearth.load(made.out)
+
+
+@pytest.fixture(scope="module")
+def written(ds, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report") / "out"
+    assert write_report(ds, folder) == len(ds)
+    return folder
+
+
+def data(path):
+    text = path.read_text()
+    return json.loads(text[text.index("(") + 1 : text.rindex(")")])
+
+
+@pytest.fixture(scope="module")
+def stories(written):
+    return {each["id"]: each for path in written.glob("data/stories-*.js") for each in data(path)}
+
+
+def test_every_program_has_a_row_and_a_story(ds, written, stories):
+    rows = data(written / "data/programs.js")
+    assert [row[0] for row in rows] == list(ds)
+    assert set(stories) == set(ds)
+    for row in rows:
+        entry = ds[row[0]]
+        assert row[1:2] + row[4:7] == [entry.title, len(entry.program.steps), len(entry.runs), len(entry.repairs)]
+
+
+def test_a_story_tells_steps_conditions_and_changes(ds, stories):
+    told = stories[MILK]
+    assert told["steps"][0] == "[Walk] <kitchen> (1)"
+    (run,) = told["runs"]
+    assert run["failure"] is None
+    assert any(text.startswith("inside(milk 1, fridge 1)") for text in run["conditions"])
+    assert len(run["ticks"]) == len(ds[MILK].runs[0].row["ticks"])
+    assert any("is OPEN" in change for tick in run["ticks"] for change in tick["changes"])
+
+
+def test_graphs_before_and_after_are_the_datasets(ds, stories):
+    for program_id, told in stories.items():
+        for run, mine in zip(ds[program_id].runs, told["runs"], strict=True):
+            for graph, drawn in ((run.start, mine["start"]), (run.final, mine["final"])):
+                edges = {tuple(edge) for edge in graph.edges}
+                assert {tuple(edge) for edge in drawn["edges"]} <= edges
+                states = {node.id: sorted(node.states) for node in graph.nodes}
+                named = set(run.bindings().values())
+                assert {i: found for i, _, found in drawn["nodes"] if i in named} == {i: states[i] for i in named}
+                place = {(edge.source, edge.target) for edge in graph.edges if edge.relation == "ON"}
+                seen = {(source, target) for source, relation, target in drawn["edges"] if relation == "ON"}
+                assert {pair for pair in place if pair[0] in named} <= seen
+
+
+def test_a_repair_shows_only_what_it_changes(ds, stories):
+    repaired = [(ds[name], told) for name, told in stories.items() if told["repairs"]]
+    assert repaired
+    for entry, told in repaired:
+        for row, shown in zip(entry.repairs, told["repairs"], strict=True):
+            assert shown["failure"]["code"] == row["failure"]["code"]
+            assert len(row["before"]) - len(shown["removed"]) + len(shown["added"]) == len(row["after"])
+            assert shown["removed"] or shown["added"]
+
+
+def test_numbers_have_their_queries(ds, written):
+    page = (written / "index.html").read_text()
+    found = figures(ds)
+    assert {"Where records went", "Repairs by failure and handler", "Splits"} <= {each.title for each in found}
+    for each in found:
+        assert each.title in page
+        assert max(each.bars) == 100
+        assert [tuple(row) for row in ds.rows(each.query)[1]] == list(each.rows)
+
+
+def test_the_page_needs_no_network(written):
+    for path in (written / "index.html", written / "style.css", written / "app.js", written / "page.js"):
+        text = path.read_text().replace("http://www.w3.org/2000/svg", "")
+        assert not re.search(r"https?://|//cdn|@import|fetch\(", text), path.name
+    assert "innerHTML" not in (written / "page.js").read_text() + (written / "app.js").read_text()
+
+
+def test_a_plan_escapes_names_and_needs_boxes():
+    box = Box((1.0, 1.0, 1.0), (2.0, 2.0, 2.0))
+    drawn = draw((Node(1, NASTY, "Rooms", (), (), None, box, None),))
+    assert "<script>" not in drawn
+    assert "&lt;script&gt;" in drawn
+    assert draw((Node(1, "kitchen", "Rooms", (), (), None, None, None),)) == ""
+
+
+def test_it_does_not_write_over_something_else(ds, tmp_path):
+    (tmp_path / "mine.txt").write_text("precious")
+    with pytest.raises(HearthError, match="something else"):
+        write_report(ds, tmp_path)
+
+
+@pytest.fixture
+def browser():
+    playwright = pytest.importorskip(
+        "playwright.sync_api", reason="playwright is not installed: pip install playwright"
+    )
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("no Chromium here: apt-get install chromium")
+    with playwright.sync_playwright() as running:
+        started = running.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
+def test_a_browser_searches_opens_and_plays(written, browser, scheme, width):
+    page = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme).new_page()
+    faults = []
+    page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("request", lambda asked: faults.append(asked.url) if not asked.url.startswith(("file:", "data:")) else None)
+    page.goto((written / "index.html").as_uri())
+    page.wait_for_selector(".row")
+    page.fill("#search", "fetch milk file1_1")
+    assert page.text_content("#found").startswith("4 of ")
+    page.click(".row")
+    page.wait_for_selector("ol.steps li")
+    assert page.text_content("ol.steps li:first-child") == "[Walk] <kitchen> (1)"
+    page.click("button.play")
+    page.wait_for_selector("ol.steps li.now")
+    page.click("nav a:nth-child(2)")
+    page.wait_for_selector("#numbers .figure")
+    page.click("nav a:nth-child(1)")
+    page.fill("#search", "")
+    page.click("button[data-column=steps]")
+    lengths = [int(text) for text in page.locator(".row .number:nth-child(5)").all_text_contents()]
+    assert lengths == sorted(lengths, reverse=True)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    dark = page.evaluate("matchMedia('(prefers-color-scheme: dark)').matches")
+    assert dark == (scheme == "dark")
+    assert faults == []
+
+
+@pytest.mark.slow
+def test_thirty_thousand_rows_and_markup_in_titles(written, browser, tmp_path):
+    folder = shutil.copytree(written, tmp_path / "many")
+    rows = [[f"p{number}", NASTY, "crowd", "train", number % 30, 7, 0, ""] for number in range(30_000)]
+    (folder / "data/programs.js").write_text(f"HEARTH.programs({json.dumps(rows)});")
+    page = browser.new_page()
+    alerts = []
+    page.on("dialog", lambda dialog: alerts.append(dialog.message))
+    page.goto((folder / "index.html").as_uri())
+    page.wait_for_selector(".row")
+    assert page.locator(".row").count() < 100
+    assert page.text_content(".row .keep") == NASTY
+    page.evaluate("document.getElementById('scroll').scrollTop = 1e9")
+    page.wait_for_function("[...document.querySelectorAll('.row')].at(-1).href.endsWith('p9999')")
+    assert alerts == []

@@ -1,0 +1,185 @@
+"""A dataset checked from its folder: sound as published, and every way of damaging it named."""
+
+from __future__ import annotations
+
+import shutil
+
+import orjson
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import pytest
+
+import hearth
+from hearth.datasets.verify import verify
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.tables import TABLES
+from hearth.storage.files import file_digest
+
+
+@pytest.fixture
+def copy(made, tmp_path):
+    return shutil.copytree(made.out / "publish", tmp_path / "copy")
+
+
+def part(folder, table, least=1):
+    return next(path for path in sorted((folder / table).glob("*.parquet")) if pq.read_metadata(path).num_rows >= least)
+
+
+def believed(folder, path):
+    """Make the manifest say what the file now is, so that only its content is at fault."""
+    manifest = orjson.loads((folder / "manifest.json").read_bytes())
+    name = path.relative_to(folder).as_posix()
+    manifest["files"][name] = {"bytes": path.stat().st_size, "sha256": file_digest(path)}
+    (folder / "manifest.json").write_bytes(orjson.dumps(manifest))
+
+
+def rewritten(folder, table, change):
+    path = part(folder, table)
+    pq.write_table(change(pq.ParquetFile(path).read()), path)
+    believed(folder, path)
+
+
+def codes(folder):
+    return [str(fault.code) for fault in verify(folder).faults]
+
+
+def test_what_was_published_is_what_it_says(made):
+    found = verify(made.out)
+    assert found.faults == ()
+    assert found.executions == len(made.rows("sample")) + len(made.rows("augment"))
+    assert found.files > 10 < found.rows
+
+
+def test_one_flipped_bit(copy):
+    path = part(copy, "executions")
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    (fault,) = verify(copy).faults
+    assert (str(fault.code), fault.file) == ("DAMAGED_FILE", str(path))
+
+
+def test_a_file_cut_short_and_one_that_is_gone(copy):
+    short, gone = part(copy, "programs"), part(copy, "home_edges")
+    short.write_bytes(short.read_bytes()[:-1])
+    gone.unlink()
+    assert sorted(codes(copy)) == ["DAMAGED_FILE", "MISSING_FILE"]
+
+
+def test_a_part_too_many(copy):
+    path = part(copy, "programs")
+    shutil.copy(path, path.with_name("part-00099.parquet"))
+    assert codes(copy) == ["UNSUPPORTED_FILE"]
+
+
+def test_a_table_without_files(copy):
+    manifest = orjson.loads((copy / "manifest.json").read_bytes())
+    manifest["files"] = {name: v for name, v in manifest["files"].items() if not name.startswith("vocabulary/")}
+    (copy / "manifest.json").write_bytes(orjson.dumps(manifest))
+    shutil.rmtree(copy / "vocabulary")
+    assert codes(copy) == ["MISSING_FILE"]
+
+
+def test_other_columns(copy):
+    rewritten(copy, "programs", lambda table: table.drop_columns(["split"]))
+    (fault,) = verify(copy).faults
+    assert str(fault.code) == "BAD_TABLE"
+    assert "split" in fault.message
+
+
+def test_rows_that_are_gone(copy):
+    rewritten(copy, "executions", lambda table: table.slice(1))
+    assert "BAD_TABLE" in codes(copy)
+
+
+def test_a_reference_to_nothing(copy):
+    def elsewhere(table):
+        names = pa.array(["nowhere"] * len(table), pa.string())
+        return table.set_column(table.schema.get_field_index("activity_id"), table.schema.field("activity_id"), names)
+
+    rewritten(copy, "programs", elsewhere)
+    faults = verify(copy).faults
+    assert any(str(fault.code) == "UNKNOWN_ID" and fault.found == "nowhere" for fault in faults)
+
+
+def test_an_execution_that_says_another_change(copy):
+    def fewer(table):
+        rows = table.to_pylist()
+        for row in rows:
+            for tick in row["ticks"]:
+                tick["added"] = tick["added"][1:]
+        return pa.Table.from_pylist(rows, table.schema)
+
+    rewritten(copy, "executions", fewer)
+    found = verify(copy)
+    assert {str(fault.code) for fault in found.faults} == {"REPLAY_DIFFERS"}
+    assert "changes something else" in found.faults[0].message
+
+
+def test_a_home_whose_things_are_in_other_states(copy):
+    def closed(table):
+        states = table["states"].combine_chunks()
+        values = pc.replace_substring(states.values, "OPEN", "DIRTY")
+        column = pa.ListArray.from_arrays(states.offsets, values)
+        return table.set_column(table.schema.get_field_index("states"), table.schema.field("states"), column)
+
+    rewritten(copy, "home_nodes", closed)
+    assert set(codes(copy)) <= {"REPLAY_DIFFERS"}
+
+
+def test_a_ledger_that_does_not_add_up(copy):
+    def lost(table):
+        place = table.schema.get_field_index("records_in")
+        return table.set_column(place, table.schema.field(place), pc.add(table["records_in"], 1))
+
+    rewritten(copy, "ledger", lost)
+    assert set(codes(copy)) == {"BAD_TABLE"}
+
+
+def test_a_newer_dataset_is_not_guessed_at(copy):
+    text = (copy / "manifest.json").read_text().replace('"format": 1', '"format": 99')
+    (copy / "manifest.json").write_text(text)
+    with pytest.raises(HearthError, match="format 99"):
+        verify(copy)
+
+
+def test_a_table_that_is_not_there_is_named(copy):
+    shutil.rmtree(copy / "sketches")
+    assert codes(copy) == ["MISSING_FILE"]
+    with pytest.raises(HearthError, match="no table `sketches`") as caught:
+        len(hearth.load(copy))
+    assert str(caught.value.diagnostics[0].code) == "MISSING_FILE"
+
+
+def test_a_table_that_an_earlier_version_did_not_have_is_empty(copy):
+    shutil.rmtree(copy / "videos")
+    manifest = orjson.loads((copy / "manifest.json").read_bytes())
+    manifest["files"] = {name: told for name, told in manifest["files"].items() if not name.startswith("videos/")}
+    (copy / "manifest.json").write_bytes(orjson.dumps(manifest))
+    ds = hearth.load(copy)
+    assert len(ds) > 0
+    assert ds.rows("SELECT count(*) FROM videos")[1] == [(0,)]
+    assert ds.videos.columns == TABLES["videos"].names
+
+
+def test_a_program_dealt_to_both_sides(copy):
+    def dealt(table):
+        other = ["test" if split == "train" else "train" for split in table["split"].to_pylist()]
+        return table.set_column(table.schema.get_field_index("split"), table.schema.field("split"), [other])
+
+    rewritten(copy, "programs", dealt)
+    assert "BAD_TABLE" in codes(copy)
+
+
+def test_any_number_of_workers_finds_the_same(copy, monkeypatch):
+    def moved(table):
+        rows = table.to_pylist()
+        for row in rows:
+            row["bindings"] = [{**each, "node": each["node"] + 1} for each in row["bindings"]]
+        return pa.Table.from_pylist(rows, table.schema)
+
+    rewritten(copy, "executions", moved)
+    monkeypatch.setattr("hearth.datasets.verify.SHARE", 3)
+    one, two = (verify(copy, number) for number in (1, 2))
+    assert one == two and one.faults

@@ -1,0 +1,27 @@
+"""Repairing in a small world; finds `repair_worlds` beside it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from repair_worlds import small_world, steps_of
+
+from hearth.repair.loop import repair
+from hearth.schemas.syntax import print_step
+
+
+@pytest.fixture
+def repaired():
+    """Repairs a program in a small world; gives the result, its steps as text, and the names of the repairs."""
+
+    def run(world: str, program: str, goal=(), **more):
+        start = small_world(world)
+        result = repair(steps_of(program), start, goal, start.home.knowledge, **more)
+        return result, [print_step(step) for step in result.program.steps], [a.handler for a in result.attempts]
+
+    return run

@@ -1,0 +1,174 @@
+"""What is made otherwise, how often, and that environments are then so."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+from repair_worlds import steps_of
+
+from hearth.grounding.environments.default_state import prepared
+from hearth.grounding.environments.sampling import Size, draw
+from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.grounding.preconditions.infer import infer
+from hearth.repair.perturb import PERTURBATIONS, Case, Chances, applied, candidates, distinct
+from hearth.repair.variants import CHANCES_FILE, default_chances, load_chances
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.literals import CHARACTER
+from hearth.schemas.rng import rng
+
+TELEVISION = """[Walk] <living_room> (1)
+[Walk] <couch> (1)
+[Sit] <couch> (1)
+[Find] <remote_control> (1)
+[Grab] <remote_control> (1)
+[SwitchOn] <television> (1)
+[TurnTo] <television> (1)
+[Watch] <television> (1)"""
+SEE = """[Walk] <television> (1)
+[SwitchOn] <television> (1)
+[Walk] <couch> (1)
+[Sit] <couch> (1)
+[Watch] <television> (1)"""
+DISHES = """[Walk] <kitchen> (1)
+[Walk] <cupboard> (1)
+[Open] <cupboard> (1)
+[Find] <cup> (1)
+[Grab] <cup> (1)
+[Close] <cupboard> (1)
+[Walk] <sink> (1)
+[Wash] <cup> (1)"""
+GET_UP = "[StandUp]\n[Walk] <bedroom> (1)\n[SwitchOff] <light> (1)"
+WAKE_UP = "[WakeUp]\n[StandUp]"
+UNPLUG = "[Walk] <television> (1)\n[PlugIn] <television> (1)\n[SwitchOn] <television> (1)"
+READ = "[Read] <book> (1)"
+
+KINDS = {
+    "sitting": GET_UP,
+    "lying": WAKE_UP,
+    "at_reach": TELEVISION,
+    "plugged": UNPLUG,
+    "on": TELEVISION,
+    "open": DISHES,
+    "free": TELEVISION,
+    "facing": SEE,
+    "holding": READ,
+    "container": DISHES,
+    "location": TELEVISION,
+    "full_hands": DISHES,
+    "dirty": DISHES,
+    "door": TELEVISION,
+    "pet": TELEVISION,
+    "seated": DISHES,
+}
+"""For every kind of perturbation, a program it applies to."""
+
+
+def case_of(text: str, home) -> Case:
+    program = steps_of(text)
+    conditions = infer(program, home.knowledge)
+    assert isinstance(conditions, Preconditions), conditions
+    return Case(program, conditions, prepared(home))
+
+
+def only(kind: str) -> Chances:
+    return Chances({kind: 1.0}, {"each": 1.0})
+
+
+def test_every_kind_is_tried_here_and_has_a_probability():
+    assert set(KINDS) == set(PERTURBATIONS) == set(default_chances().kinds)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_environments_are_as_the_perturbation_says(kind, maple):
+    case = case_of(KINDS[kind], maple)
+    found = list(distinct(case, only(kind), rng(1), 1))
+    assert found, f"{kind} does not apply"
+    for seed in range(3):
+        environment = draw(case.program, case.base, found[0].conditions, seed, "", 0, Size())
+        nodes = {ref.key: ref.node for ref in environment.program.objects()}
+        assert unmet(found[0].conditions, environment.world, nodes) == ()
+        dropped = [c for one in found[0].perturbations for c in one.dropped if c.name not in ("location", "nearby")]
+        gone = Preconditions(tuple(dropped))
+        assert not dropped or unmet(gone, environment.world, nodes), f"{dropped} still hold"
+
+
+def test_a_swap_takes_the_condition_for_its_opposite(maple):
+    case = case_of(DISHES, maple)
+    (one,) = [p for p in candidates(case) if p.kind == "open"]
+    assert str(one) == "open: closed(cupboard (1)) -> open(cupboard (1))"
+    after = applied(case.conditions, [one])
+    assert after.has("open", ("cupboard", 1))
+    assert not after.has("closed", ("cupboard", 1))
+
+
+def test_a_thing_that_is_elsewhere_keeps_no_other_place(maple):
+    case = case_of(TELEVISION, maple)
+    (one,) = [p for p in candidates(case) if p.kind == "at_reach" and p.about.objects[0] == ("remote_control", 1)]
+    names = {c.name for c in applied(case.conditions, [one]).about(("remote_control", 1))}
+    assert names == {"apart"}
+
+
+def test_no_two_draws_are_the_same_and_none_is_the_original(maple):
+    case = case_of(TELEVISION, maple)
+    found = list(distinct(case, default_chances(), rng(5), 40))
+    facts = [frozenset(c.literal for c in one.conditions) for one in found]
+    assert len(set(facts)) == len(facts) > 10
+    assert frozenset(c.literal for c in case.conditions) not in facts
+    assert found == list(distinct(case, default_chances(), rng(5), 40))
+
+
+@pytest.mark.parametrize(("way", "most"), [("one", 1), ("two", 2), ("each", 3)])
+def test_as_many_at_once_as_asked_for(way, most, maple):
+    case = case_of(TELEVISION, maple)
+    chances = replace(default_chances(), draws={way: 1.0}, most=3)
+    sizes = Counter(len(one.perturbations) for one in distinct(case, chances, rng(2), 30))
+    assert max(sizes) == most
+
+
+def test_two_that_settle_the_same_exclude_each_other(maple):
+    case = case_of(TELEVISION, maple)
+    chances = Chances(dict.fromkeys(PERTURBATIONS, 1.0), {"each": 1.0}, most=99)
+    for one in distinct(case, chances, rng(3), 10):
+        claims = [claim for p in one.perturbations for claim in p.claims()]
+        assert len(claims) == len(set(claims))
+        kinds = {p.kind for p in one.perturbations}
+        assert not {"free", "pet"} <= kinds
+
+
+def test_what_is_never_wanted_never_comes(maple):
+    case = case_of(TELEVISION, maple)
+    assert list(distinct(case, Chances({"lying": 1.0}, {"each": 1.0}), rng(1), 5)) == []
+    assert list(distinct(case, Chances({}, {"one": 1.0}), rng(1), 5)) == []
+
+
+def test_full_hands_leave_alone_what_is_held_already(maple):
+    case = case_of(READ, maple)
+    assert any(c.name == "holds" and CHARACTER in c.objects for c in case.conditions)
+    assert all(p.kind != "full_hands" for p in candidates(case))
+
+
+def test_the_thesis_own_perturbations_are_as_likely_as_there():
+    kinds = default_chances().kinds
+    assert {kinds[k] for k in ("sitting", "lying", "at_reach", "plugged", "on", "open", "free")} == {0.7}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        ("open: 0.7", "opne: 0.7", "`opne` is none of the kinds"),
+        ("open: 0.7", "open: 7", "7 is no probability of `open`"),
+        ("each: 6", "eech: 6", "`eech` is none of the draws"),
+        ("draws:", "drawn:", "`kinds` or `draws` is missing"),
+        ("most: 6", "most: none", "`most` is no count"),
+    ],
+)
+def test_a_fault_in_the_probabilities_is_named(old, new, fault, tmp_path):
+    text = CHANCES_FILE.read_text()
+    assert old in text
+    path = tmp_path / "perturbations.yaml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(HearthError, match=fault):
+        load_chances(path)

@@ -1,0 +1,172 @@
+"""Predictions scored against a dataset, and the baselines to beat."""
+
+from __future__ import annotations
+
+import json
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import hearth
+from hearth.datasets.export.words import sentences
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.literals import Literal
+from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.syntax import print_lines
+from hearth.scoring.baselines import (
+    BASELINES,
+    BY_SKETCH,
+    Example,
+    baselines,
+    nearest_description,
+    nearest_sketch,
+    random_retrieval,
+    random_sampling,
+)
+from hearth.scoring.dataset_scores import chosen, judge, read_line
+from hearth.scoring.evaluate import summarise
+from hearth.scoring.metrics.parsability import parsability
+
+
+@pytest.fixture(scope="module")
+def ds(made):
+    return hearth.load(made.out)
+
+
+ON_TABLE, ON_BED = Literal.of("ON", "cup", "table"), Literal.of("ON", "cup", "bed")
+OPEN, LAMP = Literal.of("OPEN", "fridge"), Literal.of("ON", "lamp")
+
+
+def programs(ds):
+    rows = ds.rows("SELECT execution_id, program_id FROM executions WHERE executable ORDER BY 1")[1]
+    return {execution_id: ds[program_id].program for execution_id, program_id in rows}
+
+
+def written(path, rows):
+    path.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    return path
+
+
+def test_the_dataset_s_own_programs_are_perfect(ds, tmp_path):
+    rows = [{"id": name, "predicted": list(print_lines(program))} for name, program in programs(ds).items()]
+    found = summarise(judge(ds, written(tmp_path / "mine.jsonl", rows)))
+    assert (found.count, found.missing, found.incomparable) == (len(rows), 0, 0)
+    assert {name: value.mean for name, value in found.means.items()} == dict.fromkeys(found.means, 1.0)
+
+
+def test_steps_in_words_and_parquet(ds, tmp_path):
+    ids, lines = [], []
+    for name, program in programs(ds).items():
+        ids.append(name)
+        lines.append("\n".join(f"{n}. {text}" for n, text in enumerate(sentences(program, default()), 1)))
+    pq.write_table(pa.table({"id": ids, "predicted": lines}), tmp_path / "mine.parquet")
+    found = summarise(judge(ds, tmp_path / "mine.parquet"))
+    assert found.means["lcs_step"].mean == 1.0
+    assert found.means["parsable"].mean == 1.0
+
+
+def test_any_number_of_workers_scores_the_same(ds, tmp_path, monkeypatch):
+    monkeypatch.setattr("hearth.scoring.dataset_scores.PART", 2)
+    rows = [{"id": name, "predicted": list(print_lines(program))[1:]} for name, program in programs(ds).items()]
+    one, two = (judge(ds, written(tmp_path / "mine.jsonl", rows), workers=number) for number in (1, 2))
+    assert len(one) > 2 and one == two
+
+
+def test_a_prediction_may_name_program_and_home(ds, tmp_path):
+    rows = ds.rows("SELECT execution_id, program_id, home FROM executions WHERE executable ORDER BY 1")[1]
+    lines = {name: list(print_lines(ds[name].program)) for _, name, _ in rows}
+    by_id = [{"id": execution, "predicted": lines[name]} for execution, name, _ in rows]
+    by_home = [{"program_id": name, "home": home, "predicted": lines[name]} for _, name, home in rows]
+    by_program = [{"program_id": name, "predicted": lines[name]} for name in dict.fromkeys(name for _, name, _ in rows)]
+    told = (by_id, by_home, by_program)
+    expected, *found = (summarise(judge(ds, written(tmp_path / f"{n}.jsonl", each))) for n, each in enumerate(told))
+    assert found == [expected, expected] and expected.missing == 0
+    pq.write_table(pa.Table.from_pylist(by_home), tmp_path / "mine.parquet")
+    assert summarise(judge(ds, tmp_path / "mine.parquet")) == expected
+    by_home[0]["home"] = "nowhere"
+    with pytest.raises(HearthError, match="in nowhere"):
+        judge(ds, written(tmp_path / "bad.jsonl", by_home))
+
+
+def test_missing_predictions_count_as_zero(ds, tmp_path):
+    name, program = next(iter(programs(ds).items()))
+    rows = [{"id": name, "predicted": list(print_lines(program))}]
+    found = summarise(judge(ds, written(tmp_path / "one.jsonl", rows)))
+    assert found.missing == found.count - 1 > 0
+    assert found.means["lcs_step"].mean == pytest.approx(1 / found.count)
+    assert found.means["executable"].mean == pytest.approx(1 / found.count)
+
+
+def test_only_a_part_of_a_split(ds, tmp_path):
+    known = programs(ds).keys()
+    file = written(tmp_path / "mine.jsonl", [{"id": name, "predicted": []} for name in known])
+    ids = [each.pair.id for each in judge(ds, file, "activities", "train")]
+    query = "SELECT execution_id FROM splits WHERE split = 'activities' AND part = 'train' ORDER BY 1"
+    assert ids == [name for (name,) in ds.rows(query)[1] if name in known]
+    assert ids == chosen(ds, "activities", "train")
+    with pytest.raises(HearthError, match="no executions in part `x`"):
+        judge(ds, file, "activities", "x")
+
+
+def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
+    with pytest.raises(HearthError, match="no reference has the id `nobody`") as caught:
+        judge(ds, written(tmp_path / "mine.jsonl", [{"id": "nobody", "predicted": []}]))
+    assert (str(caught.value.diagnostics[0].code), caught.value.diagnostics[0].line) == ("UNKNOWN_ID", 1)
+
+
+def test_lines_as_programs_and_as_sentences():
+    step = (Step("PutIn", (ObjectRef("milk"), ObjectRef("fridge"))),)
+    assert read_line(default(), "[PutIn] <milk> (1) <fridge> (1)") == step
+    for said in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
+        assert read_line(default(), said) == step, said
+
+
+def walk(name):
+    return (Step("Walk", (ObjectRef(name),)),)
+
+
+def test_every_baseline_gives_a_program_a_test():
+    train = [Example(f"t{n}", text, walk(text.split()[1])) for n, text in enumerate(
+        ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
+    test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
+    for make in (random_sampling, random_retrieval, nearest_sketch):
+        assert len(make(train, test, 0, default())) == 2
+        assert make(train, test, 0, default()) == make(train, test, 0, default())
+    sampled = random_sampling(train, test, 0, default())
+    assert all(parsability(steps, default()).parsable for steps in sampled)
+    assert random_sampling(train, test, 1, default()) != sampled
+
+
+@pytest.mark.tools
+def test_the_nearest_description_shares_the_rarest_words():
+    pytest.importorskip("sklearn", reason="not installed: pip install scikit-learn")
+    train = [Example(f"t{n}", text, walk(text.split()[1])) for n, text in enumerate(
+        ("wash cup in the sink", "read book on the sofa", "make bed in the morning"))]  # fmt: skip
+    test = [Example("a", "reading a good book", ()), Example("b", "the bed every morning", ())]
+    assert nearest_description(train, test, 0, default()) == [walk("book"), walk("bed")]
+
+
+def test_the_nearest_sketch_and_of_equals_the_nearest_start():
+    train = [
+        Example("t0", "", walk("cup"), walk("sink"), frozenset({ON_TABLE})),
+        Example("t1", "", walk("book"), walk("sofa"), frozenset({ON_TABLE, OPEN})),
+        Example("t2", "", walk("bed"), walk("sofa"), frozenset({ON_BED, OPEN, LAMP})),
+    ]
+    test = [
+        Example("a", "", (), walk("sofa"), frozenset({LAMP, ON_BED})),
+        Example("b", "", (), walk("sofa"), frozenset({ON_TABLE})),
+        Example("c", "", (), walk("sink"), frozenset({LAMP})),
+    ]
+    assert nearest_sketch(train, test, 0, default()) == [walk("bed"), walk("book"), walk("cup")]
+
+
+@pytest.mark.tools
+def test_baselines_of_a_dataset(ds):
+    pytest.importorskip("sklearn", reason="not installed: pip install scikit-learn")
+    found = baselines(ds)
+    if found:
+        assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH}
+        assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:])
+    assert baselines(ds, "nothing") == []

@@ -1,0 +1,170 @@
+"""Folders that live elsewhere, in the store in memory that comes with fsspec."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+fsspec = pytest.importorskip("fsspec")
+
+from hearth.datasets.dataset import Dataset  # noqa: E402
+from hearth.datasets.verify import verify  # noqa: E402
+from hearth.pipelines.build import build  # noqa: E402
+from hearth.schemas.diagnostics import HearthError  # noqa: E402
+from hearth.schemas.failures import Code  # noqa: E402
+from hearth.storage.stores import Store, fetched, store, url_of, working  # noqa: E402
+
+URL = "memory://bucket/evening"
+
+
+@pytest.fixture(autouse=True)
+def memory(tmp_path, monkeypatch):
+    """An empty store, and work folders of the test's own."""
+    (tmp_path / "work").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "work"))
+    store.cache_clear()
+    filesystem = fsspec.filesystem("memory")
+    filesystem.store.clear()
+    yield filesystem
+    filesystem.store.clear()
+
+
+def names(memory):
+    return {path.removeprefix("/bucket/evening/") for path in memory.find("/bucket/evening")}
+
+
+@pytest.mark.parametrize(
+    ("path", "url"),
+    [
+        ("s3://bucket/a", "s3://bucket/a"),
+        (Path("s3://bucket/a"), "s3://bucket/a"),
+        ("memory://x/", "memory://x"),
+        ("data_out", None),
+        (Path("/tmp/x"), None),
+        ("C:/data", None),
+    ],
+)
+def test_what_is_a_url(path, url):
+    assert url_of(path) == url
+
+
+def build_into(url, made):
+    settings = made.settings
+    return build(settings.sources, url, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0)
+
+
+def forget_the_copy():
+    shutil.rmtree(Store(URL).work)
+
+
+def test_a_build_into_a_store_is_the_local_one(made, memory):
+    build_into(URL, made)
+    local = {
+        path.relative_to(made.out).as_posix(): path.read_bytes()
+        for path in made.out.rglob("*")
+        if path.is_file() and path.name not in ("timing.json", "catalog.duckdb", ".lock")
+    }
+    assert {name: memory.cat(f"/bucket/evening/{name}") for name in local} == local
+    assert names(memory) - local.keys() == {
+        ".revision", "publish/catalog.duckdb",
+        *(f"{stage}/timing.json" for stage in ("ingest", "validate", "sample", "augment", "render", "publish")),
+    }  # fmt: skip
+    assert not build_into(URL, made).fresh
+    forget_the_copy()
+    assert not build_into(URL, made).fresh
+
+
+def test_the_dataset_is_read_where_it_is(made, memory):
+    memory.put(f"{made.out}/publish/", "/bucket/evening/publish/", recursive=True)
+    assert len(Dataset.open(URL)) == len(made.rows("publish/programs"))
+    assert verify(URL).faults == ()
+    before = {path: path.stat().st_mtime_ns for path in fetched(URL).rglob("*.parquet")}
+    assert before and {path: path.stat().st_mtime_ns for path in fetched(URL).rglob("*.parquet")} == before
+
+
+def test_a_source_is_fetched_and_again_when_it_changes(memory):
+    memory.pipe_file("/bucket/evening/a.txt", b"one")
+    assert fetched(f"{URL}/a.txt").read_bytes() == b"one"
+    memory.pipe_file("/bucket/evening/a.txt", b"two")
+    assert fetched(f"{URL}/a.txt").read_bytes() == b"two"
+    with pytest.raises(HearthError) as error:
+        fetched(f"{URL}/b.txt")
+    assert error.value.diagnostics[0].code is Code.MISSING_FILE
+
+
+def test_only_one_builds_there(memory):
+    with working(URL), pytest.raises(HearthError) as error, working(URL):
+        pass
+    (fault,) = error.value.diagnostics
+    assert fault.code is Code.LOCKED and "process" in fault.message and fault.file == URL
+    with working(URL):
+        pass
+
+
+def test_the_lock_of_a_killed_build_is_taken_over_on_its_machine_only(memory):
+    with working(URL):
+        held = json.loads(memory.cat("/bucket/evening/.lock"))
+    dead = {**held, "pid": 2**22 + 1}
+    memory.pipe_file("/bucket/evening/.lock", json.dumps(dead).encode())
+    with working(URL):
+        pass
+    memory.pipe_file("/bucket/evening/.lock", json.dumps({**dead, "host": "another"}).encode())
+    with pytest.raises(HearthError), working(URL):
+        pass
+
+
+def test_another_machine_goes_on_from_what_is_there(made, memory):
+    build_into(URL, made)
+    work = Store(URL).work
+    memory.rm_file("/bucket/evening/publish/manifest.json")
+    memory.rm("/bucket/evening/publish/programs", recursive=True)
+    forget_the_copy()
+    assert build_into(URL, made).fresh == ("publish",)
+    assert (work / "publish/manifest.json").read_bytes() == memory.cat("/bucket/evening/publish/manifest.json")
+
+
+def test_a_copy_that_is_behind_the_store_is_fetched_anew(made, memory):
+    build_into(URL, made)
+    memory.pipe_file("/bucket/evening/.revision", b"another machine was here")
+    memory.rm("/bucket/evening/publish", recursive=True)
+    with working(URL) as (folder, _, _):
+        assert not (Path(folder) / "publish").exists()
+
+
+def test_a_push_that_was_cut_off_is_made_up_for(made, memory):
+    build_into(URL, made)
+    memory.rm_file("/bucket/evening/sample/manifest.json")
+    memory.rm_file("/bucket/evening/sample/part-00000.parquet")
+    with working(URL):
+        pass
+    assert {"sample/manifest.json", "sample/part-00000.parquet"} <= names(memory)
+
+
+def test_a_worker_elsewhere_fetches_what_it_needs(made, memory):
+    from hearth.pipelines.engine.runner import input_partitions
+    from hearth.pipelines.engine.settings import Settings
+    from hearth.pipelines.engine.stage import Job
+    from hearth.pipelines.engine.stages import stage
+    from hearth.pipelines.engine.workers import run_here
+
+    build_into(URL, made)
+    with working(URL) as (folder, url, revision):
+        settings = replace(made.settings, out=folder, store=url, revision=revision)
+        assert isinstance(settings, Settings)
+        job = Job(stage("validate"), settings, stage("validate").prepare(settings))
+        partition = next(input_partitions(job))
+        memory.rm_file("/bucket/evening/validate/part-00000.parquet")
+        shutil.rmtree(folder)
+        counts = run_here(job, partition)
+        assert counts.records_in and "validate/part-00000.parquet" in names(memory)
+        assert not (Path(folder) / "ingest/part-00001.parquet").exists()
+
+
+def test_an_unknown_kind_of_store_is_named():
+    with pytest.raises(HearthError) as error:
+        fetched("nosuch://bucket/a")
+    assert "nosuch" in error.value.diagnostics[0].message
