@@ -2,7 +2,7 @@
 
     python benchmarks/results.py [--only NAME] [--check]
 
-A ratio to plain reference code (`plain.py`, `reference.py`), measured in the same run, holds on any machine: one that
+A ratio to plain reference code (`plain.py`, `tests/oracles`), measured in the same run, holds on any machine: one that
 has fallen by a third against the results.json that is committed fails the run (status 1). With `--check` nothing is
 written. Each benchmark tells when it was run and how busy the machine was: a section may be older than another.
 """
@@ -93,7 +93,7 @@ def document(found: Mapping[str, Section]) -> str:
         "Written by `make bench`; not edited by hand. Medians of several runs, with the distance of the quartiles.",
         "`undisturbed` adds up the least time of each item of the work, over several passes: what a machine takes, at",
         "the least, whose processors are not taken away meanwhile. What cannot be timed in parts has no such figure.",
-        "The plain reference does the heart of the same work in plain Python (`plain.py`, `reference.py`), often less",
+        "The plain reference does the heart of the same work in plain Python (`plain.py`, `tests/oracles`), often less",
         "than we do; ratios compare the least times. One that falls by a third fails `make bench`.",
         "",
         f"- Machine: {machine()}",

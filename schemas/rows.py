@@ -196,7 +196,7 @@ class FilmedRow(TypedDict):
         list[TrackRow],
         "camera of the pictures from this one on: intrinsics, and pose from camera to world, 4x4 row by row",
     ]
-    variation: Annotated[VariationRow, "what was drawn by chance: see `rendering.variation`"]
+    variation: Annotated[VariationRow, "what was drawn by chance: see `rendering.scene.variation`"]
     layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
     file: Annotated[str, "the video, relative to the dataset"]
 

@@ -1,7 +1,7 @@
 """From hits to light: which lights each visible point sees, and the colours that come of it.
 
 Pixels are worked on some thousands at a time, by as many threads as there are processors: their numbers stay in the
-processor's cache. The loops are in `aiming` and `lamplight`.
+processor's cache. The loops are in `light_rays` and `lamplight`.
 """
 
 from __future__ import annotations
