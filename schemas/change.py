@@ -1,7 +1,7 @@
 """What one graph has that another has not: the form in which ticks, environments and final graphs are published.
 
 `encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
-moved (`simulation.world.change`), with the same result; rows of tables are read and written by `datasets.format.codecs`.
+moved (`simulation.world.change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Do a planner and the engine agree? Problems solved by Fast Downward, and the plans run here.
 
-Three things make the search short, besides the pruning of `datasets.export.problems`: actions that cannot help are left out, those
+Three things make the search short, besides the pruning of `problems`: actions that cannot help are left out, those
 that change nothing and those that do what others do (`dispensable`); so are actions for which the problem has no
 objects; and things must be CLOSE themselves, where the engine also takes what is near something that is.
 """
