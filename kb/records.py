@@ -207,33 +207,15 @@ class Kind(NamedTuple):
     gloss: str
 
 
-class RepairStep(NamedTuple):
-    """One edit of a program at the step that failed.
-
-    Attributes:
-        kind: `remove` the step, `undo` an earlier one, `split` a tick; insert an action `before` or `after` the step,
-            `replace` it, or `append` one at the end (an empty action: whichever achieves what is missing).
-        action: what is inserted.
-        objects: what it is done to: `object` or `second` of the step, the closed `container` around the object, the
-            closed `door` on the way, a thing `held`, a `seat`, `each` thing on the object in turn, some `food`, or the
-            `place` where the object belongs.
-    """
-
-    kind: str
-    action: str = ""
-    objects: tuple[str, ...] = ()
-
-
 @dataclass(frozen=True, slots=True)
 class Repair:
     """A row of thesis table A.4, or one of ours: what to do about a failure.
 
     Attributes:
-        name: of the repair; stages name their handler by it.
+        name: of the repair; its handler gives it to the edit.
         code: the failure.
         actions: the actions it is for; all when empty.
         when: the case in which the failure is raised.
-        steps: the edits, in order.
         say: the repair in words.
         source: `A.4` or `ours`.
     """
@@ -242,6 +224,5 @@ class Repair:
     code: Code
     actions: tuple[str, ...] = ()
     when: str = ""
-    steps: tuple[RepairStep, ...] = ()
     say: str = ""
     source: str = ""

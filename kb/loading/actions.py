@@ -22,14 +22,14 @@ from hearth.kb.formula import (
 from hearth.kb.groups import DECLARED
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
 from hearth.kb.loading.lines import Entry, Faults, strings
-from hearth.kb.records import Action, Condition, Repair, RepairStep, Requirement
+from hearth.kb.records import Action, Condition, Repair, Requirement
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import RELATIONS
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "groups", "source"})
-_REPAIR_KEYS = frozenset({"on", "actions", "when", "do", "say", "source"})
+_REPAIR_KEYS = frozenset({"on", "actions", "when", "say", "source"})
 
 
 def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict[str, Action]:
@@ -184,36 +184,7 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
             code=Code[fields["on"]],
             actions=strings(fields.get("actions")),
             when=str(fields.get("when") or ""),
-            steps=tuple(_repair_steps(strings(fields.get("do")), actions, entry, faults)),
             say=str(fields.get("say") or ""),
             source=str(fields.get("source") or "ours"),
         )
     return result
-
-
-_TERMS = frozenset({"object", "second", "container", "door", "held", "each", "seat", "food", "place"})
-_ALONE = frozenset({"remove", "undo", "split"})
-_WITH_ACTION = frozenset({"before", "after", "replace", "append"})
-
-
-def _repair_steps(
-    texts: Iterable[str], actions: Mapping[str, Action], at: Entry, faults: Faults
-) -> Iterator[RepairStep]:
-    """Read `remove`, `before Action term ...` and their like."""
-    for text in texts:
-        kind, *words = text.split()
-        if kind in _ALONE and not words:
-            yield RepairStep(kind)
-        elif text == "append achiever":
-            yield RepairStep("append")
-        elif kind in _WITH_ACTION and _is_step(words, actions):
-            yield RepairStep(kind, words[0], tuple(words[1:]))
-        else:
-            faults.at(at, f"`{text}` is no repair step", "`remove`, or `before`, ... with an action and its objects")
-
-
-def _is_step(words: list[str], actions: Mapping[str, Action]) -> bool:
-    """Whether the words are an action with as many known terms as it takes objects."""
-    if not words or words[0] not in actions:
-        return False
-    return len(words) - 1 == actions[words[0]].arity and _TERMS.issuperset(words[1:])

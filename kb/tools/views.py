@@ -213,7 +213,6 @@ def _repairs(knowledge: Knowledge) -> Iterator[Row]:
             "failure": repair.code.value,
             "actions": list(repair.actions),
             "raised_when": repair.when,
-            "steps": [" ".join((step.kind, step.action, *step.objects)).strip() for step in repair.steps],
             "say": repair.say,
             "source": repair.source,
         }

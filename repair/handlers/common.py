@@ -99,6 +99,16 @@ class Trouble:
         """Whether the character is close to a node."""
         return rows.is_close(self.world, self.agent, index)
 
+    def by_distance(self, things: Iterable[int]) -> list[int]:
+        """Things that are close first, then those in the character's room; among equals by index."""
+        room = rows.agent_room(self.world, self.agent)
+        return sorted(things, key=lambda i: (not self.is_close(i), rows.room_of(self.world, i) != room, i))
+
+    def nearest(self, things: Iterable[int]) -> int | None:
+        """The nearest of some things, out of something closed only where there is no other; None of none."""
+        ordered = self.by_distance(things)
+        return min(ordered, key=lambda i: rows.closed_container(self.world, i) >= 0, default=None)
+
     def does(self, action: str, *objects: ObjectRef) -> Step:
         """A new step of the same character."""
         return Step(action, objects, self.failure.agent)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from hearth.repair.handlers.common import Edit, Trouble, around, before, removed, replaced
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.program import ObjectRef
@@ -101,7 +99,7 @@ def _wanted(trouble: Trouble) -> int | None:
     if trouble.step.action == "Cut":
         home = trouble.world.home
         knives = (i for name, mask in home.by_class.items() if "knife" in name for i in indices(mask))
-        return _nearest(trouble, knives)
+        return trouble.nearest(knives)
     if trouble.step.action == "Wipe":
         return _cloth(trouble)
     return trouble.index()
@@ -110,21 +108,11 @@ def _wanted(trouble: Trouble) -> int | None:
 def _cloth(trouble: Trouble) -> int | None:
     home = trouble.world.home
     for name in _CLOTHS:
-        found = _nearest(trouble, indices(home.by_class.get(name, 0) & home.able("Grab")))
+        found = trouble.nearest(indices(home.by_class.get(name, 0) & home.able("Grab")))
         if found is not None:
             return found
     things = home.able("Grab") & ~home.characters & ~(1 << trouble.index())
-    return _nearest(trouble, indices(things & ~home.by_class.get("cat", 0) & ~home.by_class.get("dog", 0)))
-
-
-def _nearest(trouble: Trouble, things: Iterable[int]) -> int | None:
-    world = trouble.world
-    room = rows.agent_room(world, trouble.agent)
-    key = {
-        i: (rows.closed_container(world, i) >= 0, not trouble.is_close(i), rows.room_of(world, i) != room, i)
-        for i in things
-    }
-    return min(key, key=lambda i: key[i], default=None)
+    return trouble.nearest(indices(things & ~home.by_class.get("cat", 0) & ~home.by_class.get("dog", 0)))
 
 
 def _where_it_belongs(trouble: Trouble) -> tuple[str, int] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from hearth.repair.handlers.common import Edit, Splice, Trouble, before, removed
 from hearth.simulation.holds import PETS
@@ -63,17 +63,9 @@ def _places_to_rest(trouble: Trouble) -> Iterator[tuple[str, int]]:
     named = {ref.node for ref in trouble.program.objects()}
     for action in ("Lie", "Sit"):
         able = [i for i in indices(home.able(action)) if _has_room(trouble, i, action)]
-        yield from ((action, i) for i in _nearest(trouble, able, named))
+        able = sorted(trouble.by_distance(able), key=lambda i: home.ids[i] not in named)
+        yield from ((action, i) for i in able)
 
 
 def _has_room(trouble: Trouble, i: int, action: str) -> bool:
     return rows.bearing(trouble.world, i).bit_count() < trouble.world.home.limit(i, action == "Lie")
-
-
-def _nearest(trouble: Trouble, places: Iterable[int], named: set[int | None]) -> list[int]:
-    world = trouble.world
-    room = rows.agent_room(world, trouble.agent)
-    return sorted(
-        places,
-        key=lambda i: (world.home.ids[i] not in named, not trouble.is_close(i), rows.room_of(world, i) != room, i),
-    )
