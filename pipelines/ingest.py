@@ -14,11 +14,12 @@ from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
 from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.tables import INGESTED
 from hearth.storage.files import value_digest
-from hearth.storage.rejects import Reject
+from hearth.storage.rejects import Reject, as_text
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
@@ -58,7 +59,7 @@ _FULL = 8_192
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
     """Every record of the sources with its source's label; copies of one that was there before are refused."""
     repeated = Repeated()
-    found = [(source.label, entry) for source in sources for entry in recognise(source.path, source.label)]
+    found = [(source.label, entry) for source in sources for entry in _recognised(source)]
     described = Described()
     batches = (item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry))
     copies = Copies(pasted(described.noted(batches)))
@@ -72,8 +73,22 @@ def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
         yield from ((label, item) for item in checked)
 
 
+def _recognised(source: Source) -> Iterator[Recognised]:
+    """What a source holds; a fault of ours is refused as one record.
+
+    Raises:
+        HearthError: the source is missing, or nothing in it can be read.
+    """
+    try:
+        yield from recognise(source.path, source.label)
+    except (HearthError, OSError):
+        raise
+    except Exception as error:
+        yield Recognised(source.path, source.label, "", Reject.caused(error, source.label))
+
+
 def _scanned(entry: Recognised) -> Iterator[Item]:
-    """What a reader finds; where a packed file breaks off, what came before is kept and the break is refused."""
+    """What a reader finds; where it breaks off, what came before is kept and the break is refused."""
     found = False
     try:
         for item in SCANNERS[entry.reader](entry.path, entry.inside):
@@ -82,6 +97,11 @@ def _scanned(entry: Recognised) -> Iterator[Item]:
     except DamagedError as error:
         found = True
         yield refused(entry.inside, Reject.because([f.at(entry.inside) for f in error.diagnostics]), f"{entry.inside}~")
+    except (HearthError, OSError):
+        raise
+    except Exception as error:
+        found = True
+        yield refused(entry.inside, Reject.caused(error, entry.inside), f"{entry.inside}~")
     if not found:
         yield refused(entry.inside, Reject.of(Code.EMPTY, "no records in it", file=entry.inside))
 
@@ -117,10 +137,35 @@ def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[t
 
 
 def _partition(number: int, share: list[tuple[str, Item]]) -> Partition:
-    told = [
-        [source, item.record_id, item.reader, item.place, item.line, item.value, item.version] for source, item in share
-    ]
-    return Partition(number, value_digest(told), share, len(share))
+    try:
+        digest = _digest(share)
+    except TypeError:
+        share = [(source, _storable(source, item)) for source, item in share]
+        digest = _digest(share)
+    return Partition(number, digest, share, len(share))
+
+
+def _digest(share: list[tuple[str, Item]]) -> str:
+    return value_digest(
+        [
+            [source, item.record_id, item.reader, item.place, item.line, item.value, item.version]
+            for source, item in share
+        ]
+    )
+
+
+def _storable(source: str, item: Item) -> Item:
+    """The item, or its refusal where it is not JSON in UTF-8 of at most some 250 levels."""
+    try:
+        _digest([(source, item)])
+    except TypeError as error:
+        deep = "recursion" in str(error).lower()
+        message = "nested deeper than 250 levels" if deep else f"it cannot be stored: {error}"
+        fault = Reject.of(
+            Code.BAD_JSON, message, file=item.place, line=item.line, suggestion="save it as JSON in UTF-8"
+        )
+        return refused(as_text(item.place), fault, as_text(item.record_id), item.line)
+    return item
 
 
 class Found(TypedDict):

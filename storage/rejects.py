@@ -15,6 +15,7 @@ INTERNAL_ERROR = str(Code.INTERNAL_ERROR)
 """The code of a record that made a stage's own code fail: a fault of ours, not of the record."""
 
 _LONGEST = 500
+_LARGEST = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +49,13 @@ class Reject:
         return cls((Diagnostic(failure.code, message, file, line, found=" ".join(failure.names)),))
 
     @classmethod
-    def caused(cls, error: Exception, file: str = "") -> Reject:
+    def caused(cls, error: BaseException, file: str = "") -> Reject:
         """A reject for an exception: a `HearthError` keeps its faults, another is ours and says where it arose."""
-        if isinstance(error, HearthError):
+        if isinstance(error, HearthError) and error.diagnostics:
             return cls.because(error.diagnostics, file)
         frames = traceback.extract_tb(error.__traceback__)
         where = f"{PurePath(frames[-1].filename).name}:{frames[-1].lineno}" if frames else "?"
-        message = f"{type(error).__name__} at {where}: {error}"[:_LONGEST]
+        message = f"{type(error).__name__} at {where}: {as_text(error)}"
         fault = Diagnostic(Code.INTERNAL_ERROR, message, file, suggestion="this is a fault of Hearth; please report it")
         return cls((fault,), internal=True)
 
@@ -68,12 +69,26 @@ class Reject:
         return [
             {
                 "code": self.code if self.internal else str(fault.code),
-                "file": fault.file,
-                "line": fault.line,
-                "column": fault.column,
-                "found": fault.found[:_LONGEST],
-                "message": fault.message[:_LONGEST],
-                "suggestion": fault.suggestion,
+                "file": as_text(fault.file),
+                "line": _as_number(fault.line),
+                "column": _as_number(fault.column),
+                "found": as_text(fault.found)[:_LONGEST],
+                "message": as_text(fault.message)[:_LONGEST],
+                "suggestion": as_text(fault.suggestion),
             }
             for fault in self.diagnostics
         ]
+
+
+def as_text(value: object) -> str:
+    """Text that UTF-8 can hold, of any value: half characters and bytes that are not text as `\\udcff`."""
+    try:
+        text = value if isinstance(value, str) else "" if value is None else str(value)
+        return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode()
+    except Exception as error:
+        return f"a {type(value).__name__} that cannot be shown: {type(error).__name__}"
+
+
+def _as_number(value: object) -> int:
+    """A line or column; 0 where it is not one."""
+    return value if isinstance(value, int) and 0 <= value <= _LARGEST else 0

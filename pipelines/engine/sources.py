@@ -11,6 +11,7 @@ from hearth.pipelines.readers.item import Source
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import tree_digest, value_digest
+from hearth.storage.rejects import as_text
 
 
 def labelled(paths: Iterable[str]) -> list[Source]:
@@ -27,7 +28,7 @@ def labelled(paths: Iterable[str]) -> list[Source]:
     for name, text in named:
         path = Path(text)
         used[name] += 1
-        sources.append(Source(name if used[name] == 1 else f"{name}~{used[name]}", path))
+        sources.append(Source(as_text(name if used[name] == 1 else f"{name}~{used[name]}"), path))
     missing = [source.path for source in sources if not source.path.exists()]
     if missing:
         errors = [HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path)) for path in missing]

@@ -24,7 +24,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rows import Row
 from hearth.storage.files import value_digest
 from hearth.storage.partitions import Counts, PartWriter, read_rows
-from hearth.storage.rejects import Reject
+from hearth.storage.rejects import Reject, as_text
 
 Plan = dict[str, Any]
 Output = Row | Reject | tuple[str, Row]
@@ -170,7 +170,7 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
         sink = _Sink(job, partition, writer)
         for record in _records(job, partition):
             before = sink.counts.rejected
-            sink.take(stage.identify(record), _attempt(stage, record, job.context, deadline))
+            sink.take(_name(stage, record), _attempt(stage, record, job.context, deadline))
             seen(1, sink.counts.rejected - before)
         sink.flush()
         sink.counts.check(f"{stage.name}, partition {partition.number}")
@@ -194,7 +194,19 @@ def _records(job: Job, partition: Partition) -> Iterable[Any]:
     return (row for row in rows if stage.select(row, job.plan))
 
 
-def _attempt(stage: Stage, record: Row, context: Any, deadline: Deadline) -> list[Output]:
+def _name(stage: Stage, record: Any) -> str:
+    """The id of a record; "" of one that has none."""
+    try:
+        return as_text(stage.identify(record))
+    except Exception:
+        return ""
+
+
+def _place(record: Any) -> str:
+    return as_text(record.get("place")) if isinstance(record, dict) else ""
+
+
+def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> list[Output]:
     """All that a record gives; an exception or too long a time gives a reject and none of its rows."""
     try:
         with deadline:
@@ -202,16 +214,41 @@ def _attempt(stage: Stage, record: Row, context: Any, deadline: Deadline) -> lis
             return [outputs] if isinstance(outputs, Reject) else list(outputs)
     except OverTime:
         message = f"took longer than {deadline.seconds:g} s"
-        place = str(record.get("place") or "")
-        return [Reject.of(Code.TIMED_OUT, message, file=place, suggestion="give it more time with --time-limit")]
-    except Exception as error:
-        if isinstance(error, OSError) and error.errno in _FULL:
-            # No fault of the record: the stage stops, what is complete stays, and the next run goes on from there.
+        remedy = "give it more time with --time-limit"
+        return [Reject.of(Code.TIMED_OUT, message, file=_place(record), suggestion=remedy)]
+    except (KeyboardInterrupt, SystemExit, GeneratorExit):
+        raise
+    except BaseException as error:  # compiled libraries panic with errors that are not an `Exception`
+        if _stops_the_stage(error):
             raise
-        return [Reject.caused(error, str(record.get("place") or ""))]
+        return [Reject.caused(error, _place(record))]
+
+
+def _stops_the_stage(error: BaseException) -> bool:
+    """Whether no record is at fault: the disk is full; what is complete stays, and the next run goes on from there."""
+    return isinstance(error, OSError) and error.errno in _FULL
 
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
+
+@dataclass(slots=True)
+class _Outcome:
+    """What one record gave, fit to be written.
+
+    Attributes:
+        rows: each with its table.
+        rejects: how many parts of the record are refused, or that all of it is.
+        faults: rows of the table of rejects.
+        code: of the first fault.
+        labels: under which its rows are counted.
+    """
+
+    rows: list[tuple[str, Row]]
+    rejects: int
+    faults: list[Row]
+    code: str
+    labels: list[str]
 
 
 class _Sink:
@@ -221,70 +258,89 @@ class _Sink:
         self.stage, self.number, self.writer = job.stage, partition.number, writer
         self.batch = job.stage.batch(partition)
         self.counts = Counts()
-        self._waiting: list[tuple[str, list[tuple[str, Row]], list[Reject]]] = []
+        self._waiting: list[tuple[str, _Outcome]] = []
 
     def take(self, record_id: str, outputs: list[Output]) -> None:
         """Take all that one record gave."""
         self.counts.records_in += 1
+        try:
+            outcome = self._sorted(outputs)
+        except Exception as error:
+            outcome = self._refused(error)
+        self._waiting.append((record_id, outcome))
+        if len(self._waiting) >= self.batch:
+            self.flush()
+
+    def _sorted(self, outputs: list[Output]) -> _Outcome:
+        """Sort outputs.
+
+        Raises:
+            TypeError: one is neither a row of a table that the stage has nor a reject with a fault.
+        """
         rows: list[tuple[str, Row]] = []
         rejects: list[Reject] = []
         for output in outputs:
             if isinstance(output, Reject):
                 rejects.append(output)
-            else:
-                rows.append(output if isinstance(output, tuple) else ("", output))
+                continue
+            table, row = output if isinstance(output, tuple) else ("", output)
+            if table not in self.stage.tables or not isinstance(row, dict):
+                raise TypeError(f"a {type(row).__name__} for table `{table}`, where a row of a known table is expected")
+            rows.append((table, row))
+        if not all(reject.diagnostics for reject in rejects):
+            raise TypeError("a reject without a fault")
         if not outputs:
-            rejects = [Reject.caused(AssertionError("neither rows nor a reject came of this record"))]
-        self._waiting.append((record_id, rows, rejects))
-        if len(self._waiting) >= self.batch:
-            self.flush()
+            raise AssertionError("neither rows nor a reject came of this record")
+        faults = [fault for reject in rejects for fault in reject.rows()]
+        labels = [label for _, row in rows if (label := self.stage.tally(row)) is not None]
+        return _Outcome(rows, len(rejects), faults, rejects[0].code if rejects else "", labels)
+
+    def _refused(self, error: Exception) -> _Outcome:
+        reject = Reject.caused(error)
+        return _Outcome([], 1, reject.rows(), reject.code, [])
 
     def flush(self) -> None:
         """Write what waits. Where a row does not fit its table, only its record is refused."""
         try:
             self._write(self._waiting)
-        except (pa.ArrowException, TypeError, ValueError, OverflowError):
+        except Exception as error:
+            if isinstance(error, OSError):
+                raise
             for one in self._waiting:
                 try:
                     self._write([one])
-                except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
-                    self._write([(one[0], [], [Reject.caused(error)])])
+                except Exception as own:
+                    self._write([(one[0], self._refused(own))])
         self._waiting.clear()
 
-    def _write(self, records: list[tuple[str, list[tuple[str, Row]], list[Reject]]]) -> None:
+    def _write(self, records: list[tuple[str, _Outcome]]) -> None:
         batches = [
-            (table, self._batch(schema, [row for _, rows, _ in records for to, row in rows if to == table]))
+            (table, self._batch(schema, [row for _, outcome in records for to, row in outcome.rows if to == table]))
             for table, schema in self.stage.tables.items()
         ]
         for table, batch in batches:
             if len(batch):
                 self.writer.write(table, batch)
                 self.counts.rows[table] += len(batch)
-        for record_id, rows, rejects in records:
-            self._count(record_id, rows, rejects)
+        for record_id, outcome in records:
+            self._count(record_id, outcome)
 
     def _batch(self, schema: pa.Schema, rows: list[Row]) -> pa.RecordBatch:
         names = frozenset(schema.names)
         for columns in {tuple(row) for row in rows}:
             if not names.issuperset(columns):
-                raise TypeError(f"columns that the table lacks: {', '.join(sorted({*columns} - names))}")
+                raise TypeError(f"columns that the table lacks: {', '.join(sorted(map(str, {*columns} - names)))}")
         return pa.RecordBatch.from_pylist(rows, schema)
 
-    def _count(self, record_id: str, rows: list[tuple[str, Row]], rejects: list[Reject]) -> None:
-        counts, partial = self.counts, bool(rows)
+    def _count(self, record_id: str, outcome: _Outcome) -> None:
+        counts, partial = self.counts, bool(outcome.rows)
         counts.through += partial
         counts.rejected += not partial
-        for _, row in rows:
-            label = self.stage.tally(row)
-            if label is not None:
-                counts.tally[label] += 1
-        if not rejects:
-            return
+        counts.tally.update(outcome.labels)
         if partial:
-            counts.partial += len(rejects)
+            counts.partial += outcome.rejects
         else:
-            counts.codes[rejects[0].code] += 1
-        faults = [row for reject in rejects for row in reject.rows()]
-        for number, row in enumerate(faults):
-            told = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
-            self.writer.reject([{**row, **told, "fault": number}])
+            counts.codes[outcome.code] += 1
+        for number, fault in enumerate(outcome.faults):
+            of = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
+            self.writer.reject([{**fault, **of, "fault": number}])

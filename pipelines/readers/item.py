@@ -77,8 +77,10 @@ class Source:
 
 def refused(place: str, reject: Reject, record_id: str = "", line: int = 0) -> Item:
     """An item of which only the fault is known; without an id of its own it goes by its place."""
+    # Rows of rejects: lines that are not UTF-8 are quoted as text that is.
     faults = [
-        [str(f.code), f.message, f.file or place, f.line, f.column, f.found, f.suggestion] for f in reject.diagnostics
+        [row[name] for name in ("code", "message", "file", "line", "column", "found", "suggestion")]
+        for row in Reject.because(reject.diagnostics, place).rows()
     ]
     return Item(record_id or (f"{place}:{line}" if line else place), "refused", place, faults, line=line)
 

@@ -16,7 +16,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, Member, members, refusal_of
 from hearth.storage.files import walk
-from hearth.storage.rejects import Reject
+from hearth.storage.rejects import Reject, as_text
 
 _MAGIC: dict[bytes, str] = {
     b"\x89PNG": "a PNG picture",
@@ -91,7 +91,7 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
 def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
     for name in names:
         if Path(name).suffix.lower() not in _ASIDE:
-            yield from _file(path / name, f"{label}/{name}")
+            yield from _file(path / name, f"{label}/{as_text(name)}")
 
 
 def _named_file(path: Path, label: str) -> Iterator[Recognised]:
