@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from hearth.datasets.tensors import Tensors
     from hearth.kb.knowledge import Knowledge
-    from hearth.simulation.world.home import Home
 
 _READING = frozenset({"SELECT", "EXPLAIN"})
 
@@ -160,15 +159,9 @@ class Dataset:
         """
         return self._homes(name).graph
 
-    def _homes(self, name: str) -> _Home:
-        known = self._built.get(name)
-        if known is None:
-            known = self._built[name] = _Home.read(self, name)
-        return known
-
     @cached_property
-    def _built(self) -> dict[str, _Home]:
-        return {}
+    def _homes(self) -> Callable[[str], _Home]:
+        return cache(partial(_Home.read, self))
 
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
         """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks; see `tensors`.
@@ -353,10 +346,3 @@ def _absent(folder: Path, content: dict[str, Any]) -> list[str]:
 def _refused(error: Exception) -> HearthError:
     message = str(error).split("\n\n", 1)[0]
     return HearthError.of(Code.SYNTAX, message)
-
-
-def world_of(run: Run) -> Home:
-    """The home that a run starts in, for the engine."""
-    from hearth.simulation.world.home import Home
-
-    return Home.from_graph(run.start, run.home, run.dataset.knowledge)

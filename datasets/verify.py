@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -221,17 +221,15 @@ class StoredHomes:
 
     def __init__(self, dataset: Dataset) -> None:
         self._dataset = dataset
-        self._built: dict[str, Home] = {}
+        self.home = cache(self._home)
 
-    def home(self, name: str) -> Home:
+    def _home(self, name: str) -> Home:
         """The home that environments of that name differ from.
 
         Raises:
             KeyError: there is none of that name.
         """
-        if name not in self._built:
-            self._built[name] = Home.from_graph(self._dataset.home(name), name, self._dataset.knowledge)
-        return self._built[name]
+        return Home.from_graph(self._dataset.home(name), name, self._dataset.knowledge)
 
 
 def _replays(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Diagnostic]:

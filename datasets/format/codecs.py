@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic
-from hearth.schemas.failures import Code, Failure
+from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -219,14 +219,6 @@ def failure_row(failure: Failure) -> FailureRow:
         "expected": failure.expected,
         "actual": failure.actual,
     }
-
-
-def failure_of(row: FailureRow | None) -> Failure | None:
-    """The inverse of `failure_row`."""
-    if row is None:
-        return None
-    places = (tuple(row["objects"]), tuple(row["names"]))
-    return Failure(Code[row["code"]], row["tick"], row["agent"], row["action"], *places, row["expected"], row["actual"])
 
 
 def tick_rows(execution: Execution) -> list[TickRow]:

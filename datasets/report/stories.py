@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from difflib import SequenceMatcher
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
@@ -28,7 +28,7 @@ class Stories:
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
-        self._homes: dict[str, _Home] = {}
+        self._home = cache(partial(_Home, dataset))
 
     @cached_property
     def frames(self) -> dict[str, list[Row]]:
@@ -89,11 +89,6 @@ class Stories:
             "frames": self.frames.get(run["execution_id"], []),
             "film": self.films.get(run["execution_id"]),
         }
-
-    def _home(self, name: str) -> _Home:
-        if name not in self._homes:
-            self._homes[name] = _Home(self.dataset, name)
-        return self._homes[name]
 
 
 class _Home:

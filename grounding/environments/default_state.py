@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import accumulate
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
@@ -62,25 +62,20 @@ class Base:
         self.home = _at_rest(home)
         self.whole = whole or self.home
         self.gone = gone
-        self._thinned: dict[int, Base] = {}
         self.start = World.start(self.home)
         self.character = self.home.ids[self.home.agents[0]]
-        self.room = [_room(self.home, i) for i in range(len(self.home))]
-        self._spots: dict[str, Spots] = {}
-        self._kinds: dict[str, Kind] = {}
-        self._named: dict[str, tuple[int, ...]] = {}
-        self._serving: dict[str, tuple[int, ...]] = {}
-        self._homeless: dict[str, Homeless | None] = {}
+        self.room = [self.home.direct_room[i] for i in range(len(self.home))]
+        self.serving, self.instances = cache(self._serving), cache(self._instances)
+        self.kind, self.homeless, self.spots = cache(self._kind), cache(self._homeless), cache(self._spots)
+        self._thinned = cache(self._without_many)
 
     def thinned(self, most: int) -> Base:
         """The home with at most so many nodes, if that can be: without small loose things that it has many of."""
-        if len(self.home) <= most:
-            return self
-        found = self._thinned.get(most)
-        if found is None:
-            gone = superfluous(self.home, most)
-            found = self._thinned[most] = Base(without(self.home, gone), self.home, gone)
-        return found
+        return self if len(self.home) <= most else self._thinned(most)
+
+    def _without_many(self, most: int) -> Base:
+        gone = superfluous(self.home, most)
+        return Base(without(self.home, gone), self.home, gone)
 
     @cached_property
     def seats(self) -> int:
@@ -91,43 +86,29 @@ class Base:
         """Indices of the rooms that serve as the named one; of all rooms where none does."""
         return self.serving(name) or tuple(indices(self.home.rooms))
 
-    def serving(self, name: str) -> tuple[int, ...]:
+    def _serving(self, name: str) -> tuple[int, ...]:
         """Indices of the rooms of that class, or of its nearest stand-in; none where the home has neither."""
-        known = self._serving.get(name)
-        if known is None:
-            seen: set[str] = set()
-            room, found = name, 0
-            while room and room not in seen and not found:
-                seen.add(room)
-                found = self.home.by_class.get(room, 0) & self.home.rooms
-                room = self.knowledge.room_standins.get(room, "")
-            known = self._serving[name] = tuple(indices(found))
-        return known
+        seen: set[str] = set()
+        room, found = name, 0
+        while room and room not in seen and not found:
+            seen.add(room)
+            found = self.home.by_class.get(room, 0) & self.home.rooms
+            room = self.knowledge.room_standins.get(room, "")
+        return tuple(indices(found))
 
-    def instances(self, name: str) -> tuple[int, ...]:
+    def _instances(self, name: str) -> tuple[int, ...]:
         """Indices of what a program may mean by a class name: of the first of its names that the home knows."""
-        found = self._named.get(name)
-        if found is None:
-            found = self._named[name] = tuple(indices(self.home.instances(name)))
-        return found
+        return tuple(indices(self.home.instances(name)))
 
-    def kind(self, name: str) -> Kind:
+    def _kind(self, name: str) -> Kind:
         """What a new node of a class is like."""
-        found = self._kinds.get(name)
-        if found is None:
-            thing = self.knowledge.object_class(name)
-            properties = tuple(sorted(thing.properties)) if thing else ()
-            category = thing.category if thing else "placable_objects"
-            found = self._kinds[name] = Kind(category, properties, self.knowledge.default_states(name))
-        return found
+        thing = self.knowledge.object_class(name)
+        properties = tuple(sorted(thing.properties)) if thing else ()
+        category = thing.category if thing else "placable_objects"
+        return Kind(category, properties, self.knowledge.default_states(name))
 
-    def homeless(self, name: str) -> Homeless | None:
+    def _homeless(self, name: str) -> Homeless | None:
         """Why the home can't hold a thing of a class, whatever is sampled: the code, what is expected, and what is."""
-        if name not in self._homeless:
-            self._homeless[name] = self._why_homeless(name)
-        return self._homeless[name]
-
-    def _why_homeless(self, name: str) -> Homeless | None:
         knowledge, home = self.knowledge, self.home
         if knowledge.is_room(name):
             if self.serving(name):
@@ -141,12 +122,9 @@ class Base:
             return None
         return Code.NO_PLACE, f"a place for {name}: a row in placements.csv, or one in the home", "neither"
 
-    def spots(self, name: str) -> Spots:
+    def _spots(self, name: str) -> Spots:
         """Where a thing of a class belongs in this home, by the knowledge's placements and their weights."""
-        found = self._spots.get(name)
-        if found is None:
-            found = self._spots[name] = _weighted(self._places(name))
-        return found
+        return _weighted(self._places(name))
 
     @cached_property
     def fillers(self) -> Spots:
@@ -209,7 +187,3 @@ def _default_states(home: Home, i: int) -> tuple[str, ...]:
         if home.properties.get(prop, 0) >> i & 1 and not wanted & pairs[STATES.index(state)]:
             wanted.add(state)
     return tuple(name for name in STATES if name in wanted)
-
-
-def _room(home: Home, i: int) -> int:
-    return home.direct_room[i]

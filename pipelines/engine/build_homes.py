@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import orjson
 
 from hearth.pipelines.engine.context import knowledge
@@ -19,8 +21,7 @@ class Homes:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._homes: dict[str, Home] = {}
-        self._edges: dict[str, frozenset[Edge]] = {}
+        self.home, self.edges = cache(self._home), cache(self._edges)
         self.knowledge = knowledge(settings)
 
     def names(self) -> tuple[str, ...]:
@@ -43,23 +44,14 @@ class Homes:
 
     def in_catalog(self, name: str) -> bool:
         """Whether a home is one of the catalog's."""
-        from hearth.homes import library
+        return name in self.catalog()
 
-        return name in library.names(self._settings.homes_folder)
+    def _edges(self, name: str) -> frozenset[Edge]:
+        """The edges of a home."""
+        return frozenset(World.start(self.home(name)).edges())
 
-    def home(self, name: str) -> Home:
+    def _home(self, name: str) -> Home:
         """The home that environments of that name differ from."""
-        if name not in self._homes:
-            self._homes[name] = self._build(name)
-        return self._homes[name]
-
-    def edges(self, name: str) -> frozenset[Edge]:
-        """Its edges."""
-        if name not in self._edges:
-            self._edges[name] = frozenset(World.start(self.home(name)).edges())
-        return self._edges[name]
-
-    def _build(self, name: str) -> Home:
         from hearth.grounding.environments.default_state import prepared
         from hearth.homes import library
 

@@ -45,11 +45,6 @@ class Situation:
         return reach.walkable(self.world, self.me, self.rules.doors)
 
     @cached_property
-    def touchable(self) -> int:
-        """What is close and not shut away."""
-        return self.close & ~self.hidden
-
-    @cached_property
     def held_by_others(self) -> int:
         """What other characters hold."""
         found = 0

@@ -18,6 +18,11 @@ def lowest(mask: int) -> int:
     return (mask & -mask).bit_length() - 1
 
 
+def cleared(mask: int, members: int) -> int:
+    """The set without some members."""
+    return mask & ~members
+
+
 def mask_of(members: Iterable[int]) -> int:
     """The set with these members."""
     mask = 0

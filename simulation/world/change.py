@@ -14,6 +14,9 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
 from hearth.simulation.world.state import WorldState
 
+Numbered = tuple[int, str, int, bool]
+"""An edge by indices, and whether it came."""
+
 
 def encode(before: WorldState, after: WorldState) -> Change:
     """What must be done to `before` to get `after`.
@@ -89,7 +92,7 @@ def _state_changes(before: WorldState, after: WorldState, ids: list[int]) -> tup
     return came, went
 
 
-def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator[tuple[int, str, int, bool]]:
+def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator[Numbered]:
     olds = {agent.index: agent for agent in before.agents}
     news = {agent.index: agent for agent in after.agents}
     for i in olds | news:
@@ -106,19 +109,14 @@ def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator
         yield from _door_changes(before.home, after.home, i)
 
 
-def _agent_changes(old: Agent, new: Agent) -> Iterator[tuple[int, str, int, bool]]:
+def _agent_changes(old: Agent, new: Agent) -> Iterator[Numbered]:
     """What came and went of a character's own edges, both ways."""
     me = new.index
-    for relation, field in AGENT_OUT.items():
-        past, now = getattr(old, field), getattr(new, field)
-        if past != now:
-            yield from ((me, relation, j, True) for j in indices(now & ~past))
-            yield from ((me, relation, j, False) for j in indices(past & ~now))
-    for relation, field in AGENT_IN.items():
-        past, now = getattr(old, field), getattr(new, field)
-        if past != now:
-            yield from ((j, relation, me, True) for j in indices(now & ~past))
-            yield from ((j, relation, me, False) for j in indices(past & ~now))
+    for fields, outwards in ((AGENT_OUT, True), (AGENT_IN, False)):
+        for relation, field in fields.items():
+            past, now = getattr(old, field), getattr(new, field)
+            if past != now:
+                yield from _came_and_went(past, now, me, relation, outwards)
 
 
 _KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
@@ -150,21 +148,25 @@ def _touched(before: WorldState, after: WorldState) -> set[int]:
     return keys
 
 
-def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[tuple[int, str, int, bool]]:
+def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[Numbered]:
     relation, read, outwards = _KINDS[kind]
     old = read(before, i) if i < len(before.home) else 0
     new = read(after, i) if i < len(after.home) else 0
     if old == new:
         return
-    for came, mask in ((True, new & ~old), (False, old & ~new)):
-        for j in indices(mask):
-            yield (i, relation, j, came) if outwards else (j, relation, i, came)
-            if kind == CLOSE:
-                yield (j, relation, i, came)
+    yield from _came_and_went(old, new, i, relation, outwards)
+    if kind == CLOSE:
+        yield from _came_and_went(old, new, i, relation, False)
 
 
-def _door_changes(before: Home, after: Home, i: int) -> Iterator[tuple[int, str, int, bool]]:
+def _door_changes(before: Home, after: Home, i: int) -> Iterator[Numbered]:
     old = before.between[i] if i < len(before) else 0
     new = after.between[i] if i < len(after) else 0
-    yield from ((i, "BETWEEN", j, True) for j in indices(new & ~old))
-    yield from ((i, "BETWEEN", j, False) for j in indices(old & ~new))
+    yield from _came_and_went(old, new, i, "BETWEEN", True)
+
+
+def _came_and_went(past: int, now: int, i: int, relation: str, outwards: bool) -> Iterator[Numbered]:
+    """The edges by which two rows of node i differ, each with whether it came."""
+    for came, mask in ((True, now & ~past), (False, past & ~now)):
+        for j in indices(mask):
+            yield (i, relation, j, came) if outwards else (j, relation, i, came)

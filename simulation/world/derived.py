@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
-from operator import attrgetter
+from operator import attrgetter, or_
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, AgentRow
-from hearth.simulation.world.bits import indices
+from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.building import CHARACTER_PROPERTIES
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
@@ -93,7 +93,7 @@ def extended(
             _restate(new, states)
     except KeyError as error:
         raise HearthError.of(Code.BAD_GRAPH, f"no node has the id {error.args[0]}") from None
-    new.derive(home, touched & new.everything)
+    new.base = (home, touched & new.everything)
     return new
 
 
@@ -138,7 +138,7 @@ def without(home: Home, i: int) -> Home:
     new.agents = tuple(a for a, _ in rows if a != i)
     new.agent_rows = [row for a, row in rows if a != i]
     new.others = [edge for edge in home.others if home.ids[i] not in (edge[0], edge[2])]
-    new.derive(home, touched | home.doors)
+    new.base = (home, touched | home.doors)
     return new
 
 
@@ -259,7 +259,7 @@ def _each(home: Home, edges: Iterable[Edge], put: bool) -> int:
         a, b = 1 << i, 1 << j
         touched |= a | b
         if relation not in tables or (a | b) & characters:
-            _each_agent(home, (i, relation, j), _put if put else _clear)
+            _each_agent(home, (i, relation, j), or_ if put else cleared)
             continue
         forward, backward = tables[relation]
         if put:
@@ -269,14 +269,6 @@ def _each(home: Home, edges: Iterable[Edge], put: bool) -> int:
             forward[i] &= ~b
             backward[j] &= ~a
     return touched
-
-
-def _put(row: int, bit: int) -> int:
-    return row | bit
-
-
-def _clear(row: int, bit: int) -> int:
-    return row & ~bit
 
 
 def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, int], int]) -> None:

@@ -10,7 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed
-from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.bits import mask_of
 from hearth.simulation.world.building import Raw, Rows
 from hearth.simulation.world.nodes import with_states
 
@@ -50,7 +50,8 @@ class Home:
         nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
         restated: nodes whose states at the start are others than the node says.
         absent: indices of nodes that were taken away by `edit`: nothing refers to them any more.
-        base: the home this one was derived from, and the nodes whose rows differ from it; None of a home of its own.
+        base: the home this one was derived from, whose nodes are the first of its own, and the nodes whose rows differ
+            from it, new ones included; None of a home of its own.
     """
 
     def __init__(
@@ -122,15 +123,6 @@ class Home:
         new.direct_room = Memo(new._direct_room)
         return new
 
-    def derive(self, base: Home, touched: int) -> None:
-        """Note where this home comes from, so that what is known of `base` need not be found out again.
-
-        Args:
-            base: its nodes are the first of this home's.
-            touched: the nodes whose rows differ from the base's, new ones included.
-        """
-        self.base = (base, touched)
-
     @property
     def rows(self) -> tuple[Rows, ...]:
         """All tables of rows between things."""
@@ -197,19 +189,6 @@ class Home:
     def containing(self) -> int:
         """All nodes that something is INSIDE at the start."""
         return mask_of(i for i, row in enumerate(self.contents) if row)
-
-    @cached_property
-    def edges(self) -> list[Raw]:
-        """Every edge between things at the start, the characters' own left out."""
-        found: list[Raw] = []
-        for relation, rows in zip(
-            ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"),
-            (self.on, self.inside, self.close, self.facing, self.between),
-            strict=True,
-        ):
-            for i, row in enumerate(rows):
-                found.extend((self.ids[i], relation, self.ids[j]) for j in indices(row))
-        return found
 
     def instances(self, name: str) -> int:
         """What a class name stands for: the nodes of that class, else those of the first of its other names that the

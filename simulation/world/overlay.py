@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from operator import or_
 from typing import Any
 
 from hearth.simulation.world import moved as kinds
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
-from hearth.simulation.world.bits import indices
+from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.moved import Moved, link, unlink
 from hearth.simulation.world.rows import Numbered
 from hearth.simulation.world.world import World
@@ -28,7 +29,7 @@ def linked(world: World, edges: Iterable[Numbered]) -> World:
     extra = dict(world.moved.extra)
     agents = list(world.agents)
     for i, relation, j in edges:
-        if not _each_agent(agents, (i, relation, j), _put) and relation in _KINDS:
+        if not _each_agent(agents, (i, relation, j), or_) and relation in _KINDS:
             link(extra, i, _KINDS[relation], j)
     return World(world.home, world.states, tuple(agents), world.moved._replace(extra=extra))
 
@@ -41,7 +42,7 @@ def unlinked(world: World, edges: Iterable[Numbered]) -> World:
     """
     for i, relation, j in edges:
         agents = list(world.agents)
-        if _each_agent(agents, (i, relation, j), _clear):
+        if _each_agent(agents, (i, relation, j), cleared):
             world = World(world.home, world.states, tuple(agents), world.moved)
         elif relation in _KINDS:
             moved = _without(world, i, relation, j)
@@ -56,7 +57,8 @@ def _without(world: World, i: int, relation: str, j: int) -> Moved:
     kind = _KINDS[relation]
     moved = world.moved
     extra = dict(moved.extra)
-    gone = {"ON": moved.on, "INSIDE": moved.inside, "CLOSE": moved.close, "FACING": moved.facing}[relation]
+    field = relation.lower()
+    gone = getattr(moved, field)
     if not (gone >> i | gone >> j) & 1:
         out = {k: (forward(world, k), backward(world, k)) for k in (i, j)}
         k = min(out, key=lambda end: (out[end][0] | out[end][1]).bit_count())
@@ -64,28 +66,9 @@ def _without(world: World, i: int, relation: str, j: int) -> Moved:
             link(extra, k, kind, other)
         for other in indices(out[k][1]):
             link(extra, other, kind, k)
-        moved = _voided(moved, relation, 1 << k)
+        moved = moved._replace(**{field: gone | 1 << k})
     unlink(extra, i, kind, j)
     return moved._replace(extra=extra)
-
-
-def _voided(moved: Moved, relation: str, bit: int) -> Moved:
-    on, inside, close, facing, extra = moved
-    if relation == "ON":
-        return Moved(on | bit, inside, close, facing, extra)
-    if relation == "INSIDE":
-        return Moved(on, inside | bit, close, facing, extra)
-    if relation == "CLOSE":
-        return Moved(on, inside, close | bit, facing, extra)
-    return Moved(on, inside, close, facing | bit, extra)
-
-
-def _put(row: int, bit: int) -> int:
-    return row | bit
-
-
-def _clear(row: int, bit: int) -> int:
-    return row & ~bit
 
 
 def _each_agent(agents: list[Agent], edge: Numbered, change: Callable[[int, int], int]) -> bool:

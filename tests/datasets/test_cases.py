@@ -11,7 +11,6 @@ from hearth.datasets.format.cases import difference_of, difference_on_replay, en
 from hearth.datasets.format.codecs import (
     environment_change,
     environment_row,
-    failure_of,
     failure_row,
     node_of,
     node_row,
@@ -181,6 +180,7 @@ def test_values_come_back_from_their_rows():
     node = Node(7, "cup", "Props", ("GRABBABLE",), ("CLEAN",), "cup_1", Box((1.0, 2.0, 3.0), (0.1, 0.2, 0.3)), 90.0)
     assert node_of(node_row(node)) == node
     failure = Failure(Code.NOT_CLOSE, 2, 0, "Grab", (7,), ("cup",), "close", "far")
-    assert failure_of(failure_row(failure)) == failure
+    row = failure_row(failure)
+    assert (row["code"], row["objects"], row["names"], row["actual"]) == ("NOT_CLOSE", [7], ["cup"], "far")
     program, _ = parse_program("T\n\n<char1> [PutBack] <cup> (2) <table> (1) {hand=left} | <char0> [StandUp]\n")
     assert steps_of(step_rows(program)) == program.steps
