@@ -27,14 +27,14 @@ from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
 from hearth.rendering.people.figure import BODIES, figure_mesh
 from hearth.rendering.people.figure import Figure as Person
-from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.people.skeleton import BodyPose
 from hearth.rendering.rays import threads
-from hearth.rendering.rays.incremental import take
+from hearth.rendering.rays.incremental import incremental_frame
 from hearth.rendering.rays.warm import warm
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene
-from hearth.rendering.scene.triangles import Still
+from hearth.rendering.scene.triangles import StaticThings
 from hearth.schemas.graph import EnvironmentGraph, Node
 
 Picture = Callable[[int, Scene], object]
@@ -48,17 +48,17 @@ BALL = Model("toy", Look((0.12, 0.12, 0.12), kind="ball"))
 def scenes(graph: EnvironmentGraph, frames: int) -> Iterator[Scene]:
     """Somebody walks through the largest room; ten objects move with them."""
     whole = scene_of(graph, default())
-    still = Still(whole.things)
+    static = StaticThings(whole.things)
     (x, y, z), (w, h, d) = room_of(graph).box or home_box(graph)
     for number in range(frames):
         share = number / max(frames - 1, 1) - 0.5
         at = (x + 0.5 * w * share, y - h / 2, z + 0.2 * d * share)
-        stance = Stance(stride=0.6 * (-1) ** number, right=(0.2, 1.0 + 0.01 * number, 0.4))
-        person = Thing(60_000, "character", Person(BODIES["ana"], stance), at, 60.0)
+        body_pose = BodyPose(stride=0.6 * (-1) ** number, right=(0.2, 1.0 + 0.01 * number, 0.4))
+        person = Thing(60_000, "character", Person(BODIES["ana"], body_pose), at, 60.0)
         carried = tuple(
             Thing(60_001 + k, "ball", BALL, (at[0] + 0.4, at[1] + 0.2 * k, at[2] + 0.1 * k)) for k in range(OBJECTS)
         )
-        yield replace(whole, things=(person, *carried), still=still)
+        yield replace(whole, things=(person, *carried), static=static)
 
 
 def room_of(graph: EnvironmentGraph) -> Node:
@@ -137,7 +137,7 @@ class Stayed:
         self.camera, self.modalities, self.last = camera, modalities, None
 
     def __call__(self, number: int, scene: Scene) -> object:
-        self.last = take(scene, self.camera, self.last)
+        self.last = incremental_frame(scene, self.camera, self.last)
         return {"rgb": self.last.picture, **pictures_of(self.last.shot, self.modalities)}
 
 
@@ -170,7 +170,7 @@ def ready(graph: EnvironmentGraph) -> list[Figure]:
     began = time.process_time()
     warm()
     compiled = time.process_time()
-    part = Still(scene_of(graph, default()).things).whole
+    part = StaticThings(scene_of(graph, default()).things).whole
     _ = part.rows, part.caster, part.shadows
     done = time.process_time()
     return [
@@ -191,7 +191,7 @@ def main() -> None:
     corner = room_views(graph, *SIZE)[room_of(graph).id][0]
     above = top_view(home_box(graph), "top", *SMALL)
     every, few = tuple(MODALITIES), films[:5]
-    corners = films[0].geometry.still.mesh.corners
+    corners = films[0].geometry.static.mesh.corners
     large, small = plain.z_buffer(corners, corner), plain.z_buffer(corners, above)
     work: list[tuple[str, float | None, list[Scene], Callable[[], Picture], plain.Yardstick]] = [
         (f"640x480 draft, all {len(every)} modalities", 12, films, lambda: whole(films, corner, every, "draft"), large),

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hearth.kb.knowledge import Knowledge
-    from hearth.rendering.cameras.visibility import Looked
+    from hearth.rendering.cameras.visibility import TickVisibility
     from hearth.rendering.film.snapshots import Snapshot
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
@@ -78,11 +78,11 @@ def program(
     """
     from hearth.homes import library
     from hearth.kb.loading.load import default
-    from hearth.rendering.scene.laid_out import laid
+    from hearth.rendering.scene.with_geometry import with_geometry
 
     known = default()
     execution = _execution(file, home, homes, seed, known)
-    place = laid(library.load_graph(home, known, homes), home, known)
+    place = with_geometry(library.load_graph(home, known, homes), home, known)
     graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
     taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
@@ -158,21 +158,21 @@ def _videos(
 
     from hearth.rendering.film.contact import caption
     from hearth.rendering.film.player import page
-    from hearth.rendering.film.snapshots import play
+    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.variation import drawn
 
     variation = drawn(taken.seed, taken.title) if taken.vary else None
-    staged = play(execution, graph, known, seed=taken.seed, hour=taken.hour, variation=variation)
+    trajectory = trajectory_of(execution, graph, known, seed=taken.seed, hour=taken.hour, variation=variation)
     videos, frames, pages = [], [], []
     for name in names:
-        done = record(staged, graph, out, name, size=taken.size, fps=fps)
+        done = record(trajectory, graph, out, name, size=taken.size, fps=fps)
         files = [path.name for path in done.files]
         (out / f"{name}.html").write_text(page(taken.title, files, done.steps), encoding="utf-8")
         pages.append(str(out / f"{name}.html"))
         made = {"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps}
-        videos.append({**made, "variation": staged.variation.told()})
-        frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.moments]
+        videos.append({**made, "variation": trajectory.variation.row()})
+        frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
     return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(out, frames, taken.title)}
@@ -243,13 +243,13 @@ def visible(
     output.table(("program", "tick", "not visible"), missed)
 
 
-def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[Looked]]]:
+def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
     """Programs that run, drawn by the seed, each in the next of our homes; with what can be seen of each."""
     from hearth.analysis.coverage import Script, scripts
     from hearth.grounding.trial import attempt
     from hearth.homes import library
-    from hearth.rendering.cameras.visibility import looks
-    from hearth.rendering.film.snapshots import play
+    from hearth.rendering.cameras.visibility import tick_visibilities
+    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.schemas.failures import Failure
     from hearth.schemas.rng import rng
     from hearth.simulation.world.home import Home
@@ -263,7 +263,7 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
         trial = attempt(program, Home.from_graph(graph, name, known), seed)
         if isinstance(trial, Failure) or not trial.execution.executable:
             continue
-        yield trial.execution, list(looks(play(trial.execution, graph, known, seed=seed), graph))
+        yield trial.execution, list(tick_visibilities(trajectory_of(trial.execution, graph, known, seed=seed), graph))
         count -= 1
         if not count:
             return

@@ -22,7 +22,7 @@ from hearth.storage.partitions import READ_BATCH, read_rows
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
     from hearth.rendering.film.snapshots import Snapshot
-    from hearth.rendering.scene.laid_out import Laid
+    from hearth.rendering.scene.with_geometry import DrawableHome
     from hearth.simulation.engine import Execution
 
 AUTO = "auto"
@@ -41,17 +41,17 @@ class Context(NamedTuple):
 
     homes: Homes
     job: Job
-    laid: dict[str, Laid]
+    drawable: dict[str, DrawableHome]
 
-    def home(self, name: str) -> Laid:
+    def home(self, name: str) -> DrawableHome:
         """A home with geometry, which is made if it has none; once a process."""
         from hearth.homes import library
-        from hearth.rendering.scene.laid_out import laid
+        from hearth.rendering.scene.with_geometry import with_geometry
 
-        if name not in self.laid:
+        if name not in self.drawable:
             graph = library.load_graph(name, self.homes.knowledge, self.job.settings.homes_folder)
-            self.laid[name] = laid(graph, name, self.homes.knowledge)
-        return self.laid[name]
+            self.drawable[name] = with_geometry(graph, name, self.homes.knowledge)
+        return self.drawable[name]
 
 
 def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow]]:
@@ -78,9 +78,9 @@ FILM_SIZE, FILM_RATE = (320, 240), 15.0
 """Width and height of a film, and its pictures a second."""
 
 
-def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) -> FilmedRow:
+def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> FilmedRow:
     """Write a film, as webm: browsers play that, and not the mp4 that OpenCV writes."""
-    from hearth.rendering.film.snapshots import play
+    from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.variation import drawn
 
@@ -88,8 +88,8 @@ def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) ->
     folder = f"{FILMS}/{_folder(name)}"
     (job.folder / folder).mkdir(parents=True, exist_ok=True)
     variation = drawn(job.settings.seed, name)
-    staged = play(execution, home, context.homes.knowledge, variation=variation)
-    done = record(staged, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".webm",))
+    trajectory = trajectory_of(execution, home, context.homes.knowledge, variation=variation)
+    done = record(trajectory, home, job.folder / folder, AUTO, size=FILM_SIZE, fps=FILM_RATE, suffixes=(".webm",))
     return {
         "execution_id": name,
         "camera": AUTO,
@@ -100,7 +100,7 @@ def _film(case: CaseRow, execution: Execution, place: Laid, context: Context) ->
         "seconds": done.frames / FILM_RATE,
         "steps": done.steps,
         "track": list(_track(done.track)),
-        "variation": variation.told(),
+        "variation": variation.row(),
         "layout_made": place.made,
         "file": f"{folder}/{done.files[0].name}",
     }

@@ -1,1 +1,1 @@
-"""What it looks like: meshes, cameras, rays and pictures."""
+"""Rendering of worlds: meshes, cameras, rays and pictures."""

@@ -1,4 +1,4 @@
-"""What a picture shows, in words and numbers: camera, boxes of things, joints of people (thesis 2.4, 4.4)."""
+"""Annotations of a picture: camera, boxes of things, joints of people (thesis 2.4, 4.4)."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from hearth.schemas.graph import Point
 
 
 class Seen(NamedTuple):
-    """One thing in a picture.
+    """One visible thing.
 
     Attributes:
-        node, class_name: whose.
-        pixels: how many show it.
+        node, class_name: the thing's.
+        pixels: number of pixels that show it.
         box: (left, top, right, bottom) of those pixels; right and bottom are outside.
-        center, size, yaw: its box in the world: metres, and degrees about y from +z.
-        corners: (8, 2) where the corners of that box fall in the picture, pixels; NaN behind the camera.
+        center, size, yaw: its box in the world, metres, and degrees about y from +z.
+        corners: (8, 2) projections of that box's corners, pixels; NaN behind the camera.
     """
 
     node: int
@@ -40,12 +40,12 @@ class Seen(NamedTuple):
 
 
 class Skeleton(NamedTuple):
-    """Someone in a picture.
+    """The joints of one character.
 
     Attributes:
-        node: whose.
-        joints: name -> place in the world, metres.
-        pixels: name -> (column, row, depth in metres); outside the picture, too.
+        node: the character's.
+        joints: name -> position in the world, metres.
+        pixels: name -> (column, row, depth in metres); may lie outside the picture.
         visible: names of the joints that nothing but the body itself hides.
     """
 
@@ -56,7 +56,7 @@ class Skeleton(NamedTuple):
 
 
 def seen(shot: Shot) -> list[Seen]:
-    """The things that have a pixel, by node id; characters, too. A thing drawn in parts is told as its first part."""
+    """The visible things and characters, by node id. A thing drawn in parts has its first part's box."""
     things, camera = shot.geometry.things, shot.camera
     found = np.tile(np.array((camera.width, camera.height, 0, 0, 0), np.int32), (len(things), 1))
     extents(shot.hits.triangle, shot.geometry.owners, camera.width, found)
@@ -81,7 +81,7 @@ def seen(shot: Shot) -> list[Seen]:
 
 
 class WorldBox(NamedTuple):
-    """The box of a thing in the world: its middle, its size in the thing's own frame, and (8, 3) corners; metres."""
+    """The box of a thing in the world: center, size in the thing's own frame, and (8, 3) corners; metres."""
 
     center: Point
     size: Point
@@ -90,7 +90,7 @@ class WorldBox(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def world_box(thing: Thing) -> WorldBox:
-    """Around a thing's mesh, turned with it."""
+    """The box around a thing's mesh, oriented as the thing is."""
     mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
     low, high = (bound.astype(np.float64) for bound in mesh.bounds())
     corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
@@ -98,7 +98,7 @@ def world_box(thing: Thing) -> WorldBox:
 
 
 def _joined(one: NDArray[np.int32] | None, other: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The extent of two parts of a thing."""
+    """The union of the extents of two parts of a thing."""
     if one is None:
         return other
     return np.array((*np.minimum(one[:2], other[:2]), *np.maximum(one[2:4], other[2:4]), one[4] + other[4]), np.int32)
@@ -110,18 +110,18 @@ def _corners(low: NDArray[Any], high: NDArray[Any]) -> list[Point]:
 
 
 def _placed(thing: Thing, point: Point) -> Point:
-    """A point of a thing's own frame in the world."""
+    """World coordinates of a point in a thing's own frame."""
     c, s = cos(radians(thing.yaw)), sin(radians(thing.yaw))
     (x, y, z), (px, py, pz) = point, thing.position
     return px + x * c + z * s, py + y, pz - x * s + z * c
 
 
 BEHIND = 0.2
-"""Metres that a joint may lie behind the surface of its own body."""
+"""Metres by which a joint may lie behind the surface of its own body."""
 
 
 def skeletons(shot: Shot) -> list[Skeleton]:
-    """The joints of everyone in the scene, by node id."""
+    """The joints of every character in the scene, sorted by node id."""
     camera = shot.camera
     found = []
     for thing in sorted(shot.geometry.things, key=lambda thing: thing.id):
@@ -149,7 +149,7 @@ def _is_visible(shot: Shot, thing: Thing, place: Point) -> bool:
 
 
 def camera_of(camera: Camera) -> dict[str, Any]:
-    """A camera in plain numbers: name, size, (3, 3) intrinsics and (4, 4) pose, from camera to world."""
+    """A camera as plain values: name, size, (3, 3) intrinsics and (4, 4) camera-to-world pose."""
     return {
         "name": camera.name,
         "width": camera.width,
@@ -165,7 +165,7 @@ def described(shot: Shot) -> dict[str, Any]:
 
 
 def boxes(shot: Shot) -> list[dict[str, Any]]:
-    """2D and 3D boxes of what has a pixel, as plain values."""
+    """2D and 3D boxes of the visible things, as plain values."""
     return [
         {
             "node": one.node,
@@ -179,7 +179,7 @@ def boxes(shot: Shot) -> list[dict[str, Any]]:
 
 
 def poses(shot: Shot) -> list[dict[str, Any]]:
-    """Joints of everyone in the world and in the picture, as plain values."""
+    """3D and 2D joints of every character, as plain values."""
     return [
         {
             "node": one.node,

@@ -1,4 +1,4 @@
-"""What arrays of pictures, meshes and rays hold."""
+"""Types of the arrays of pictures, meshes and rays."""
 
 from __future__ import annotations
 
@@ -11,4 +11,4 @@ Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 Image = NDArray[Any]
-"""Pixels in rows from the top, of whatever a modality holds."""
+"""Pixels of a modality, in rows from the top."""

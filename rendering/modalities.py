@@ -1,6 +1,4 @@
-"""Pictures of a scene: colour, depth, who is where, normals, flow, boxes, poses (thesis 2.4, 4.4). `render` is the
-primitive.
-"""
+"""Modalities of a picture: colour, depth, ids, normals, flow, boxes, poses (thesis 2.4, 4.4); `render` makes them."""
 
 from __future__ import annotations
 
@@ -34,25 +32,25 @@ def render(
     class_ids: Mapping[str, int] | None = None,
     after: Scene | None = None,
 ) -> dict[str, Any]:
-    """Take pictures of a scene.
+    """Render a scene in several modalities.
 
     Args:
-        scene: what there is.
-        camera: from where, and how large.
+        scene: the scene.
+        camera: pose and size of the picture.
         modalities: names of `MODALITIES`.
         quality: `draft` (one ray a pixel, hard shadows) or `fine` (smooth edges, soft shadows, ambient occlusion).
-        class_ids: class -> number, for `class_ids`; the scene's classes from 1 on, sorted, where none are given.
-        after: the next moment, for `flow`; where none is given, nothing moves.
+        class_ids: class -> number, for `class_ids`; by default the scene's classes, sorted, from 1.
+        after: the next scene, for `flow`; by default nothing moves.
 
     Returns:
         For each modality an array of (height, width) or (height, width, n): `rgb` uint8; `depth` uint16 millimetres
-        along the camera's axis, 0 for nothing; `instance_ids` uint16 node ids (int32 if one needs it), 0 for nothing;
-        `class_ids` uint16; `normals` float32 unit vectors of the world, 0 for nothing; `flow` float32 pixels right
-        and down, NaN for what is not seen in the next picture. `camera`, `boxes` (2D and 3D, of every object) and
-        `poses` (2D and 3D joints of everyone) are plain values, as `annotations` has them.
+        along the camera's axis; `instance_ids` uint16 node ids (int32 if one is larger); `class_ids` uint16; `normals`
+        float32 unit vectors of the world; `flow` float32 pixels right and down, NaN for points that the next picture
+        does not show. The background is 0. `camera`, `boxes` (2D and 3D, of every object) and `poses` (2D and 3D
+        joints of every character) are plain values, see `annotations`.
 
     Raises:
-        HearthError: an unknown modality or quality, or no open3d.
+        HearthError: an unknown modality or quality, or open3d is missing.
     """
     wanted = check_modalities(list(modalities), quality)
     return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)
@@ -87,7 +85,7 @@ def _depth(shot: Shot, quality: str) -> Image:
 
 
 def _per_thing(shot: Shot, values: Sequence[int]) -> Image:
-    """(H, W) a value of each thing where it is seen, 0 elsewhere."""
+    """(H, W) the value of the thing that each pixel shows, 0 for the background."""
     dtype = np.uint16 if max(values, default=0) < 1 << 16 else np.int32
     out = np.empty(len(shot.rays), dtype)
     maps.labels(shot.hits.triangle, shot.geometry.owners, np.array([*values, 0], dtype), out)
@@ -109,8 +107,8 @@ def _normals(shot: Shot, quality: str) -> Image:
     out = np.empty((len(shot.rays), 3), np.float32)
 
     def work(chunk: NDArray[np.int32]) -> None:
-        spots = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
-        maps.facings(chunk, spots.normals, out)
+        surface = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
+        maps.facings(chunk, surface.normals, out)
 
     each(work, shading.chunks(everywhere(len(shot.rays))))
     return shot.image(out)
@@ -131,7 +129,7 @@ MODALITIES: dict[str, Callable[[Shot, str], Any]] = {
     "boxes": lambda shot, quality: boxes(shot),
     "poses": lambda shot, quality: poses(shot),
 }
-"""What a picture can show or tell. To add one: a function of a shot, and a row here."""
+"""Every modality by name. To add one: a function of a shot, and a row here."""
 
 PICTURES = ("rgb", "depth", "instance_ids", "class_ids", "normals", "flow")
-"""Modalities that are pictures; the others are plain values."""
+"""Modalities whose values are pictures; the others are plain values."""

@@ -48,11 +48,11 @@ class Env:
         partial: whether agents see only what is around them.
         world: as it is now.
         ticks: what happened since `reset`.
-        eyes: what takes pictures for `observe` (`hearth.rendering.cameras.sensor.Eyes`); none at first.
+        camera_sensor: takes the pictures of `observe` (`hearth.rendering.cameras.sensor.CameraSensor`); None at first.
     """
 
     world: World
-    eyes: Callable[[Env, int, tuple[str, ...]], Mapping[str, Any]] | None = None
+    camera_sensor: Callable[[Env, int, tuple[str, ...]], Mapping[str, Any]] | None = None
 
     def __init__(self, rules: Rules = DEFAULT, partial: bool = True) -> None:
         self.rules = rules
@@ -99,14 +99,14 @@ class Env:
         """What an agent sees now: facts, or, where modalities are named (`rgb`, `depth`, ...), pictures by modality.
 
         Raises:
-            HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and the environment has no eyes.
+            HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and there is no camera sensor.
         """
         self._check(agent)
         if modalities:
-            if self.eyes is None:
-                remedy = "env.eyes = hearth.rendering.cameras.sensor.Eyes(graph, knowledge)"
-                raise HearthError.of(Code.NOT_RENDERED, "the environment has no eyes", suggestion=remedy)
-            return self.eyes(self, agent, modalities)
+            if self.camera_sensor is None:
+                remedy = "env.camera_sensor = hearth.rendering.cameras.sensor.CameraSensor(graph, knowledge)"
+                raise HearthError.of(Code.NOT_RENDERED, "the environment has no camera sensor", suggestion=remedy)
+            return self.camera_sensor(self, agent, modalities)
         return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))
 
     def legal(self, agent: int = 0, *, only_visible: bool | None = None, only_reachable: bool = False) -> Legal:

@@ -1,1 +1,1 @@
-"""Where pictures are taken from, and what is visible from there."""
+"""Cameras, the choice among them, and the visibility of objects."""

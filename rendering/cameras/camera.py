@@ -1,7 +1,7 @@
-"""Cameras: where a picture is taken from (thesis 2.4.1, 4.4).
+"""Pinhole cameras (thesis 2.4.1, 4.4).
 
-The world is left-handed, as floor plans and Unity have it: x east, y up, z north. So is a camera's own frame: x right,
-y up, z forward; poses are proper rotations, and the intrinsics turn y over into image rows.
+The world is left-handed, as in Unity: x east, y up, z north. The camera's frame is left-handed too: x right, y up,
+z forward. Poses are proper rotations; the intrinsics flip y into image rows.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ class Camera:
 
     Attributes:
         name: `top`, `kitchen.corner.2`, ...
-        eye, target: where it stands and what it looks at, metres.
-        width, height: of the image, pixels.
+        eye, target: its position, and the point in the middle of the picture, metres.
+        width, height: size of the image, pixels.
         fov: vertical field of view, degrees.
-        cut: height at which walls are cut off (ceilings and what hangs there go too), or None for the home as it is.
+        cut: height above which walls, ceilings and hanging things are removed, metres; None removes nothing.
         up: the direction shown upwards.
     """
 
@@ -59,7 +59,7 @@ class Camera:
         return matrix
 
     def rays(self, offset: tuple[float, float] = (0.5, 0.5)) -> Floats:
-        """(height * width, 6) origins and directions of one ray a pixel; directions have camera-space z = 1."""
+        """(height * width, 6) origins and directions, one ray per pixel; directions have camera-space z = 1."""
         from hearth.rendering.rays.kernels import ray_grid
 
         pose = self.pose
@@ -75,7 +75,7 @@ class Camera:
         return image[:, :2] / image[:, 2:], local[:, 2]
 
     def extent(self, box: Floats) -> tuple[int, int, int, int]:
-        """(left, top, right, bottom) of the pixels that a box (low and high corners) can cover; ends are outside."""
+        """(left, top, right, bottom) of the pixels that a box (low and high corners) can cover; ends excluded."""
         x, y, z = ((box[axis], box[axis + 3]) for axis in range(3))
         places, depths = self.project(np.array([(a, b, c) for a in x for b in y for c in z], np.float64))
         if depths.max() <= 0:
@@ -89,14 +89,14 @@ class Camera:
 
 
 NEAREST = 0.01
-"""Metres before a camera within which nothing is projected."""
+"""Near plane, metres."""
 
 
 TOP_FOV = 14.0
-"""Narrow, so that walls hide little in a view from above."""
+"""Degrees; narrow, so that walls hide little in a view from above."""
 
 FARTHEST = 62.0
-"""Metres: depth is published in millimetres of 16 bits."""
+"""Greatest depth in metres: depth is published as 16-bit millimetres."""
 
 CUT = 2.2
 """Metres at which a view from above cuts walls."""
@@ -114,7 +114,7 @@ def top_view(box: Box, name: str = "top", width: int = 320, height: int = 240, m
         across, down = down, across
     half = max(down, across * height / width) / 2
     floor = y - h / 2
-    # What stands at the cut is nearest to the camera and looks largest: it is what has to fit.
+    # Things at the cut are nearest to the camera and look largest, so the plane of the cut has to fit.
     distance = min(half / tan(radians(TOP_FOV) / 2) + CUT, FARTHEST)
     fov = 2 * degrees(atan(half / (distance - CUT)))
     up = (-1.0, 0.0, 0.0) if turned else (0.0, 0.0, 1.0)
@@ -127,7 +127,7 @@ def look_at(name: str, eye: Point, target: Point, width: int = 320, height: int 
 
 
 def point_of(vector: NDArray[Any]) -> Point:
-    """A vector as plain numbers."""
+    """A vector as a tuple of floats."""
     return float(vector[0]), float(vector[1]), float(vector[2])
 
 
@@ -137,7 +137,7 @@ ROOM_INSET = 0.25
 
 
 def room_cameras(room: Box, name: str, width: int = 320, height: int = 240) -> tuple[Camera, ...]:
-    """Eight cameras that stay in a room: in its corners, then at the middles of its walls, under the ceiling."""
+    """Eight fixed cameras under a room's ceiling: in its corners, then at the middles of its walls."""
     (x, y, z), (w, h, d) = room.center, room.size
     floor = y - h / 2
     up = floor + min(ROOM_HEIGHT, h - 0.15)
@@ -150,7 +150,7 @@ def room_cameras(room: Box, name: str, width: int = 320, height: int = 240) -> t
 
 
 def follow(name: str, position: Point, yaw: float, width: int = 320, height: int = 240) -> Camera:
-    """Third person: behind and above someone who stands at `position` (on the floor), looking along `yaw` degrees."""
+    """Third-person camera: behind and above a character at `position` (on the floor) that faces `yaw` degrees."""
     forward = np.array((np.sin(radians(yaw)), 0.0, np.cos(radians(yaw))))
     eye = np.array(position) - forward * 1.7 + (0.0, 1.9, 0.0)
     target = np.array(position) + forward * 0.5 + (0.0, 0.9, 0.0)

@@ -1,4 +1,4 @@
-"""What agents see with their eyes while they act: pictures for `Env.observe`."""
+"""A camera sensor for agents: the pictures of `Env.observe`."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from hearth.rendering.cameras.viewpoints import home_box
 from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
-from hearth.rendering.people.acting import Actor, cast, posed
+from hearth.rendering.people.acting import Actor, initial_actors, posed
 from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import stage
+from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
-from hearth.rendering.scene.swept import ground_of
+from hearth.rendering.scene.swept import free_floor
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.env import Env
 from hearth.simulation.world.world import World
 
 
-class Eyes:
-    """Pictures of an episode. Give them to an environment: `env.eyes = Eyes(home, knowledge)`.
+class CameraSensor:
+    """Pictures of an episode, for an environment: `env.camera_sensor = CameraSensor(home, knowledge)`.
 
-    They follow what happens from the moment they first look: people stand where their steps have brought them, and
-    things lie where they were put.
+    From the first picture on, the sensor follows the episode: characters stand where their steps brought them, and
+    objects lie where they were put.
 
     Args:
         home: the home's graph as it was built, with boxes.
@@ -34,8 +34,8 @@ class Eyes:
         hour: of the day.
         size: width and height of the pictures.
         view: `first` person, `third` person, or `top`.
-        quality: as of `modalities.render`.
-        knowledge: Hearth's own by default.
+        quality: as in `modalities.render`.
+        knowledge: of the home's classes.
 
     Raises:
         HearthError: the home has no geometry.
@@ -54,8 +54,8 @@ class Eyes:
     ) -> None:
         check_geometry(home)
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
-        self.prepared = stage(home, knowledge, seed=seed, hour=hour)
-        self.ground = ground_of(self.prepared)
+        self.prepared = prepared_scene(home, knowledge, seed=seed, hour=hour)
+        self.floor = free_floor(self.prepared)
         self.places = Places.start(home, self.prepared.knowledge)
         self.actors: tuple[Actor, ...] = ()
         self._scene: Scene | None = None
@@ -63,7 +63,7 @@ class Eyes:
         self._world: World | None = None
 
     def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-        """What an agent sees now, by modality."""
+        """The current pictures of an agent, by modality."""
         self._follow(env)
         if self._scene is None:
             self._scene = scene_at(self.prepared, self.places, self.actors)
@@ -77,7 +77,7 @@ class Eyes:
         return top_view(home_box(self.home), self.view, *self.size)
 
     def _follow(self, env: Env) -> None:
-        """Catch up with what has happened since the last look."""
+        """Apply the ticks since the last picture."""
         went_on = self._ticks <= len(env.ticks) and (
             self._ticks == 0 or (len(env.ticks) > 0 and env.ticks[self._ticks - 1].world is self._world)
         )
@@ -85,12 +85,12 @@ class Eyes:
             self._begin(env)
         for tick in env.ticks[self._ticks :]:
             steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
-            self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), self.ground, steps)
+            self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), self.floor, steps)
             self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
         self.places = Places.start(self.home, self.prepared.knowledge).settled(graph)
-        actors = cast(graph, self.ground, self.places, self.seed)
+        actors = initial_actors(graph, self.floor, self.places, self.seed)
         self.actors = tuple(posed(actor, graph, self.places, None) for actor in actors)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

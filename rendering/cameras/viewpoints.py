@@ -1,4 +1,4 @@
-"""Which cameras a home has, and which of them sees best what is going on (thesis 2.4.1)."""
+"""The cameras of a home, and the choice of the one that best shows a step (thesis 2.4.1)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
-GLANCE = (64, 48)
-"""Size of the pictures by which cameras are compared."""
+THUMBNAIL = (64, 48)
+"""Size of the pictures by which cameras are compared, pixels."""
 
 ENOUGH = 90
-"""Pixels of a glance above which more of a thing is no better."""
+"""Pixels of a thumbnail from which on more of a thing adds nothing to a camera's score."""
 
-LOYALTY = 1.15
-"""How much better another camera must be to be switched to."""
+SWITCH_PENALTY = 1.15
+"""Factor by which another camera's score must be higher to switch to it."""
 
 
 def home_box(graph: EnvironmentGraph) -> Box:
@@ -40,7 +40,7 @@ def home_box(graph: EnvironmentGraph) -> Box:
 
 
 def room_views(graph: EnvironmentGraph, width: int, height: int) -> Mapping[int, tuple[Camera, ...]]:
-    """Room id -> its cameras, moved out of the furniture they would stand in."""
+    """Room id -> its cameras, moved out of furniture."""
     boxes = [
         n.box
         for n in graph.nodes
@@ -55,7 +55,7 @@ def room_views(graph: EnvironmentGraph, width: int, height: int) -> Mapping[int,
 
 
 def _freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
-    """The camera, moved towards its target until it is out of all boxes."""
+    """The camera, moved towards its target until no box contains it."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     way = (target - eye) * (1.0, 0.0, 1.0)
     for step in np.arange(0.0, 0.6, 0.05):
@@ -74,19 +74,19 @@ def best_view(
     room: Box | None = None,
     wide: bool = False,
 ) -> Camera:
-    """The camera that sees most of the actor and of what the step names.
+    """The camera that shows most of the actor and of the step's objects.
 
-    The cameras of the actor's room and two that follow it, over its shoulders, are compared by small pictures of who
-    is where. The last camera is kept while it sees nearly as well.
+    Candidates are the cameras of the actor's room and two over its shoulders; thumbnails of node ids give their
+    scores. The last camera is kept unless another exceeds it by `SWITCH_PENALTY`.
 
     Args:
-        scene: of the moment.
+        scene: of the keyframe.
         views: cameras by room, as `room_views` gives them.
-        actor: who acts.
+        actor: the acting character.
         named: ids of the step's objects.
-        last: the camera of the moment before.
+        last: the camera of the keyframe before.
         room: the box of the actor's room, which following cameras must not leave.
-        wide: leave room around the actor, who is going to move, and take no camera that follows it.
+        wide: leave space around the actor, who is about to move, and use no camera that follows it.
     """
     cameras = views.get(actor.room, ())
     size = (cameras[0].width, cameras[0].height) if cameras else (320, 240)
@@ -96,24 +96,26 @@ def best_view(
     ]
     candidates = [*cameras, *(() if wide and cameras else (kept_inside(camera, room) for camera in behind))]
     turned = [aimed(camera, scene, actor, named, 1.2 if wide else 0.55) for camera in candidates]
-    seen = glances(scene, turned)
+    seen = thumbnails(scene, turned)
     values = [
-        _score(scene, camera, ids, actor, named) * (LOYALTY if last and camera.name == last.name else 1.0)
+        _score(scene, camera, ids, actor, named) * (SWITCH_PENALTY if last and camera.name == last.name else 1.0)
         for camera, ids in zip(turned, seen, strict=True)
     ]
     best = values.index(max(values))
     missed = () if wide else tuple(node for node in dict.fromkeys(named) if not (seen[best] == node).any())
     near = [camera for node in missed for camera in _close(scene, node, actor, room, size)]
-    closer = [_score(scene, camera, ids, actor, named) for camera, ids in zip(near, glances(scene, near), strict=True)]
+    closer = [
+        _score(scene, camera, ids, actor, named) for camera, ids in zip(near, thumbnails(scene, near), strict=True)
+    ]
     return near[closer.index(max(closer))] if max(closer, default=0.0) > values[best] else turned[best]
 
 
 AROUND = (0.0, 45.0, -45.0, 90.0, -90.0, 135.0, -135.0)
-"""Degrees about a thing, from the way its user looks, at which cameras are tried that come close to it."""
+"""Degrees about an object, from its user's direction of view, at which close cameras are tried."""
 
 
 def _close(scene: Scene, node: int, actor: Actor, room: Box | None, size: tuple[int, int]) -> Iterator[Camera]:
-    """Cameras close to a thing that no other shows: over its user's head and from all other sides."""
+    """Cameras close to an object that no other camera shows: over its user's head and from all sides."""
     thing = scene.find(node)
     if thing is None:
         return
@@ -139,7 +141,7 @@ def kept_inside(camera: Camera, room: Box | None) -> Camera:
 
 
 def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int], around: float = 0.55) -> Camera:
-    """The camera turned towards the actor and its object, with a field of view that holds both."""
+    """The camera turned towards the actor and the objects, with a field of view that contains both."""
     points = [actor.world((0.0, 0.9, 0.0)), actor.world((0.0, 0.3, 0.0)), actor.world((0.0, 1.6, 0.0))]
     for node_id in named:
         thing = scene.find(node_id)
@@ -150,31 +152,31 @@ def aimed(camera: Camera, scene: Scene, actor: Actor, named: Sequence[int], arou
     distance = float(np.linalg.norm(middle - np.array(camera.eye)))
     radius = float(np.linalg.norm(cloud - middle, axis=1).max()) + around
     fov = degrees(2 * np.arctan(radius / max(distance, 0.4)))
-    # The middle between what happens and the room's own view keeps the room recognisable.
+    # The middle between the action and the room's own view keeps the room recognisable.
     fov = float(np.clip(fov * 1.1, 38.0, 75.0))
     return replace(camera, target=(float(middle[0]), float(middle[1]), float(middle[2])), fov=fov)
 
 
-def glances(scene: Scene, cameras: Sequence[Camera]) -> list[NDArray[np.int64]]:
-    """What each pixel of a small picture of each camera shows: node ids, 0 for nothing."""
+def thumbnails(scene: Scene, cameras: Sequence[Camera]) -> list[NDArray[np.int64]]:
+    """A small picture of node ids for each camera; 0 for the background."""
     if not cameras:
         return []
-    width, height = GLANCE
+    width, height = THUMBNAIL
     small = [replace(camera, width=width, height=height) for camera in cameras]
-    # All glances are cast at once: a cast of few rays costs as much as one of many.
+    # All thumbnails are cast at once: a cast of few rays costs as much as one of many.
     hits = scene.geometry.cast(np.concatenate([camera.rays() for camera in small]))
     numbers = np.array([*(thing.id for thing in scene.geometry.things), 0])
     return list(numbers.take(scene.geometry.owner(hits.triangle), mode="wrap").reshape(len(small), -1))
 
 
 def scores(scene: Scene, cameras: Sequence[Camera], actor: Actor, named: Sequence[int]) -> list[float]:
-    """How well cameras see someone and what the step names: up to 1 for the person, 1.3 for each object."""
-    seen = glances(scene, cameras)
+    """A score for each camera: up to 1 for the visible share of the actor, and 1.3 for each object of the step."""
+    seen = thumbnails(scene, cameras)
     return [_score(scene, camera, ids, actor, named) for camera, ids in zip(cameras, seen, strict=True)]
 
 
 def _score(scene: Scene, camera: Camera, ids: NDArray[np.int64], actor: Actor, named: Sequence[int]) -> float:
-    focal = GLANCE[1] / 2 / tan(radians(camera.fov) / 2)
+    focal = THUMBNAIL[1] / 2 / tan(radians(camera.fov) / 2)
     eye = np.array(camera.eye)
     total = min(int((ids == actor.node.id).sum()) / ENOUGH, 1.0)
     to_eye = eye - np.array(actor.position)

@@ -23,7 +23,7 @@ def contact_sheet(frames: Sequence[tuple[Image, str]], title: str = "", columns:
     Args:
         frames: (picture (H, W, 3), caption).
         title: over the whole; left out when empty.
-        columns: frames a row.
+        columns: frames per row.
     """
     height, width = frames[0][0].shape[:2]
     columns = min(columns, len(frames))
@@ -42,7 +42,7 @@ def contact_sheet(frames: Sequence[tuple[Image, str]], title: str = "", columns:
 
 
 def write(page: Image, text: str, x: int, y: int, scale: float) -> None:
-    """Text into a picture, its baseline's left end at (x, y)."""
+    """Draw text into a picture; (x, y) is the left end of its baseline."""
     import cv2
 
     plain = text.encode("ascii", "replace").decode()
@@ -50,7 +50,7 @@ def write(page: Image, text: str, x: int, y: int, scale: float) -> None:
 
 
 def fitted(text: str, width: int, scale: float) -> str:
-    """The text, cut off with dots where it would be wider than `width` pixels."""
+    """The text, truncated with dots to at most `width` pixels."""
     import cv2
 
     while text and cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)[0][0] > width - 4:

@@ -37,11 +37,11 @@ show();
 
 
 def page(title: str, files: Sequence[str], steps: Sequence[FilmedStepRow]) -> str:
-    """One HTML document that needs nothing but the video beside it.
+    """One HTML document that plays the video files beside it.
 
     Args:
         title: over the video.
-        files: names of the video in several formats, the first one that plays is played.
+        files: names of the video in several formats; the browser plays the first that it supports.
         steps: `tick`, `steps` (texts), `start` and `end` in seconds, as `video.times` gives them.
     """
     sources = "".join(f'<source src="{escape(name, quote=True)}">' for name in files)

@@ -1,4 +1,4 @@
-"""PNG bytes: the same picture gives the same bytes."""
+"""Deterministic PNG encoding."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ LEVEL = 1
 
 
 def encode(image: NDArray[Any]) -> bytes:
-    """An image as PNG, without any meta data.
+    """An image as PNG, without metadata.
 
     Args:
         image: (H, W) or (H, W, 3 in the order red, green, blue), uint8 or uint16; float32 unit vectors (normals)
             are written as 16 bits a component, (n + 1) / 2 * 65535; (H, W, 2) float32 (flow) as 16 bits
-            64 * f + 32768 in red and green, with blue 1 where it is known, as KITTI writes it.
+            64 * f + 32768 in red and green, with blue 1 where the flow is known (KITTI's encoding).
 
     Raises:
-        HearthError: the picture can't be written as PNG.
+        HearthError: the array's shape or type has no PNG encoding.
     """
     import cv2
 
@@ -48,10 +48,10 @@ def _flow_code(flow: NDArray[Any]) -> NDArray[np.uint16]:
 
 
 def decode(data: bytes) -> NDArray[Any]:
-    """The image that `encode` wrote; components in the order red, green, blue.
+    """The inverse of `encode`; components in the order red, green, blue.
 
     Raises:
-        HearthError: it is no picture.
+        HearthError: the data are not a picture.
     """
     import cv2
 

@@ -1,4 +1,4 @@
-"""Silence for C libraries that write to standard error."""
+"""Suppresses what C libraries write to standard error."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep off the screen what C libraries say, such as that webm files have no tags."""
+    """Discard the messages of C libraries, such as a warning that webm files have no tags."""
     kept = os.dup(2)
     with Path(os.devnull).open("w") as nowhere:
         os.dup2(nowhere.fileno(), 2)

@@ -1,4 +1,4 @@
-"""Pictures of a recorded execution: one moment a tick, from cameras that stay or that are chosen by what they see."""
+"""Pictures of a recorded execution: one keyframe per tick, by fixed cameras or by the one that sees the step best."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor, carried, cast, moved, posed
-from hearth.rendering.rays.incremental import Take, take
+from hearth.rendering.people.acting import Actor, carried, initial_actors, moved, posed
+from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.history import graphs
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.places import Places
-from hearth.rendering.scene.prepared import Stage, stage
+from hearth.rendering.scene.prepared import PreparedScene, prepared_scene
 from hearth.rendering.scene.scene import Scene
-from hearth.rendering.scene.standing_places import Ground
-from hearth.rendering.scene.swept import ground_of
-from hearth.rendering.scene.triangles import Still
+from hearth.rendering.scene.standing_places import FreeFloor
+from hearth.rendering.scene.swept import free_floor
+from hearth.rendering.scene.triangles import StaticThings
 from hearth.rendering.scene.variation import PLAIN, Variation, scattered
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -36,15 +36,15 @@ TOP = "top"
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
-    """One tick of an execution, ready to be pictured.
+class Keyframe:
+    """The scene after one tick of an execution.
 
     Attributes:
         tick: 0 before the first step, then 1 after it, ...
-        steps: what was done in this tick; none at the start.
-        scene: what there is.
+        steps: the tick's steps; empty at the start.
+        scene: the scene.
         actors: the characters.
-        places: where everything is.
+        places: positions of all things.
     """
 
     tick: int
@@ -55,18 +55,18 @@ class Moment:
 
     @property
     def acting(self) -> Actor:
-        """Who is looked at: the first who does something, else the first."""
+        """The character that cameras follow: the first with a step in this tick, else the first."""
         return self.actors[acting(self.steps, len(self.actors))]
 
 
 def acting(steps: Sequence[Step], count: int) -> int:
-    """The number of the agent that is looked at in a tick, of `count`: the first who does something, else 0."""
+    """The number, below `count`, of the agent that cameras follow: the first with a step in this tick, else 0."""
     found = min((step.agent for step in steps), default=0)
     return found if found < count else 0
 
 
 def named_nodes(steps: Sequence[Step], rooms: Container[int]) -> tuple[int, ...]:
-    """The things that steps name, in their order; rooms are none."""
+    """The objects that steps name, in order, without rooms."""
     return tuple(
         dict.fromkeys(ref.node for step in steps for ref in step.objects if ref.node and ref.node not in rooms)
     )
@@ -74,13 +74,13 @@ def named_nodes(steps: Sequence[Step], rooms: Container[int]) -> tuple[int, ...]
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """Pictures of one moment by one camera.
+    """Pictures of one keyframe by one camera.
 
     Attributes:
-        tick, steps: as of the moment.
-        camera: it was taken with.
+        tick, steps: the keyframe's.
+        camera: the camera.
         pictures: modality -> array, as `modalities.render` gives them.
-        seen: share of the objects the steps name, and the character, that are visible.
+        seen: visible share of the acting character and the objects that the steps name.
     """
 
     tick: int
@@ -90,47 +90,47 @@ class Snapshot:
     seen: float = 1.0
 
 
-def moments(
+def keyframes(
     execution: Execution,
     home: EnvironmentGraph,
     knowledge: Knowledge,
     *,
     seed: int = 0,
     hour: float = 10.0,
-) -> Iterator[Moment]:
+) -> Iterator[Keyframe]:
     """The scene at the start and after each tick of an execution.
 
     Args:
-        execution: a recorded run; what its environment adds to the home, or has moved, is placed by its relations.
+        execution: a recorded run; objects that its environment adds to the home or moves are placed by their relations.
         home: the home's graph as it was built, with boxes.
-        knowledge: what is known of its classes.
+        knowledge: of its classes.
         seed: decides bodies, colours and designs.
         hour: of the day.
 
     Raises:
         HearthError: the home has no geometry.
     """
-    yield from play(execution, home, knowledge, seed=seed, hour=hour).moments
+    yield from trajectory_of(execution, home, knowledge, seed=seed, hour=hour).keyframes
 
 
 @dataclass(frozen=True, eq=False)
-class Play:
-    """An execution, staged.
+class Trajectory:
+    """An execution as a sequence of keyframes.
 
     Attributes:
-        prepared: the home, for making further scenes of it.
-        moments: at the start and after each tick.
-        still: the things that never change; every moment's scene shares them.
-        variation: what was drawn by chance.
+        prepared: the home's prepared scene.
+        keyframes: at the start and after each tick.
+        static: the things that never change, shared by all keyframes' scenes.
+        variation: the random choices of the film.
     """
 
-    prepared: Stage
-    moments: tuple[Moment, ...]
-    still: Still
+    prepared: PreparedScene
+    keyframes: tuple[Keyframe, ...]
+    static: StaticThings
     variation: Variation = PLAIN
 
 
-def play(
+def trajectory_of(
     execution: Execution,
     home: EnvironmentGraph,
     knowledge: Knowledge,
@@ -138,25 +138,25 @@ def play(
     seed: int = 0,
     hour: float = 10.0,
     variation: Variation | None = None,
-) -> Play:
-    """All moments of an execution at once; see `moments`. A `variation` comes in place of seed and hour."""
+) -> Trajectory:
+    """All keyframes of an execution; see `keyframes`. A `variation` replaces seed and hour."""
     check_geometry(home)
-    how = variation or replace(PLAIN, seed=seed, hour=hour)
-    placed = scattered(home, how)
-    prepared = stage(placed, knowledge, seed=how.seed, hour=how.hour)
-    found = list(_played(execution, placed, prepared, how))
-    still = Still(_still([moment.scene for moment in found]))
-    kept = frozenset(still.things)
-    return Play(prepared, tuple(_parted(moment, still, kept) for moment in found), still, how)
+    variation = variation or replace(PLAIN, seed=seed, hour=hour)
+    placed = scattered(home, variation)
+    prepared = prepared_scene(placed, knowledge, seed=variation.seed, hour=variation.hour)
+    found = list(_keyframes(execution, placed, prepared, variation))
+    static = StaticThings(_static_things([keyframe.scene for keyframe in found]))
+    kept = frozenset(static.things)
+    return Trajectory(prepared, tuple(_without_static(keyframe, static, kept) for keyframe in found), static, variation)
 
 
-def _parted(moment: Moment, still: Still, kept: frozenset[Thing]) -> Moment:
-    moving = tuple(thing for thing in moment.scene.things if thing not in kept)
-    return replace(moment, scene=replace(moment.scene, things=moving, still=still))
+def _without_static(keyframe: Keyframe, static: StaticThings, kept: frozenset[Thing]) -> Keyframe:
+    moving = tuple(thing for thing in keyframe.scene.things if thing not in kept)
+    return replace(keyframe, scene=replace(keyframe.scene, things=moving, static=static))
 
 
 def check_geometry(home: EnvironmentGraph) -> None:
-    """Refuse a home that can't be pictured.
+    """Check that a home has geometry.
 
     Raises:
         HearthError: no room has a box.
@@ -167,60 +167,62 @@ def check_geometry(home: EnvironmentGraph) -> None:
         )
 
 
-def _still(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
-    """The things that are the same in all scenes."""
+def _static_things(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
+    """The things that are equal in all scenes."""
     common = set(scenes[0].things)
     for scene in scenes[1:]:
         common &= set(scene.things)
     return tuple(thing for thing in scenes[0].things if thing in common)
 
 
-def _played(execution: Execution, home: EnvironmentGraph, prepared: Stage, how: Variation) -> Iterator[Moment]:
-    """The moments of an execution, their scenes made of moving things only."""
-    ground = ground_of(prepared)
+def _keyframes(
+    execution: Execution, home: EnvironmentGraph, prepared: PreparedScene, variation: Variation
+) -> Iterator[Keyframe]:
+    """The keyframes of an execution, each scene with all of its things."""
+    floor = free_floor(prepared)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
     places = Places.start(home, prepared.knowledge)
     actors: tuple[Actor, ...] = ()
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
             places = places.settled(graph)
-            actors = cast(graph, ground, places, how.seed)
-            actors = _wandered(actors, ground, how) if how.wander else actors
+            actors = initial_actors(graph, floor, places, variation.seed)
+            actors = _wandered(actors, floor, variation) if variation.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
         else:
-            actors, places = advanced(actors, places, graph, ground, steps)
-        yield Moment(tick, steps, scene_at(prepared, places, actors), actors, places)
+            actors, places = advanced(actors, places, graph, floor, steps)
+        yield Keyframe(tick, steps, scene_at(prepared, places, actors), actors, places)
 
 
-def _wandered(actors: tuple[Actor, ...], ground: Ground, how: Variation) -> tuple[Actor, ...]:
-    """Everyone who stands, anywhere on the free floor of the same room, looking anywhere."""
+def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation) -> tuple[Actor, ...]:
+    """The actors; those that stand, at a random free spot of their room, facing a random direction."""
     found: list[Actor] = []
     for actor in actors:
         taken = [other.spot for other in (*found, *actors[len(found) + 1 :])]
-        numbers = how.random("start", actor.node.id)
-        spot = ground.any_in(actor.room, numbers, taken) if actor.stance.posture == "standing" else None
+        numbers = variation.random("start", actor.node.id)
+        spot = floor.any_in(actor.room, numbers, taken) if actor.body_pose.posture == "standing" else None
         found.append(replace(actor, spot=spot, yaw=numbers.uniform(-180, 180)) if spot else actor)
     return tuple(found)
 
 
 def advanced(
-    actors: tuple[Actor, ...], places: Places, graph: EnvironmentGraph, ground: Ground, steps: tuple[Step, ...]
+    actors: tuple[Actor, ...], places: Places, graph: EnvironmentGraph, floor: FreeFloor, steps: tuple[Step, ...]
 ) -> tuple[tuple[Actor, ...], Places]:
-    """Everyone and everything after a tick."""
+    """Actors and places after a tick."""
     by_agent = {step.agent: step for step in steps}
     after: list[Actor] = []
-    # People first go where they act, then things are put down near them, then hands go to where the things are.
+    # Actors first walk, then objects are placed near them, then hands reach for the objects.
     for number, actor in enumerate(actors):
         others = [a.spot for a in (*after, *actors[number + 1 :])]
         known = replace(places, graph=graph)
-        after.append(moved(actor, graph, known, ground, by_agent.get(number), others))
+        after.append(moved(actor, graph, known, floor, by_agent.get(number), others))
     near = {actor.node.id: actor.position for actor in after}
     settled = places.settled(graph, near)
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
 
 
-def scene_at(prepared: Stage, places: Places, actors: tuple[Actor, ...]) -> Scene:
-    """The scene of a moment, with what hands hold in the hands."""
+def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> Scene:
+    """The scene of one keyframe; held objects are drawn in the hands."""
     held = carried(actors, places)
     nodes = [replace(n, box=held[n.id].box, yaw=held[n.id].yaw) if n.id in held else n for n in places.nodes()]
     figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
@@ -239,13 +241,13 @@ def snapshots(
     seed: int = 0,
     hour: float = 10.0,
 ) -> Iterator[Snapshot]:
-    """Pictures of every moment of an execution by every camera.
+    """Pictures of every keyframe of an execution by every camera.
 
     Args:
-        execution, home, knowledge, seed, hour: as of `moments`.
-        cameras: cameras that stay; `top` is a bird's eye over the home, `auto` the camera of the character's room
-            that sees best what the step names.
-        modalities, quality: as of `modalities.render`; `flow` leads to the next tick, and `graph` is the scene graph.
+        execution, home, knowledge, seed, hour: as in `keyframes`.
+        cameras: fixed cameras; `top` is a bird's-eye view of the home, `auto` the camera of the character's room that
+            best shows the step's objects.
+        modalities, quality: as in `modalities.render`; `flow` is towards the next tick, and `graph` is the scene graph.
         size: width and height for `top` and `auto`.
 
     Raises:
@@ -258,30 +260,30 @@ def snapshots(
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
     above = top_view(home_box(home), TOP, *size)
     last: dict[Camera | str, Camera] = {}
-    takes: dict[Camera | str, Take] = {}
-    found = play(execution, home, knowledge, seed=seed, hour=hour).moments
-    for moment, later in zip(found, (*found[1:], found[-1]), strict=True):
-        named = named_nodes(moment.steps, rooms)
+    last_frames: dict[Camera | str, IncrementalFrame] = {}
+    found = trajectory_of(execution, home, knowledge, seed=seed, hour=hour).keyframes
+    for keyframe, later in zip(found, (*found[1:], found[-1]), strict=True):
+        named = named_nodes(keyframe.steps, rooms)
         for choice in cameras:
             camera = choice if isinstance(choice, Camera) else above
             if choice == AUTO:
-                actor = moment.acting
-                camera = best_view(moment.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
+                actor = keyframe.acting
+                camera = best_view(keyframe.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
             last[choice] = camera
             if quality == "draft":
-                takes[choice] = take(moment.scene, camera, takes.get(choice))
-                shot, known = replace(takes[choice].shot, after=later.scene), {"rgb": takes[choice].picture}
+                last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
+                shot, known = replace(last_frames[choice].shot, after=later.scene), {"rgb": last_frames[choice].picture}
             else:
-                shot, known = shoot(moment.scene, camera, after=later.scene), {}
+                shot, known = shoot(keyframe.scene, camera, after=later.scene), {}
             pictures = known | pictures_of(shot, [name for name in drawn if name not in known], quality)
             if "graph" in wanted:
-                pictures["graph"] = to_release(moment.places.graph)
-            told = {name: pictures[name] for name in wanted}
-            yield Snapshot(moment.tick, moment.steps, camera, told, _seen(shot, named))
+                pictures["graph"] = to_release(keyframe.places.graph)
+            row = {name: pictures[name] for name in wanted}
+            yield Snapshot(keyframe.tick, keyframe.steps, camera, row, _seen(shot, named))
 
 
 def _seen(shot: Shot, named: tuple[int, ...]) -> float:
-    """Share of the nodes that have a pixel."""
+    """Share of the nodes with a pixel."""
     numbers = np.flatnonzero(np.bincount(shot.owner + 1, minlength=1)[1:])
     ids = {shot.geometry.things[number].id for number in numbers.tolist()}
     found = [node_id in ids for node_id in dict.fromkeys(named)]

@@ -1,4 +1,4 @@
-"""Videos of executions: every step in motion, with the times of each step (thesis 2.4.1)."""
+"""Videos of executions, with start and end time of each step (thesis 2.4.1)."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, kept_inside, room_views
 from hearth.rendering.film.quiet import quiet
-from hearth.rendering.film.snapshots import AUTO, TOP, Play, acting, named_nodes
+from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory, acting, named_nodes
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.motion import Frame, Span, frames, spans
-from hearth.rendering.rays.incremental import Take, take
+from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.scene.variation import PLAIN, Variation
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -28,23 +28,23 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 FIRST, THIRD = "first", "third"
 VIEWS = (AUTO, TOP, FIRST, THIRD)
-"""Cameras that move or choose; others are named by `viewpoints.room_views`. All but `top` may be those of an agent by
-number: `first.1`; else `auto` goes with whoever acts, and the others with agent 0.
+"""Moving cameras and `top`; fixed ones have the names of `viewpoints.room_views`. A suffix names the agent to follow
+(`first.1`); without it `auto` follows the acting agent, and the others agent 0.
 """
 
 
 def agent_of(view: str) -> tuple[str, int | None]:
-    """A view's own name, and the agent it is of: `first.1` is (`first`, 1); None where it names no agent."""
+    """A view's name and its agent: (`first`, 1) for `first.1`; None without an agent."""
     name, _, number = view.partition(".")
     return (name, int(number)) if name in (AUTO, FIRST, THIRD) and number.isdecimal() else (view, None)
 
 
 CODECS = {".webm": "VP80", ".mp4": "mp4v"}
-"""What OpenCV writes into each kind of file: browsers play VP80."""
+"""OpenCV's codec by file suffix; browsers play VP80."""
 
 
 class Writer:
-    """A video file that is there under its name only when it is complete."""
+    """Writes a video file, which gets its name only when it is complete."""
 
     def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
         import cv2
@@ -67,7 +67,7 @@ class Writer:
         """Finish the file.
 
         Raises:
-            HearthError: nothing was written, as when the disk is full.
+            HearthError: nothing was written, for example because the disk is full.
         """
         self.file.release()
         if not self.part.exists() or not self.part.stat().st_size:
@@ -78,14 +78,14 @@ class Writer:
 
 
 TRACK_IDS = (b"\x73\xc5\x88", b"\x63\xc5\x88")
-"""How Matroska's TrackUID and TagTrackUID of eight bytes begin."""
+"""First bytes of Matroska's eight-byte TrackUID and TagTrackUID."""
 
 HEAD = 4096
-"""Bytes of a file in which they stand."""
+"""Bytes at the start of a file that contain them."""
 
 
 def _renumber(path: Path) -> None:
-    """Write 1 over the number that is drawn anew for the track of every webm, so that equal films are equal bytes."""
+    """Replace the random track number of a webm by 1, so that equal films are equal bytes."""
     with path.open("r+b") as file:
         head = file.read(HEAD)
         for mark in TRACK_IDS:
@@ -95,53 +95,53 @@ def _renumber(path: Path) -> None:
                 file.write((1).to_bytes(8, "big"))
 
 
-class Shown(NamedTuple):
-    """One picture of a film: its moment, the camera that took it, and the picture."""
+class FilmFrame(NamedTuple):
+    """One picture of a film: its frame, camera, and rendering."""
 
     frame: Frame
     camera: Camera
-    take: Take
+    rendered: IncrementalFrame
 
     @property
     def rgb(self) -> Image:
         """(H, W, 3) colours."""
-        return self.take.picture
+        return self.rendered.picture
 
 
 def film(
-    staged: Play,
+    trajectory: Trajectory,
     home: EnvironmentGraph,
     view: str = AUTO,
     *,
     size: tuple[int, int] = (640, 480),
     fps: float = 15.0,
-) -> Iterator[Shown]:
+) -> Iterator[FilmFrame]:
     """The pictures of a video.
 
     Args:
-        staged: what `snapshots.play` makes of an execution.
+        trajectory: as `snapshots.trajectory_of` gives it.
         home: the home's graph, with boxes.
         view: one of `VIEWS`, or the name of a room's camera.
-        size: width and height.
-        fps: pictures a second.
+        size: width and height, pixels.
+        fps: pictures per second.
 
     Raises:
         HearthError: there is no such camera.
     """
-    speed = staged.variation.speed
-    director = Director(home, view, size, staged.variation)
-    last: Take | None = None
-    for frame in frames(staged, fps, speed):
-        camera = director.camera(frame)
-        last = take(frame.scene, camera, last)
-        yield Shown(frame, camera, last)
+    speed = trajectory.variation.speed
+    selector = CameraSelector(home, view, size, trajectory.variation)
+    last: IncrementalFrame | None = None
+    for frame in frames(trajectory, fps, speed):
+        camera = selector.camera(frame)
+        last = incremental_frame(frame.scene, camera, last)
+        yield FilmFrame(frame, camera, last)
 
 
-class Director:
-    """Chooses the camera of each frame.
+class CameraSelector:
+    """Selects the camera of each frame.
 
-    `auto` keeps a camera through a step while the actor stays in its room, and chooses among those of the room, and
-    two over the actor's shoulders, the one that sees best what the step names.
+    `auto` chooses, among the room's cameras and two over the actor's shoulders, the one that best shows the step's
+    objects; it keeps that camera through a step while the actor stays in the room.
     """
 
     def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], variation: Variation = PLAIN) -> None:
@@ -164,7 +164,7 @@ class Director:
         self.room = 0
 
     def _followed(self, frame: Frame) -> Actor:
-        """Who the camera goes with.
+        """The actor that the camera follows.
 
         Raises:
             HearthError: there is no such agent.
@@ -187,7 +187,7 @@ class Director:
         if self.view == THIRD:
             return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(room))
         now = (frame.tick, room)
-        waits = self.scene == now and frame.time - self.since <= PATIENCE
+        waits = self.scene == now and frame.time - self.since <= MIN_SHOT
         if self.chosen is not None and self.scene == now and (waits or _in_picture(self.chosen, actor)):
             return self.chosen
         self.chosen = self._best(frame, replace(actor, room=room), self.chosen)
@@ -199,21 +199,21 @@ class Director:
         return best_view(frame.scene, self.views, actor, named, last, self.rooms.get(actor.room), wide=True)
 
     def _room(self, actor: Actor) -> int:
-        """The room the actor is in now, while it walks to another."""
-        # Between two rooms one is in the door: the camera stays.
+        """The room that contains the actor's position."""
+        # In a doorway no room contains the position: the camera stays.
         self.room = next((room for room, box in self.rooms.items() if _holds(box, actor.spot)), self.room or actor.room)
         return self.room
 
 
-PATIENCE = 0.7
-"""Seconds that a camera is kept at least."""
+MIN_SHOT = 0.7
+"""Least seconds between two changes of the camera."""
 
 BORDER = 0.06
-"""Share of the picture at its edges where an actor is taken to be leaving it."""
+"""Share of the picture at each edge where an actor counts as leaving it."""
 
 
 def _in_picture(camera: Camera, actor: Actor) -> bool:
-    """Whether a camera shows the actor's body, not too near its edges."""
+    """Whether a camera shows the actor's body away from the picture's edges."""
     places, depths = camera.project(np.array([actor.world((0.0, y, 0.0)) for y in (0.5, 1.4)]))
     share = places / (camera.width, camera.height)
     return bool((depths > 0.5).all() and (share > BORDER).all() and (share < 1 - BORDER).all())
@@ -224,14 +224,14 @@ def _holds(box: Box, spot: tuple[float, float]) -> bool:
 
 
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
-    """What someone sees: from between the eyes, along the gaze; `pitch` degrees down where there is nothing to look at.
+    """A camera between the actor's eyes, along its gaze; without a gaze it looks `pitch` degrees down.
 
-    Looking down a little, one sees one's hands and what they hold.
+    A slight pitch shows the hands and what they hold.
     """
     found = actor.figure().joints()
     head, face = found["head"], found["face"]
     way = (face - head) / np.linalg.norm(face - head)
-    if actor.stance.gaze is None and actor.stance.posture != "lying":
+    if actor.body_pose.gaze is None and actor.body_pose.posture != "lying":
         way = np.array((0.0, -sin(radians(pitch)), cos(radians(pitch))))
     eye = head + way * 0.13
     target = eye + way
@@ -259,26 +259,25 @@ def times(found: Sequence[Span]) -> list[FilmedStepRow]:
 
 
 class Recorded(NamedTuple):
-    """What `record` wrote.
+    """The result of `record`.
 
     Attributes:
         files: the videos.
-        frames: how many pictures each has.
-        steps: as `times` gives them, each with the cameras that show it, and the share of the objects it names
-            that are visible in some picture.
-        track: the tick and the camera of each picture.
-        moments: the last picture of each tick, for a contact sheet.
+        frames: number of pictures in each.
+        steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows.
+        track: tick and camera of each picture.
+        keyframes: the last picture of each tick, for a contact sheet.
     """
 
     files: tuple[Path, ...]
     frames: int
     steps: list[FilmedStepRow]
     track: list[tuple[int, Camera]]
-    moments: list[tuple[Image, Span]]
+    keyframes: list[tuple[Image, Span]]
 
 
 def record(
-    staged: Play,
+    trajectory: Trajectory,
     home: EnvironmentGraph,
     out: Path,
     view: str = AUTO,
@@ -290,48 +289,48 @@ def record(
     """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4`.
 
     Args:
-        staged, home, view, size, fps: as of `film`.
-        out: a folder that is there.
+        trajectory, home, view, size, fps: as in `film`.
+        out: an existing folder.
         suffixes: of `CODECS`.
 
     Raises:
-        HearthError: no such camera, or a file can't be written; what was complete stays.
+        HearthError: there is no such camera, or a file can't be written; complete files stay.
     """
-    known = {span.tick: span for span in spans(staged, staged.variation.speed)}
+    known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}
     steps = times(list(known.values()))
-    wanted = {tick: named_in(staged, span.steps) for tick, span in known.items()}
+    wanted = {tick: named_in(trajectory, span.steps) for tick, span in known.items()}
     seen: dict[int, set[int]] = {tick: set() for tick in known}
     writers = [Writer(out / f"{view}{suffix}", *size, fps) for suffix in suffixes]
     last: dict[int, Image] = {}
     track: list[tuple[int, Camera]] = []
-    for shown in film(staged, home, view, size=size, fps=fps):
+    for film_frame in film(trajectory, home, view, size=size, fps=fps):
         for writer in writers:
-            writer.add(shown.rgb)
-        tick, name = shown.frame.tick, shown.camera.name
-        last[tick] = shown.rgb
-        seen[tick] |= _newly_seen(shown, wanted[tick] - seen[tick])
-        track.append((tick, shown.camera))
+            writer.add(film_frame.rgb)
+        tick, name = film_frame.frame.tick, film_frame.camera.name
+        last[tick] = film_frame.rgb
+        seen[tick] |= _newly_seen(film_frame, wanted[tick] - seen[tick])
+        track.append((tick, film_frame.camera))
         if name not in steps[tick]["cameras"]:
             steps[tick]["cameras"].append(name)
     for writer in writers:
         writer.close()
     for step, tick in zip(steps, known, strict=True):
         step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else 1.0
-    moments = [(picture, known[tick]) for tick, picture in last.items()]
-    return Recorded(tuple(writer.path for writer in writers), len(track), steps, track, moments)
+    keyframes = [(picture, known[tick]) for tick, picture in last.items()]
+    return Recorded(tuple(writer.path for writer in writers), len(track), steps, track, keyframes)
 
 
-def named_in(staged: Play, steps: Sequence[Step]) -> frozenset[int]:
-    """The things that steps name; rooms are none."""
+def named_in(trajectory: Trajectory, steps: Sequence[Step]) -> frozenset[int]:
+    """The objects that steps name, without rooms."""
     return frozenset(
-        ref.node for step in steps for ref in step.objects if ref.node and ref.node not in staged.prepared.rooms
+        ref.node for step in steps for ref in step.objects if ref.node and ref.node not in trajectory.prepared.rooms
     )
 
 
-def _newly_seen(shown: Shown, wanted: frozenset[int]) -> frozenset[int]:
-    """The nodes among those wanted that a frame shows."""
+def _newly_seen(film_frame: FilmFrame, wanted: frozenset[int]) -> frozenset[int]:
+    """The wanted nodes that a frame shows."""
     if not wanted:
         return wanted
-    shot = shown.take.shot
+    shot = film_frame.rendered.shot
     numbers = np.flatnonzero(np.bincount(shot.owner + 1)[1:])
     return wanted & {shot.geometry.things[number].id for number in numbers.tolist()}

@@ -1,1 +1,1 @@
-"""Parametric low-poly models: what a class of object looks like, by size, variant and state."""
+"""Parametric low-poly models of object classes, by size, variant and state."""

@@ -1,4 +1,4 @@
-"""Every model by its name. To add one, write an entry in the file of its family, and its classes in `looks.yaml`."""
+"""Every model by name. To add one, write an entry in the file of its family, and its classes in `looks.yaml`."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ FAMILIES = (
     "clothing.yaml", "stationery.yaml", "decor.yaml", "oddments.yaml", "playthings.yaml", "animals.yaml",
     "structure.yaml", "joinery.yaml",
 )  # fmt: skip
-"""The files of models."""
+"""Names of the model files."""
 FACTS = ("size", "variants", "kinds", "states", "lamp", "on", "inside")
 """Keys of an entry that describe the model as a whole: fields of `Recipe`."""
 ENTRY = re.compile(r"^(\w+)(\(.*\))?:", re.MULTILINE)
-"""Where an entry begins: a model, or a shape with its parameters."""
+"""The first line of an entry: a model, or a shape with its parameters."""
 
 
 class Catalog(Mapping[str, Recipe]):
-    """The models; each is compiled when it is first asked for, and its file read then."""
+    """The models, each read and compiled at its first use."""
 
     def __getitem__(self, name: str) -> Recipe:
         """The model's recipe."""
@@ -47,7 +47,7 @@ RECIPES: Mapping[str, Recipe] = Catalog()
 
 @cache
 def _index() -> dict[str, tuple[str, str]]:
-    """Entry -> its family and its parameters. Entries begin at the margin, so that nothing is parsed for it."""
+    """Entry -> its family and its parameters. Entries begin at the margin, so finding them needs no parser."""
     found = ((family, *entry) for family in FAMILIES for entry in ENTRY.findall(text_of(PACKAGE, family)))
     return {name: (family, takes) for family, name, takes in found if name != "shared"}
 
@@ -63,7 +63,7 @@ def _shared(family: str) -> Values:
 
 @cache
 def _drawn(name: str) -> Draw | None:
-    """The shape that an entry defines, if there is one of that name."""
+    """The shape of that name; None if no entry defines it."""
     family, takes = _index().get(name, ("", ""))
     if not family:
         return None
@@ -96,7 +96,7 @@ def _recipe(name: str) -> Recipe:
 
 
 def _regions(key: str, entry: dict[str, Node], scope: Scope) -> Regions:
-    """Where things stand, as `key` says; it may use what the model's `let` names."""
+    """The regions under `key` of an entry; their expressions may use the names of its `let`."""
     named, inside = INTERPRETER.named(entry.get("let", {}), scope)
     regions = inside.at(key).expression(entry[key])
     needed, needs = [], regions.needs

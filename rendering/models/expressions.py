@@ -18,9 +18,9 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 Node: TypeAlias = "str | list[Node] | dict[str, Node]"
-"""What YAML holds when every scalar is left as text."""
+"""A YAML value whose scalars are text."""
 Values = dict[str, object]
-"""Values by name, as an expression sees them."""
+"""Values by name."""
 
 MATH: Values = {
     "__builtins__": {},
@@ -28,23 +28,23 @@ MATH: Values = {
     **{f.__name__: f for f in (math.cos, math.exp, math.sin)},
     "pi": math.pi,
 }
-"""What every expression knows."""
+"""Names that every expression may use."""
 ALLOWED = (
     ast.expr_context, ast.operator, ast.unaryop, ast.boolop, ast.cmpop, ast.comprehension, ast.keyword, ast.Starred,
     ast.Constant, ast.Name, ast.Tuple, ast.List, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Call,
     ast.Subscript, ast.Slice, ast.ListComp, ast.GeneratorExp, ast.JoinedStr, ast.FormattedValue,
 )  # fmt: skip
-"""Syntax of expressions. Attributes are not part of it, so that nothing but the given names can be reached."""
+"""Syntax of expressions. Attributes are not allowed, so that only the given names can be reached."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """Where an expression stands, and the names it may use.
+    """The place of an expression, for errors, and the names it may use.
 
     Attributes:
         file: of the model.
         model: its name.
-        known: names that have a value there.
+        known: names that have a value.
         key: within the model.
     """
 
@@ -54,7 +54,7 @@ class Scope:
     key: str = ""
 
     def at(self, key: str) -> Scope:
-        """The same scope for what `key` holds."""
+        """The scope of the value under `key`."""
         return replace(self, key=key)
 
     def knowing(self, names: Iterable[str]) -> Scope:
@@ -62,19 +62,19 @@ class Scope:
         return replace(self, known=self.known | set(names))
 
     def fault(self, message: str, suggestion: str = "") -> HearthError:
-        """The error that names this place."""
+        """An error that names this place."""
         where = ": ".join(part for part in (self.model, self.key) if part)
         return HearthError.of(Code.BAD_TABLE, f"{where}: {message}", file=self.file, suggestion=suggestion)
 
     def expression(self, node: Node) -> Expression:
-        """The expression that a text says; lists become tuples.
+        """The compiled expression of a text; lists become tuples.
 
         Raises:
             HearthError: its syntax is not allowed, or it uses an unknown name.
         """
         text = _source(node)
         tree, found = self._parsed(text)
-        # A repetition within an expression binds names of its own.
+        # A comprehension within an expression binds its own names.
         needs = frozenset(part.id for part in found) - {n.id for n in found if isinstance(n.ctx, ast.Store)}
         for name in sorted(needs - self.known):
             near = difflib.get_close_matches(name, self.known, 1)
@@ -85,7 +85,7 @@ class Scope:
         """The names bound by `k in range(3)`, `x, z in spots` or `i in a for k in b`, and the tuples of their values.
 
         Raises:
-            HearthError: it is not of that form.
+            HearthError: the text is not of that form.
         """
         try:
             found: ast.expr | None = ast.parse(f"[0 for {node}]", mode="eval").body
@@ -97,7 +97,7 @@ class Scope:
         return tuple(names), self.expression(f"[({', '.join(names)},) for {node}]")
 
     def parameters(self, text: str) -> dict[str, Expression | None]:
-        """Parameters written as `w, d, paint, inset=0`, with their defaults (None: to be given)."""
+        """Parameters written as `w, d, paint, inset=0`, with their defaults (None: required)."""
         try:
             found = ast.parse(f"lambda {text}: 0", mode="eval").body
         except SyntaxError as error:
@@ -108,7 +108,7 @@ class Scope:
         return dict(zip(names, [*[None] * (len(names) - len(defaults)), *defaults], strict=True))
 
     def _parsed(self, text: str) -> tuple[ast.Expression, list[ast.Name]]:
-        """The checked syntax of a text, and the names in it."""
+        """The checked syntax tree of a text, and the names in it."""
         try:
             tree = ast.parse(text, mode="eval")
         except SyntaxError as error:
@@ -129,8 +129,8 @@ class Expression:
     Attributes:
         code: compiled.
         needs: the names it uses.
-        text: as it was written.
-        fault: makes the error that names its place.
+        text: its source.
+        fault: makes an error that names its place.
     """
 
     code: CodeType
@@ -142,17 +142,17 @@ class Expression:
         """Its value.
 
         Raises:
-            HearthError: it has none, as where it divides by zero.
+            HearthError: the evaluation fails, for example in a division by zero.
         """
         try:
-            # Only checked syntax gets here, and `names` holds no builtins.
+            # Only checked syntax is evaluated, and `names` has no builtins.
             return eval(self.code, names)
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:
             raise self.fault(f"{error} in `{self.text}`") from error
 
 
 def _source(node: Node) -> str:
-    """One text for an expression and for lists of them, which become tuples; `#rrggbb` stands for itself."""
+    """The Python source of an expression or of nested lists of them, which become tuples; `#rrggbb` is a string."""
     if isinstance(node, list):
         return f"({''.join(f'{_source(part)}, ' for part in node)})"
     if isinstance(node, dict):
@@ -162,19 +162,19 @@ def _source(node: Node) -> str:
 
 @cache
 def text_of(package: str, file: str) -> str:
-    """A file of entries as it is written."""
+    """The text of a file of entries."""
     return (files(package) / file).read_text(encoding="utf-8")
 
 
 @cache
 def entries_of(package: str, file: str) -> dict[str, Any]:
-    """The entries of a file, every scalar of them a text."""
+    """The entries of a file, with scalars as text."""
     found: dict[str, Any] = yaml.load(text_of(package, file), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     return found
 
 
 def shared_of(package: str, file: str, known: Values) -> Values:
-    """What all entries of a file can name besides what is `known`, from its entry `shared`; mappings are tables."""
+    """The values of a file's entry `shared`, which all its entries can use besides `known`; mappings are tables."""
     names, found = dict(known), Values()
     place = f"{package.removeprefix('hearth.').replace('.', '/')}/{file}"
     for name, node in entries_of(package, file).get("shared", {}).items():

@@ -1,8 +1,8 @@
 """Builds meshes from the entries of the model files.
 
-An entry is read from top to bottom. `let` names quantities, paints and meshes; `for` repeats what follows it; `when`
-leaves it out. Then comes one shape with its options, `parts` (several of them), `either` (the first whose `when` holds)
-or `use` (a mesh that was named), and then the moves `stretch`, `turn` and `shift`, in the order in which they stand.
+An entry is read from top to bottom. `let` names quantities, paints and meshes; `for` repeats the rest of the entry;
+`when` makes it conditional. Then comes one shape with its options, `parts` (several shapes), `either` (the first whose
+`when` holds) or `use` (a named mesh), and then the moves `stretch`, `turn` and `shift`, in their order.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ Draw: TypeAlias = Callable[[Values, Sequence[object], Values], Mesh]
 Find: TypeAlias = Callable[[str], "Draw | None"]
 
 FACINGS = frozenset(("+x", "-x", "+y", "+z", "-z"))
-"""What `facing` may say as it is."""
+"""Literal values of `facing`."""
 LOOK = "the look"
-"""Key of the names that every definition starts with; no expression can say it."""
+"""Key of the names that every definition starts with; not a valid identifier, so no expression can use it."""
 
 
 class Interpreter:
     """Compiles entries to functions of the names with which they are drawn."""
 
     def __init__(self, find: Find) -> None:
-        """`find` knows the shapes that model files define."""
+        """`find` looks up a shape that a model file defines."""
         self.find = find
 
     def definition(self, entry: dict[str, Node], parameters: str, shared: Values, scope: Scope) -> Draw:
-        """An entry as a shape that others can use; `parameters` as in `w, d, paint, inset=0`."""
+        """An entry as a shape for other entries; `parameters` as in `w, d, paint, inset=0`."""
         takes = scope.parameters(parameters)
         build = self.part(entry, scope.knowing(takes))
 
@@ -47,7 +47,7 @@ class Interpreter:
         return draw
 
     def part(self, node: Node, scope: Scope) -> Build:
-        """One shape with all that is said about it, or the name of a mesh."""
+        """The builder of one shape with its options and moves, or of a named mesh."""
         if not isinstance(node, dict):
             return scope.expression(node)
         if not node:
@@ -70,7 +70,7 @@ class Interpreter:
         return build
 
     def named(self, node: Node, scope: Scope) -> tuple[list[tuple[str, Build]], Scope]:
-        """What a `let` names, in that order, and the scope after it."""
+        """The named builders of a `let`, in order, and the scope after it."""
         if not isinstance(node, dict):
             raise scope.fault("`let` takes names and what they stand for")
         found = []
@@ -152,7 +152,7 @@ def _stretched(build: Build, amount: Node, scope: Scope) -> Build:
 
 
 def _turned(build: Build, amount: Node, scope: Scope) -> Build:
-    """`[y, 90]`, with a point on the axis as a third, or several of these."""
+    """`[y, 90]`, optionally with a point on the axis as third element, or several of these."""
     if not isinstance(amount, list) or not amount:
         raise scope.fault("takes an axis and degrees")
     if isinstance(amount[0], list):

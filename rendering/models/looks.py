@@ -1,4 +1,4 @@
-"""Which recipe draws a class, and with what: the classes of `looks.yaml`, then hypernyms, then a plain box."""
+"""The recipe of a class and its parameters: by `looks.yaml`, else by hypernyms, else a plain box."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
 
 FALLBACK = "crate"
-"""The recipe of classes for which there is none."""
+"""The recipe of classes without an entry."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """How a class is drawn: the recipe's name and what it is told besides size and states."""
+    """How a class is drawn: the recipe's name and fixed parameters of its look."""
 
     recipe: str
     color: str = ""
@@ -34,7 +34,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A mesh by what it is made from; equal models are equal meshes."""
+    """A recipe and a look; equal models have equal meshes."""
 
     recipe: str
     look: Look
@@ -59,7 +59,7 @@ def looks() -> dict[str, Choice]:
 
 
 def choice_of(class_name: str, knowledge: Knowledge) -> Choice:
-    """How a class is drawn; by the class it is another name of, or its nearest hypernym that has an entry."""
+    """How a class is drawn: by its own entry, its synonym's, or its nearest hypernym's."""
     found = knowledge.objects.get(class_name)
     names = (class_name, found.same_as if found else "", *knowledge.ancestors(class_name))
     return next((looks()[name] for name in names if name in looks()), Choice(FALLBACK))
@@ -71,7 +71,7 @@ def recipe_of(class_name: str, knowledge: Knowledge) -> Recipe:
 
 
 def without_recipe(class_names: list[str], knowledge: Knowledge) -> list[str]:
-    """The classes among them that can only be drawn as a plain box, sorted."""
+    """Those classes that are drawn as a plain box, sorted."""
     return sorted({name for name in class_names if choice_of(name, knowledge).recipe == FALLBACK})
 
 
@@ -81,9 +81,9 @@ def model_of(
     """The model of one object.
 
     Args:
-        class_name: of the knowledge, or any.
-        size: width, height, depth of its box when it faces +z.
-        states: those it is in.
+        class_name: any, known or unknown.
+        size: width, height, depth of its box when it faces +z, metres.
+        states: its states.
         seed: of the object; decides variant and colours.
         knowledge: for hypernyms.
         more: further fields of `Look`.
@@ -103,13 +103,13 @@ def _rounded(size: Size) -> Size:
 
 @lru_cache(maxsize=4096)
 def draw(model: Model) -> Mesh:
-    """The mesh of a model, standing on y = 0 and facing +z."""
+    """The mesh of a model, which stands on y = 0 and faces +z."""
     mesh = RECIPES[model.recipe].draw(model.look)
     return _soiled(mesh) if "DIRTY" in model.look.states else mesh
 
 
 def _soiled(mesh: Mesh) -> Mesh:
-    """With stains on everything that has no texture of its own."""
+    """The mesh with stains on all untextured triangles."""
     bare = mesh.textures == SLOTS["plain"]
     textures, uvs, surface = mesh.textures.copy(), mesh.uvs.copy(), mesh.surface.copy()
     textures[bare] = SLOTS["grime"]

@@ -1,4 +1,4 @@
-"""Triangle soup with its paint: the one thing that recipes make and scenes are made of."""
+"""Triangle meshes with paint, which recipes make and scenes consist of."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ ATTRIBUTES = 5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mesh:
-    """T triangles, each with its own corners, so that edges are sharp unless normals say otherwise.
+    """T triangles, each with its own corners; normals decide whether edges look sharp.
 
     Models stand on y = 0 around the origin, face +z, and are in metres.
 
     Attributes:
         corners: (T, 3, 3) positions.
-        normals: (T, 3, 3) unit vectors, one a corner.
+        normals: (T, 3, 3) unit vectors, one per corner.
         uvs: (T, 3, 2) texture coordinates, in tiles of the texture.
-        surface: (T, 5) linear colour, glow (light it sends out by itself) and shine (0 matt, 1 polished).
+        surface: (T, 5) linear colour, glow (emitted light) and shine (0 matt, 1 polished).
         textures: (T,) slots of `textures.SLOTS`.
     """
 
@@ -59,7 +59,7 @@ def empty() -> Mesh:
 
 
 def join(meshes: Iterable[Mesh]) -> Mesh:
-    """All triangles of all, in that order."""
+    """One mesh with the triangles of all meshes, in order."""
     parts = [mesh for mesh in meshes if len(mesh)]
     if not parts:
         return empty()
@@ -75,12 +75,12 @@ def join(meshes: Iterable[Mesh]) -> Mesh:
 
 
 def shift(mesh: Mesh, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Mesh:
-    """Moved by (x, y, z) metres."""
+    """The mesh translated by (x, y, z) metres."""
     return replace(mesh, corners=mesh.corners + np.array((x, y, z), np.float32))
 
 
 def transform(mesh: Mesh, matrix: Floats, offset: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
-    """Turned by the rotation `matrix` (3, 3), then moved by `offset`."""
+    """The mesh rotated by `matrix` (3, 3), then translated by `offset`."""
     turn_ = np.asarray(matrix, np.float32).T
     return replace(
         mesh, corners=mesh.corners @ turn_ + np.array(tuple(offset), np.float32), normals=mesh.normals @ turn_
@@ -88,7 +88,7 @@ def transform(mesh: Mesh, matrix: Floats, offset: Iterable[float] = (0.0, 0.0, 0
 
 
 def stretch(mesh: Mesh, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Mesh:
-    """Scaled along the axes about the origin; normals stay perpendicular to their surfaces."""
+    """The mesh scaled along the axes about the origin; normals stay perpendicular to their surfaces."""
     scale = np.array((x, y, z), np.float32)
     normals = mesh.normals / scale
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-9)
@@ -96,7 +96,7 @@ def stretch(mesh: Mesh, x: float = 1.0, y: float = 1.0, z: float = 1.0) -> Mesh:
 
 
 def rotation(axis: str, degrees: float) -> Floats:
-    """The matrix that turns by `degrees` about `axis` (x, y or z), right-handed: y by 90 takes +z to +x."""
+    """The rotation by `degrees` about `axis` (x, y or z), right-handed: y by 90 maps +z to +x."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     rows = {
         "x": ((1, 0, 0), (0, c, -s), (0, s, c)),
@@ -107,7 +107,7 @@ def rotation(axis: str, degrees: float) -> Floats:
 
 
 def turn(mesh: Mesh, axis: str, degrees: float, about: Iterable[float] = (0.0, 0.0, 0.0)) -> Mesh:
-    """Turned by `degrees` about the line through `about` along `axis`."""
+    """The mesh rotated by `degrees` about the line through `about` along `axis`."""
     pivot = np.array(tuple(about), np.float32)
     matrix = rotation(axis, degrees)
     return transform(mesh, matrix, pivot - matrix @ pivot)

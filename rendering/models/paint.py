@@ -1,4 +1,4 @@
-"""Paint: a colour, a texture, and how a surface answers light."""
+"""Paint: colour, texture and reflectance of a surface."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from hearth.rendering.arrays import Floats
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """What a surface is painted with.
+    """The material of a surface.
 
     Attributes:
         color: sRGB as `#rrggbb`; multiplies the texture.
         texture: a name of `textures.SLOTS`.
-        scale: tiles of the texture a metre.
-        glow: light sent out by itself, in units of white paper in full light.
+        scale: tiles of the texture per metre.
+        glow: emitted light, in units of white paper in full light.
         shine: 0 matt to 1 polished.
     """
 
@@ -29,17 +29,17 @@ class Paint:
     shine: float = 0.0
 
     def tinted(self, color: str) -> Paint:
-        """The same surface in another colour; unchanged where `color` is empty."""
+        """The paint in another colour; unchanged if `color` is empty."""
         return replace(self, color=color) if color else self
 
     def lit(self, glow: float) -> Paint:
-        """The same surface, glowing."""
+        """The paint with emitted light."""
         return replace(self, glow=glow)
 
 
 @cache
 def linear(color: str) -> Floats:
-    """`#rrggbb` as (3,) linear light from 0 to 1."""
+    """(3,) linear light from 0 to 1 of `#rrggbb`."""
     code = color.removeprefix("#")
     srgb = np.array([int(code[i : i + 2], 16) / 255 for i in (0, 2, 4)])
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4).astype(np.float32)

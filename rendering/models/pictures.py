@@ -1,4 +1,4 @@
-"""Pictures that objects show, as `pictures.yaml` says them: pages, screens, paintings, keyboards."""
+"""Pictures that objects show, drawn by the strokes of `pictures.yaml`: pages, screens, paintings, keyboards."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def _lines(image: Bytes, x0: float, x1: float, y0: float, y1: float, count: int,
 
 
 def _rhombus(image: Bytes, half: float, color: Color) -> None:
-    """On its corner in the middle; `half` is half of its diagonal."""
+    """A square standing on its corner in the middle; `half` is half of its diagonal."""
     t = np.abs((np.arange(SIDE) + 0.5) / SIDE - 0.5)
     image[t[None, :] + t[:, None] < half] = color
 
 
 def _flap(image: Bytes, low: float, color: Color) -> None:
-    """The edges of an envelope's flap, whose corner is at `low`."""
+    """The edges of an envelope's flap with its corner at `low`."""
     t = np.arange(SIDE) / SIDE
     image[np.abs(t[:, None] - (low - np.abs(t[None, :] - 0.5))) < 0.012] = color
 
@@ -92,13 +92,13 @@ def picture(name: str) -> Floats:
     """(SIDE, SIDE, 3) a picture in linear light.
 
     Raises:
-        HearthError: `pictures.yaml` has a stroke that does not exist, or an expression that is wrong.
+        HearthError: `pictures.yaml` has an unknown stroke or a wrong expression.
     """
     image = np.zeros((SIDE, SIDE, 3), np.uint8)
     *strokes, last = entries_of(PACKAGE, FILE)[name]
     names: Values = {**MATH, **_shared()}
     scope = Scope(f"rendering/{FILE}", name, frozenset(names))
-    # Dust lies over all, and is finer than the steps of a byte.
+    # Dust covers the whole picture, and is finer than the steps of a byte.
     dust = last.get("dust")
     _paint(strokes if dust else [*strokes, last], image, names, scope)
     linear: Floats = ((image / 255.0) ** 2.2).astype(np.float32)
@@ -127,7 +127,7 @@ def _paint(strokes: Sequence[dict[str, Any]], image: Bytes, names: Values, scope
 
 
 PICTURES = tuple(name for name in entries_of(PACKAGE, FILE) if name != "shared")
-"""Pictures, shown once over a panel."""
+"""Names of the pictures; a panel shows its picture once."""
 
 PAINTINGS = ("mountains", "sea", "flowers", "abstract", "portrait")
 SHOWS = ("show_news", "show_cartoon", "show_match")

@@ -1,4 +1,4 @@
-"""What the model files can say: shapes, functions, paints, and the quantities of the object that is drawn."""
+"""The vocabulary of the model files: shapes, functions, paints, and quantities of the drawn object."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SHAPES: dict[str, Callable[..., Mesh]] = {
     "tube": shapes.tube,
 }
 LINES = frozenset(("lathe", "prism", "quads", "tube"))
-"""Shapes whose list is one line or outline; the others list what they take in order."""
+"""Shapes whose list is one line or outline; the lists of others are positional arguments."""
 
 
 def _lookup(table: Mapping[str, Value], key: str, default: Value) -> Value:
@@ -53,11 +53,11 @@ FUNCTIONS: Values = {
     "PAINTINGS": PAINTINGS,
     "SHOWS": SHOWS,
 }
-"""What every expression of a model knows."""
+"""Names that every expression of a model may use."""
 
 
 def names_of(look: Look) -> Values:
-    """What an expression of a model knows about the object: its size w, h, d and all that decides how it looks."""
+    """Names for the drawn object in a model's expressions: its size w, h, d and the other fields of its look."""
     w, h, d = look.size
     return {
         **FUNCTIONS,
@@ -71,7 +71,7 @@ def names_of(look: Look) -> Values:
 
 
 def _over(look: Look, y: float, inset: float = 0.02, **more: float) -> Region:
-    """The whole footprint at height `y`, but for its rim; `more` replaces further sides."""
+    """The footprint at height `y` without its rim; `more` replaces further sides."""
     return over(look, y, inset)._replace(**more)
 
 
@@ -82,4 +82,4 @@ def _bottom(look: Look) -> tuple[Region, ...]:
 
 
 KNOWN = frozenset(names_of(Look((1.0, 1.0, 1.0))))
-"""Every name that `names_of` gives a value."""
+"""Every name that `names_of` defines."""

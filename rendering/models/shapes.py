@@ -1,4 +1,4 @@
-"""Shapes that recipes are put together from. All lengths are metres; y is up."""
+"""Basic shapes of recipes. All lengths are metres; y is up."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def triangles(corners: Floats, paint: Paint, normals: Floats | None = None, uvs:
     """A mesh of the (T, 3, 3) corners; flat normals and flat texture coordinates where none are given."""
     corners = np.asarray(corners, np.float32).reshape(-1, 3, 3)
     if normals is None and uvs is None:
-        # Triangles without an area have no side that could be seen.
+        # Triangles without an area are never visible.
         corners = corners[np.abs(_crossed(corners)).max(1) > 1e-14]
     if normals is None:
         normals = np.repeat(face_normals(corners)[:, None, :], 3, axis=1)
@@ -54,7 +54,7 @@ def _crossed(corners: Floats) -> Floats:
 
 
 def flat_uvs(corners: Floats) -> Floats:
-    """(T, 3, 2) coordinates in metres, projected along each face's main axis, u along the part's longer side."""
+    """(T, 3, 2) coordinates in metres, projected along each face's main axis; u runs along the longer side."""
     points = corners.reshape(-1, 3)
     extent = points.max(axis=0) - points.min(axis=0) if len(points) else np.zeros(3)
     main = np.abs(face_normals(corners)).argmax(axis=1)
@@ -93,9 +93,9 @@ def block(x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, pain
 
 
 def panel(center: Point, width: float, height: float, paint: Paint, facing: str = "+z") -> Mesh:
-    """A rectangle that shows its texture once, upright, towards `facing` (+z, -z, +x, -x, +y)."""
+    """A rectangle facing `facing` (+z, -z, +x, -x, +y) that shows its texture once, upright."""
     w, h = width / 2, height / 2
-    # Right and up as who looks at it sees them; the frame is left-handed, so clockwise here is outwards.
+    # Right and up as a viewer sees them; the frame is left-handed, so clockwise faces outwards.
     axes = {
         "+z": ((-1, 0, 0), (0, 1, 0)),
         "-z": ((1, 0, 0), (0, 1, 0)),
@@ -163,7 +163,7 @@ def ball(center: Point, radii: Point | float, paint: Paint, steps: int = 5) -> M
 
 
 def lathe(profile: Sequence[tuple[float, float]], paint: Paint, sides: int = 18) -> Mesh:
-    """The surface that the profile of (radius, height) draws turning about y; outside is left of its way upwards."""
+    """The surface of revolution of a profile of (radius, height) about y; its outside is left of the upward profile."""
     return join(_ring(profile, i, paint, sides) for i in range(len(profile) - 1) if profile[i] != profile[i + 1])
 
 
@@ -213,7 +213,7 @@ def _profile_normal(profile: Sequence[tuple[float, float]], i: int, end: int) ->
 def cylinder(
     center: Point, radius: float, height: float, paint: Paint, top: float | None = None, sides: int = 18
 ) -> Mesh:
-    """A closed cylinder or cone standing on `center`; `top` is its upper radius."""
+    """A closed cylinder or cone on `center`; `top` is its upper radius."""
     return shift(_cylinder(float(radius), float(height), paint, radius if top is None else float(top), sides), *center)
 
 
@@ -228,7 +228,7 @@ def rod(
 ) -> Mesh:
     """A closed cylinder from `start` to `end`."""
     a, b = np.array(start, np.float64), np.array(end, np.float64)
-    # Bones keep their lengths but for rounding; rounded, they are found among what was made before.
+    # Bones keep their lengths up to rounding errors; rounded lengths hit the cache.
     length = round(float(np.linalg.norm(b - a)), 7)
     if length < 1e-6:
         return empty()
@@ -237,7 +237,7 @@ def rod(
 
 
 def upright_to(direction: Floats) -> Floats:
-    """A rotation that takes +y to the unit `direction`."""
+    """A rotation that maps +y to the unit vector `direction`."""
     y = np.asarray(direction, np.float64)
     helper = np.array((0.0, 0.0, 1.0)) if abs(y[2]) < 0.9 else np.array((1.0, 0.0, 0.0))
     x = np.cross(y, helper)
@@ -274,7 +274,7 @@ def prism(outline: Sequence[tuple[float, float]], depth: float, paint: Paint) ->
 
 
 def _ears(points: list[tuple[float, float]]) -> list[tuple[int, int, int]]:
-    """Triangles (indices) of a simple counter-clockwise polygon, by cutting ears."""
+    """Triangles (indices) of a simple counter-clockwise polygon, by ear clipping."""
     left, found = list(range(len(points))), []
     while len(left) > 3:
         for k in range(len(left)):

@@ -1,4 +1,4 @@
-"""The sheet of all recipes, variants, kinds and states: each should be recognisable without its label."""
+"""The sheet of all recipes, variants, kinds and states, for review by eye."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STUDIO = Daylight((0.45, 0.72, 0.52), (0.85, 0.82, 0.76), (0.9, 0.92, 0.95), (0.
 
 
 def entries() -> Iterator[tuple[str, Model]]:
-    """(label, model) of every recipe: variants and kinds first, then each state that shows."""
+    """(label, model) of every recipe: variants and kinds first, then each visible state."""
     for name, recipe in RECIPES.items():
         designs = [(v, kind) for v in range(recipe.variants) for kind in (recipe.kinds or ("",))]
         for number, (variant, kind) in enumerate(designs):
@@ -36,7 +36,7 @@ def entries() -> Iterator[tuple[str, Model]]:
 
 
 def portrait(model: Model, size: Size, side: int = TILE, quality: str = "fine") -> NDArray[np.uint8]:
-    """(side, side, 3) a picture of one model on a pale ground, seen from its front, from the left and above."""
+    """(side, side, 3) a picture of one model on a pale floor, from the front left and above."""
     low, high = draw(model).bounds()
     middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
     flat = size[1] < 0.25 * max(size[0], size[2])
@@ -55,7 +55,7 @@ def portrait(model: Model, size: Size, side: int = TILE, quality: str = "fine") 
 
 
 def sheet(columns: int = 14, side: int = TILE, quality: str = "fine") -> NDArray[np.uint8]:
-    """All entries in rows of `columns`, labelled."""
+    """All entries with labels, in rows of `columns`."""
     tiles = [labelled(portrait(model, model.look.size, side, quality), label) for label, model in entries()]
     blank = np.full_like(tiles[0], 255)
     tiles += [blank] * (-len(tiles) % columns)
@@ -64,7 +64,7 @@ def sheet(columns: int = 14, side: int = TILE, quality: str = "fine") -> NDArray
 
 
 def labelled(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
-    """The picture over a line of text."""
+    """The picture above a line of text."""
     import cv2
 
     strip: NDArray[Any] = np.full((LABEL, image.shape[1], 3), 255, np.uint8)

@@ -1,4 +1,4 @@
-"""Procedural textures, drawn once a process: tiles that modulate a colour, and pictures that are shown as they are."""
+"""Procedural textures, made once per process: repeating tiles that modulate a colour, and pictures."""
 
 from __future__ import annotations
 
@@ -118,16 +118,16 @@ TILES: dict[str, Callable[[], Floats]] = {
     "grime": _grime,
     "water": lambda: _grey(1 + noise(25, (6.0, 6.0)) * 0.12),
 }
-"""Textures that repeat and modulate the colour: linear, about 1."""
+"""Repeating textures that modulate the colour; linear values about 1."""
 
 SLOTS: dict[str, int] = {name: slot for slot, name in enumerate([*TILES, *pictures.PICTURES])}
-"""Every texture's place in the atlas."""
+"""Index of each texture in the atlas."""
 
 LEVELS = 6
 """Mipmap levels: SIDE, SIDE/2, ..."""
 
 OFFSETS = np.cumsum([0, *((SIDE >> level) ** 2 for level in range(LEVELS))]).astype(np.int64)
-"""Where each level begins in a slot's row of texels; the last is the row's length."""
+"""First texel of each level in a slot's row; the last entry is the row's length."""
 
 RANGE = 2.0
 """Linear value of the brightest texel."""
@@ -135,13 +135,13 @@ RANGE = 2.0
 
 @cache
 def decode() -> Floats:
-    """(256,) linear value of each byte of the atlas (stored as a square root, finer in the dark)."""
+    """(256,) linear value of each byte of the atlas, which stores square roots: finer steps in the dark."""
     return (RANGE * (np.arange(256) / 255) ** 2).astype(np.float32)
 
 
 @cache
 def atlas() -> NDArray[np.uint8]:
-    """(slots, texels, 3) bytes: every texture with its mipmaps, level after level."""
+    """(slots, texels, 3) bytes: every texture with its mipmaps, level by level."""
     rows = np.empty((len(SLOTS), OFFSETS[-1], 3), np.uint8)
     for name, slot in SLOTS.items():
         level = TILES[name]() if name in TILES else pictures.picture(name)
@@ -154,5 +154,5 @@ def atlas() -> NDArray[np.uint8]:
 
 @cache
 def texels() -> NDArray[np.uint8]:
-    """(slots * texels, 3) the atlas, texture after texture."""
+    """(slots * texels, 3) the atlas, flattened."""
     return atlas().reshape(-1, 3)

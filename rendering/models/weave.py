@@ -1,4 +1,4 @@
-"""What textures are woven from: repeating noise, grids and blends over a square of SIDE texels."""
+"""Components of textures: repeating noise, grids and blends over a square of SIDE texels."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ SIDE = 256
 
 
 def noise(seed: int, scale: tuple[float, float]) -> Floats:
-    """(SIDE, SIDE) repeating noise, mean 0 and deviation 1, of about `scale` (across, down) bumps a tile."""
+    """(SIDE, SIDE) repeating noise, mean 0, deviation 1, with about `scale` (across, down) bumps per tile."""
     white = np.random.default_rng(seed).standard_normal((SIDE, SIDE))
     across, down = np.fft.fftfreq(SIDE, 1 / SIDE)[None, :], np.fft.fftfreq(SIDE, 1 / SIDE)[:, None]
     weight = np.exp(-((across / scale[0]) ** 2 + (down / scale[1]) ** 2) / 2)
@@ -33,6 +33,6 @@ def grid_lines(count: int, width: int) -> Floats:
 
 
 def blend(image: Floats, color: tuple[float, float, float], share: Floats | float) -> Floats:
-    """`image` (…, 3) towards `color` by `share`."""
+    """`image` (…, 3) blended towards `color` by `share`."""
     weight = np.asarray(share, np.float32)[..., None] if np.ndim(share) else np.float32(share)
     return (image + (np.array(color, np.float32) - image) * weight).astype(np.float32)

@@ -1,1 +1,1 @@
-"""Bodies: skeleton, figure, gestures, and what they do at each moment."""
+"""Bodies: skeleton, figure, gestures, and motion through a program."""

@@ -1,4 +1,4 @@
-"""Characters through a program: where each stands, sits or lies at a tick, and what its body does."""
+"""Characters through a program: position, posture and body pose after each tick."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import recipe_of
 from hearth.rendering.people.figure import BODIES, Body, Figure
 from hearth.rendering.people.gestures import Gesture, gesture_of
-from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.people.skeleton import BodyPose
 from hearth.rendering.scene.places import HANDS, Places, Pose
 from hearth.rendering.scene.prepared import local_size
-from hearth.rendering.scene.standing_places import Ground
+from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
 ARM = 0.85
-"""Metres from which one steps nearer before using the hands."""
+"""Greatest distance in metres at which hands are used without a step nearer."""
 
 WEARABLE_TOP = ("shirt", "jacket", "dress", "pajamas")
 SEAT_FRONT = 0.12
-"""How far before the middle of a seat the hips are."""
+"""Distance from the middle of a seat to the hips, metres."""
 
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """One character at one moment.
+    """One character in one frame.
 
     Attributes:
         node: the character's.
-        body: its looks.
-        spot: where it is on the floor plan (sitting: below its hips; lying: below its middle).
+        body: its appearance.
+        spot: (x, z) of its feet (sitting: of its hips; lying: of its middle).
         level: height of the floor there.
-        yaw: the way it faces, degrees from +z towards +x.
-        stance: what its body does.
-        room: id of the room it is in.
-        place: id of what it sits or lies on, or 0.
+        yaw: its direction, degrees from +z towards +x.
+        body_pose: posture, hands and gaze.
+        room: id of its room.
+        place: id of the seat or bed that it uses, or 0.
     """
 
     node: Node
@@ -48,13 +48,13 @@ class Actor:
     spot: Spot
     level: float
     yaw: float
-    stance: Stance
+    body_pose: BodyPose
     room: int
     place: int = 0
 
     @property
     def position(self) -> Point:
-        """On the floor."""
+        """Its position on the floor, in the world."""
         return self.spot[0], self.level, self.spot[1]
 
     def local(self, point: Point) -> Point:
@@ -73,35 +73,35 @@ class Actor:
         )
 
     def figure(self) -> Figure:
-        """What is drawn."""
-        return Figure(self.body, self.stance)
+        """Body and body pose, for drawing."""
+        return Figure(self.body, self.body_pose)
 
     def hand(self, side: str) -> Point:
-        """Where its `right` or `left` hand is, in the world."""
+        """Position of its `right` or `left` hand, in the world."""
         joint = self.figure().joints()[f"hand_{side[0]}"]
         return self.world((float(joint[0]), float(joint[1]), float(joint[2])))
 
 
-def cast(graph: EnvironmentGraph, ground: Ground, places: Places, seed: int) -> tuple[Actor, ...]:
-    """The characters of a graph as a program begins, in the order of their ids."""
+def initial_actors(graph: EnvironmentGraph, floor: FreeFloor, places: Places, seed: int) -> tuple[Actor, ...]:
+    """The characters of a graph before the first tick, sorted by id."""
     names = sorted(BODIES)
     actors: list[Actor] = []
     for number, node in enumerate(n for n in graph.nodes if n.category == CHARACTER_CATEGORY):
         body = BODIES[names[(derive(seed, "body") + number) % len(names)]]
         room = room_of(graph, node.id)
-        spot = _initial(node, room, ground, [a.spot for a in actors])
-        actors.append(Actor(node, body, spot, ground.level, node.yaw or 0.0, Stance(), room))
+        spot = _initial(node, room, floor, [a.spot for a in actors])
+        actors.append(Actor(node, body, spot, floor.level, node.yaw or 0.0, BodyPose(), room))
     return tuple(_seated(actor, graph, places, None) for actor in actors)
 
 
-def _initial(node: Node, room: int, ground: Ground, taken: list[Spot]) -> Spot:
-    """Where the graph has the character if that is in its room; else the middle of the room's free floor."""
+def _initial(node: Node, room: int, floor: FreeFloor, taken: list[Spot]) -> Spot:
+    """The free spot nearest to the character's box if that is in its room; else the middle of the room's free floor."""
     if node.box:
         x, z = node.box.center[0], node.box.center[2]
-        near = ground.spot_for(node.box, None, room, (x, z), taken)
+        near = floor.spot_for(node.box, None, room, (x, z), taken)
         if near is not None and abs(near[0] - x) + abs(near[1] - z) < 1.2:
             return (x, z) if not taken else near
-    return ground.spot_in(room, taken) or ((node.box.center[0], node.box.center[2]) if node.box else (0.0, 0.0))
+    return floor.spot_in(room, taken) or ((node.box.center[0], node.box.center[2]) if node.box else (0.0, 0.0))
 
 
 def room_of(graph: EnvironmentGraph, node_id: int) -> int:
@@ -113,89 +113,89 @@ def room_of(graph: EnvironmentGraph, node_id: int) -> int:
 
 
 def moved(
-    actor: Actor, graph: EnvironmentGraph, places: Places, ground: Ground, step: Step | None, others: list[Spot]
+    actor: Actor, graph: EnvironmentGraph, places: Places, floor: FreeFloor, step: Step | None, others: list[Spot]
 ) -> Actor:
-    """The character after a step: gone where it must be, seated if it is; hands still at rest."""
+    """The character at the position where it performs a step, seated if the step says so; hands in default pose."""
     room = room_of(graph, actor.node.id) or actor.room
     if _states(graph, actor.node.id) & {"SITTING", "LYING"}:
         return _seated(replace(actor, room=room), graph, places, step)
     if actor.place:
-        actor = _risen(actor, places, ground, others)
-    actor = replace(actor, stance=Stance(), place=0)
+        actor = _risen(actor, places, floor, others)
+    actor = replace(actor, body_pose=BodyPose(), place=0)
     goes = room != actor.room or gesture_of(step).stride > 0
-    what = _goal(step)
-    pose, front = reachable(what, places) if what and what != room else (None, None)
+    target = _goal(step)
+    pose, front = reachable(target, places) if target and target != room else (None, None)
     if pose is None:
-        spot = ground.spot_in(room, others) if goes else None
+        spot = floor.spot_in(room, others) if goes else None
         return replace(actor, spot=spot or actor.spot, room=room)
     acts = step is not None and (gesture_of(step).near or step.action == "Find")
     if goes or (acts and _gap(actor.spot, pose.box) > ARM):
-        there = room_of(graph, what) or room
+        there = room_of(graph, target) or room
         now = actor.spot if there == actor.room else None
-        spot = ground.spot_for(pose.box, front, there, now, others, outermost(what, places)[0])
+        spot = floor.spot_for(pose.box, front, there, now, others, outermost(target, places)[0])
         actor = replace(actor, spot=spot or actor.spot, room=there)
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
 
 
 def _goal(step: Step | None) -> int:
-    """The node that a step is about: what hands or eyes go to; 0 for none."""
+    """The object that hands or gaze go to in a step; 0 for none."""
     if step is None or not step.objects:
         return 0
     return step.objects[min(gesture_of(step).about, len(step.objects) - 1)].node or 0
 
 
-def _risen(actor: Actor, places: Places, ground: Ground, others: list[Spot]) -> Actor:
-    """Standing before what it sat or lay on."""
+def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -> Actor:
+    """The actor standing in front of the seat or bed that it used."""
     pose = places.poses.get(actor.place)
-    spot = ground.spot_for(pose.box, pose.yaw, actor.room, actor.spot, others) if pose else None
+    spot = floor.spot_for(pose.box, pose.yaw, actor.room, actor.spot, others) if pose else None
     return replace(actor, spot=spot or actor.spot)
 
 
 def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
-    """The character with its hands and eyes where the step has them."""
+    """The character with hands and gaze on the step's targets."""
     held = _held(graph, actor.node.id)
     height = actor.body.height
-    low = actor.stance.seat + 0.3 if actor.stance.posture == "sitting" else 0.6 * height
+    low = actor.body_pose.seat + 0.3 if actor.body_pose.posture == "sitting" else 0.6 * height
     carry = {side: (sign * 0.16, low, 0.34) for side, sign in (("right", 1.0), ("left", -1.0)) if side in held}
     hands: dict[str, Point | None] = {"right": carry.get("right"), "left": carry.get("left")}
     gesture = gesture_of(step)
     target = _target(step, gesture.hand, places, actor)
     acting = _acting_side(step, graph, actor.node.id, held)
     wanted = _hand_target(gesture, target, actor, acting)
-    if wanted is not None and actor.stance.posture != "lying":
+    if wanted is not None and actor.body_pose.posture != "lying":
         for side, sign in (("right", 1.0), ("left", -1.0)):
             if side == acting or gesture.both:
                 spread = 0.12 * sign if gesture.both else 0.0
                 hands[side] = (wanted[0] + spread, wanted[1], wanted[2])
-    if actor.stance.posture == "lying":
+    if actor.body_pose.posture == "lying":
         hands = {"right": None, "left": None}
     look = _target(step, gesture.gaze, places, actor) if gesture.gaze else None
     gaze = actor.local(look) if look else None
-    stance = replace(actor.stance, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
-    if stance.posture == "standing":
-        stance = replace(stance, stride=gesture.stride)
-    return replace(actor, stance=stance, body=_dressed(actor.body, graph, actor.node.id))
+    body_pose = replace(actor.body_pose, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
+    if body_pose.posture == "standing":
+        body_pose = replace(body_pose, stride=gesture.stride)
+    return replace(actor, body_pose=body_pose, body=_dressed(actor.body, graph, actor.node.id))
 
 
 def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
-    """The character as its hand arrives, before anything changes.
+    """The character at the moment its hand reaches the object, before the world changes.
 
     Args:
-        here: where it acts, hands at rest.
-        there: as it will be after the step.
-        places: of the moment before.
-        step: what it does.
+        here: at its acting position, hands in default pose.
+        there: after the step.
+        places: before the step.
+        step: the step.
     """
-    if step.action != "Grab" or there.stance.posture == "lying":
+    if step.action != "Grab" or there.body_pose.posture == "lying":
         return there
     target = _target(step, "object", places, here)
     if target is None:
         return there
-    # What is out of reach is approached as far as the body bends.
+    # An object out of reach is approached as far as the body bends.
     side = _acting_side(step, places.graph, here.node.id, _held(places.graph, here.node.id))
     at = here.local(target)
-    hands = {"right": here.stance.right, "left": here.stance.left} | {side: at}
-    return replace(there, stance=replace(there.stance, right=hands["right"], left=hands["left"], gaze=at))
+    hands = {"right": here.body_pose.right, "left": here.body_pose.left} | {side: at}
+    return replace(there, body_pose=replace(there.body_pose, right=hands["right"], left=hands["left"], gaze=at))
 
 
 def _held(graph: EnvironmentGraph, me: int) -> set[str]:
@@ -203,7 +203,7 @@ def _held(graph: EnvironmentGraph, me: int) -> set[str]:
 
 
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
-    """The pose of a thing, and the way one comes at it: its own front, or that of what it is inside."""
+    """The pose of a thing, and the direction of its front, or of its container's front."""
     pose = places.poses.get(node_id)
     top, inside = outermost(node_id, places)
     outer = places.poses.get(top)
@@ -213,28 +213,28 @@ def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
 
 
 def outermost(node_id: int, places: Places) -> tuple[int, bool]:
-    """The furniture that a thing is on or in, itself if it is on none; and whether it is inside something."""
+    """The outermost support or container of a thing (itself if it has none), and whether it is inside any."""
     top, inside = node_id, False
     for _ in range(6):
-        spot = places.where.get(top)
-        if spot is None or spot.how not in ("on", "inside"):
+        location = places.locations.get(top)
+        if location is None or location.kind not in ("on", "inside"):
             break
-        if spot.what not in places.poses or spot.what in places.building:
+        if location.holder not in places.poses or location.holder in places.building:
             break
-        inside |= spot.how == "inside"
-        top = spot.what
+        inside |= location.kind == "inside"
+        top = location.holder
     return top, inside
 
 
 def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
-    """On the seat or bed that the graph says, if it says so."""
+    """The actor on the seat or bed that the graph gives; unchanged if it gives none."""
     states = _states(graph, actor.node.id)
     seat = _seat(actor, graph, step)
     pose = places.poses.get(seat)
     if not states & {"SITTING", "LYING"}:
         return actor
     if pose is None:
-        return replace(actor, stance=Stance("sitting", 0.45))
+        return replace(actor, body_pose=BodyPose("sitting", 0.45))
     node = next(n for n in graph.nodes if n.id == seat)
     yaw, size = pose.yaw or 0.0, local_size(pose.box.size, pose.yaw or 0.0)
     foot = pose.box.center[1] - pose.box.size[1] / 2
@@ -248,14 +248,14 @@ def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | 
         along = yaw if size[2] >= 1.5 else yaw + 90
         side = size[0] * -0.22 if size[0] > 1.25 and size[2] >= 1.5 else 0.0
         x, _, z = frame.world((side, 0.0, 0.0))
-        return replace(actor, spot=(x, z), yaw=along, place=seat, stance=Stance("lying", seat_height))
+        return replace(actor, spot=(x, z), yaw=along, place=seat, body_pose=BodyPose("lying", seat_height))
     places_free = [(region.x0 + region.x1) / 2]
     if region.x1 - region.x0 > 1.0:
         places_free = [places_free[0], region.x0 + 0.35, region.x1 - 0.35]
     if size[2] >= 1.5 and size[0] > 0.85:
-        # On the side of a bed, feet on the floor.
+        # Sitting on the side of a bed, feet on the floor.
         x, _, z = frame.world((size[0] / 2 - 0.2, 0.0, 0.15))
-        return replace(actor, spot=(x, z), yaw=yaw + 90, place=seat, stance=Stance("sitting", seat_height))
+        return replace(actor, spot=(x, z), yaw=yaw + 90, place=seat, body_pose=BodyPose("sitting", seat_height))
     x, _, z = frame.world(
         (
             min(places_free, key=lambda at: _crowd(frame.world((at, 0, 0)), places, seat)),
@@ -263,7 +263,7 @@ def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | 
             _depth(region.z0, region.z1),
         )
     )
-    return replace(actor, spot=(x, z), yaw=yaw, place=seat, stance=Stance("sitting", seat_height))
+    return replace(actor, spot=(x, z), yaw=yaw, place=seat, body_pose=BodyPose("sitting", seat_height))
 
 
 def _depth(z0: float, z1: float) -> float:
@@ -271,11 +271,11 @@ def _depth(z0: float, z1: float) -> float:
 
 
 def _crowd(at: Point, places: Places, seat: int) -> float:
-    """How many things lie on a seat near a point of it."""
+    """Number of things on a seat near a point."""
     on = [
         places.poses[i].box.center
-        for i, spot in places.where.items()
-        if spot.what == seat and spot.how == "on" and i in places.poses
+        for i, location in places.locations.items()
+        if location.holder == seat and location.kind == "on" and i in places.poses
     ]
     return sum(1.0 for center in on if abs(center[0] - at[0]) + abs(center[2] - at[2]) < 0.5)
 
@@ -285,7 +285,7 @@ def _states(graph: EnvironmentGraph, node_id: int) -> frozenset[str]:
 
 
 def _seat(actor: Actor, graph: EnvironmentGraph, step: Step | None) -> int:
-    """What the character sits or lies on; it stays ON what it has risen from, so the step and the past decide."""
+    """The seat or bed in use. A character stays ON a seat after it stands up, so step and posture decide."""
     on = sorted(e.target for e in graph.edges if e.source == actor.node.id and e.relation == "ON")
     named = _goal(step) if gesture_of(step).rests else actor.place
     return named if named in on else next(iter(on), 0)
@@ -304,7 +304,7 @@ def _towards(spot: Spot, point: Point, usual: float) -> float:
 
 
 def _target(step: Step | None, which: str, places: Places, actor: Actor) -> Point | None:
-    """The point of a step's object that hands and eyes go to, in the world: on its box, nearest to the chest."""
+    """The target point of hands or gaze in the world: the point of the object's box nearest to the chest."""
     if step is None or not step.objects:
         return None
     ref = step.objects[-1 if which == "second" else 0]
@@ -317,7 +317,7 @@ def _target(step: Step | None, which: str, places: Places, actor: Actor) -> Poin
 
 
 def _acting_side(step: Step | None, graph: EnvironmentGraph, me: int, held: set[str]) -> str:
-    """The hand that acts: the one that holds the object, else a free one, the right first."""
+    """The acting hand: the one that holds the object, else a free one, preferring the right."""
     for edge in graph.edges:
         if (
             step
@@ -330,9 +330,9 @@ def _acting_side(step: Step | None, graph: EnvironmentGraph, me: int, held: set[
 
 
 def _hand_target(gesture: Gesture, target: Point | None, actor: Actor, side: str) -> Point | None:
-    """Where the acting hand goes, in the figure's frame."""
+    """Target of the acting hand, in the figure's frame."""
     height, sign = actor.body.height, 1.0 if side == "right" else -1.0
-    base = actor.stance.seat - 0.44 * height * 1.1 if actor.stance.posture == "sitting" else 0.0
+    base = actor.body_pose.seat - 0.44 * height * 1.1 if actor.body_pose.posture == "sitting" else 0.0
     fixed: dict[str, Point] = {
         "mouth": (sign * 0.05, 0.87 * height + base, 0.2),
         "chest": (0.0, 0.68 * height + base, 0.33),
@@ -345,7 +345,7 @@ def _hand_target(gesture: Gesture, target: Point | None, actor: Actor, side: str
 
 
 def _dressed(body: Body, graph: EnvironmentGraph, me: int) -> Body:
-    """The body in what it wears: a shirt or trousers change its colours."""
+    """The body in the colours of its worn clothes."""
     classes = {node.id: node.class_name for node in graph.nodes}
     for edge in sorted(e for e in graph.edges if e.target == me and e.relation == "ON"):
         name = classes.get(edge.source, "")
@@ -360,7 +360,7 @@ def _dressed(body: Body, graph: EnvironmentGraph, me: int) -> Body:
 
 
 def carried(actors: tuple[Actor, ...], places: Places) -> Mapping[int, Pose]:
-    """Where what hands hold and heads wear is."""
+    """Poses of the held objects and of worn hats, by node id."""
     found: dict[int, Pose] = {}
     nodes = {node.id: node for node in places.graph.nodes}
     for actor in actors:
@@ -377,7 +377,7 @@ def carried(actors: tuple[Actor, ...], places: Places) -> Mapping[int, Pose]:
 
 
 def _in_hand(actor: Actor, hand: Point, size: Point) -> Pose:
-    """The box of a thing in a hand: gripped a little above its foot, in front of the palm."""
+    """The pose of a held thing: gripped slightly above its foot, in front of the palm."""
     x, y, z = actor.local(hand)
     lift = size[1] * 0.5 - min(size[1] * 0.4, 0.06)
     center = actor.world((x, y + lift, z + min(size[2] * 0.3, 0.1) + 0.02))

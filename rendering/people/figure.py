@@ -1,4 +1,4 @@
-"""People: bodies in clothes, drawn around the joints of a stance."""
+"""People: bodies in clothes, drawn around the joints of a body pose."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import numpy as np
 from hearth.rendering.models.mesh import Mesh, join, transform
 from hearth.rendering.models.paint import Paint
 from hearth.rendering.models.shapes import ball, cushion, rod, upright_to
-from hearth.rendering.people.skeleton import Joints, Stance, Vector, joints
+from hearth.rendering.people.skeleton import BodyPose, Joints, Vector, joints
 from hearth.schemas.graph import Point
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Someone's looks.
+    """A person's appearance.
 
     Attributes:
         height: metres.
-        build: 1 is average; scales how wide limbs and trunk are.
+        build: scale of the width of limbs and trunk; 1 is average.
         skin, hair, top, bottom, shoes: colours as `#rrggbb`.
         style: of the hair: `short`, `long` or `bun`.
         weave: texture of the top.
-        skirt: whether the legs are bare below a skirt.
-        sleeves: how much of the arm is covered, 0 to 1.
+        skirt: whether a skirt replaces trousers.
+        sleeves: covered share of the arms, 0 to 1.
     """
 
     height: float = 1.72
@@ -49,28 +49,30 @@ BODIES: dict[str, Body] = {
 }
 """Bodies by name. To add one: a row here."""
 
-STILL = Stance()
+STILL = BodyPose()
 
 CHILD = Body(1.2, 0.95, "#e0b08e", "#8a5a30", "#4fa05c", "#4a6f9a", "#c8463c", "short", "stripes", False, 0.4)
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """Someone doing something."""
+    """A body in a pose."""
 
     body: Body
-    stance: Stance = STILL
+    body_pose: BodyPose = STILL
 
     def joints(self) -> Joints:
-        """Where the joints are, in the figure's own frame (metres)."""
-        return joints(self.stance, self.body.height)
+        """Positions of the joints in the figure's own frame, metres."""
+        return joints(self.body_pose, self.body.height)
 
 
 @lru_cache(maxsize=256)
 def figure_mesh(figure: Figure) -> Mesh:
-    """The body in its stance, in its own frame."""
+    """The mesh of a figure, in its own frame."""
     body, found = figure.body, figure.joints()
-    return join((_trunk(body, found), *(_limbs(body, found, side) for side in "rl"), _head(body, found, figure.stance)))
+    return join(
+        (_trunk(body, found), *(_limbs(body, found, side) for side in "rl"), _head(body, found, figure.body_pose))
+    )
 
 
 def _trunk(body: Body, found: Joints) -> Mesh:
@@ -133,7 +135,7 @@ def _limbs(body: Body, found: Joints, side: str) -> Mesh:
 
 
 def _sleeved(a: Vector, b: Vector, c: Vector, cover: float, radii: Point, cloth: Paint, skin: Paint) -> list[Mesh]:
-    """An arm over shoulder, elbow and wrist, covered by a sleeve from its upper end."""
+    """An arm through shoulder, elbow and wrist, with a sleeve from its upper end."""
     half = min(cover * 2, 1.0)
     cut = a + (b - a) * half
     parts = [_bone(a, cut, radii[0] * 1.08, radii[1] * 1.15, cloth)]
@@ -164,8 +166,8 @@ def _shoe(ankle: Vector, toe: Vector, h: float, paint: Paint) -> Mesh:
     )
 
 
-def _head(body: Body, found: Joints, stance: Stance) -> Mesh:
-    """Head with face and hair, turned the way it looks."""
+def _head(body: Body, found: Joints, body_pose: BodyPose) -> Mesh:
+    """Head with face and hair, turned towards the gaze."""
     h, skin, hair = body.height, Paint(body.skin), Paint(body.hair, "brushed", 6.0)
     r = 0.052 * h
     parts = [
@@ -177,7 +179,7 @@ def _head(body: Body, found: Joints, stance: Stance) -> Mesh:
     for s in (-1, 1):
         parts.append(ball((s * r * 0.88, -r * 0.05, 0), (r * 0.12, r * 0.24, r * 0.18), skin, 3))
         eye = (s * r * 0.34, r * 0.12, r * 0.85)
-        if stance.asleep:
+        if body_pose.asleep:
             parts.append(ball(eye, (r * 0.16, r * 0.03, r * 0.06), Paint("#4a3028"), 2))
         else:
             parts += [
@@ -205,18 +207,18 @@ def _bone(a: Vector, b: Vector, ra: float, rb: float, paint: Paint) -> Mesh:
 
 
 def _along(at: Vector, towards: Vector, size: Point, paint: Paint, up: float) -> Mesh:
-    """A soft block about `at`, upright along the way to `towards`."""
+    """A soft block at `at`, upright along the direction to `towards`."""
     way = towards - at
     return transform(cushion((0, up, 0), size, paint, 0.7, 4), _upright(way), at)
 
 
 def _between(a: Vector, b: Vector, size: Point, paint: Paint, roundness: float) -> Mesh:
-    """A soft block over the middle of two joints, upright along the way between them."""
+    """A soft block at the middle of two joints, upright along the line between them."""
     return transform(cushion((0, 0, 0), size, paint, roundness, 4), _upright(b - a), (a + b) / 2)
 
 
 def _upright(way: Vector) -> np.ndarray:
-    """A rotation that takes +y to `way` and keeps +x to the side."""
+    """A rotation that maps +y to `way` and keeps +x sideways."""
     y = way / max(float(np.linalg.norm(way)), 1e-9)
     x = np.array((1.0, 0.0, 0.0)) - y * y[0]
     if np.linalg.norm(x) < 1e-3:

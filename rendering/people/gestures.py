@@ -1,4 +1,4 @@
-"""What a body does during an action: which hand goes where, where it looks, how the legs stand."""
+"""Gestures of actions: targets of hands and gaze, and stride."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from hearth.schemas.program import Step
 
 @dataclass(frozen=True, slots=True)
 class Gesture:
-    """The picture of an action.
+    """The gesture of an action.
 
     Attributes:
-        hand: where the acting hand goes: `object`, `second`, `mouth`, `chest`, `carry`, `wave`, or "" (stays).
-        both: whether both hands go there.
+        hand: target of the acting hand: `object`, `second`, `mouth`, `chest`, `carry`, `wave`, or "" (none).
+        both: whether both hands go to the target.
         gaze: `object`, `second`, or "" (ahead).
-        stride: how far the legs are apart.
-        near: whether one must be within arm's reach of the object.
-        about: which of the objects hands or eyes go to.
-        rests: whether the object is a seat or bed that is taken.
-        asleep: whether the eyes stay shut afterwards, until the next action.
+        stride: as in `BodyPose`.
+        near: whether the actor must be within arm's reach of the object.
+        about: index of the object that hands or gaze go to.
+        rests: whether the object is a seat or bed to sit or lie on.
+        asleep: whether the eyes stay closed until the next action.
     """
 
     hand: str = ""
@@ -83,9 +83,9 @@ GESTURES: dict[str, Gesture] = {
     "Sleep": Gesture(gaze="", asleep=True),
     "WakeUp": STILL,
 }
-"""The gesture of each action; those without an entry only look."""
+"""The gesture of each action; an action without an entry is a gaze at its object."""
 
 
 def gesture_of(step: Step | None) -> Gesture:
-    """The gesture of a step; one looks ahead where there is none."""
+    """The gesture of a step; None gives a gaze ahead."""
     return STILL if step is None else GESTURES.get(step.action, LOOK)

@@ -1,4 +1,4 @@
-"""Every step in motion: relax, rise, walk, turn, sit down, reach; things change when the hand arrives."""
+"""Animation of steps: relax, rise, walk, turn, sit down, reach; the world changes when the hand arrives."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 from typing import NamedTuple
 
-from hearth.rendering.film.snapshots import Moment, Play
+from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor, carried, posed, reach_for
 from hearth.rendering.people.figure import Figure
-from hearth.rendering.people.skeleton import HIP, PELVIS_ON_SEAT, Stance
+from hearth.rendering.people.skeleton import HIP, PELVIS_ON_SEAT, BodyPose
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.routes import path, ways_of
 from hearth.rendering.scene.scene import Scene
@@ -20,29 +20,29 @@ from hearth.schemas.program import Step
 from hearth.simulation.motion.navigation import Ways
 
 WALKING, RUNNING = 1.15, 2.6
-"""Metres a second."""
+"""Metres per second."""
 
 TURNING = 200.0
-"""Degrees a second."""
+"""Degrees per second."""
 
 RELAX, RISE, REACH, BACK, HOLD = 0.25, 0.8, 0.55, 0.3, 0.3
 """Seconds."""
 
 OPENING = 0.5
-"""Seconds that doors, lids and drawers take to open or close."""
+"""Seconds in which doors, lids and drawers open or close."""
 
 STEP_LENGTH = 0.16
-"""How far before the hips a foot is set down at full stride, as a share of the body's height (see `skeleton`)."""
+"""Distance from hips to planted foot at full stride, as a share of the body's height (see `skeleton`)."""
 
 
 class Frame(NamedTuple):
-    """One picture of a film.
+    """The scene of one picture of a film.
 
     Attributes:
-        time: seconds from its start.
-        tick: the tick that is going on, from 1; 0 before the first.
+        time: seconds from the film's start.
+        tick: the current tick, from 1; 0 before the first.
         steps: of that tick.
-        scene: what there is.
+        scene: the scene.
         actors: the characters.
     """
 
@@ -54,7 +54,7 @@ class Frame(NamedTuple):
 
 
 class Span(NamedTuple):
-    """When a tick goes on, in seconds."""
+    """Start and end of a tick in a film, seconds."""
 
     tick: int
     steps: tuple[Step, ...]
@@ -63,7 +63,7 @@ class Span(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """A part of what someone does: seconds, and the actor at a share of it."""
+    """A part of an actor's motion: its length in seconds, and the actor at a share of it."""
 
     seconds: float
     at: Callable[[float], Actor]
@@ -71,11 +71,11 @@ class Segment(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """What someone does in a tick.
+    """An actor's motion in a tick.
 
     Attributes:
-        segments: one after another.
-        change: seconds after which the hand arrives, and things change.
+        segments: its parts, in order.
+        change: seconds until the hand arrives and the world changes.
     """
 
     segments: tuple[Segment, ...]
@@ -83,11 +83,11 @@ class Track:
 
     @property
     def seconds(self) -> float:
-        """How long it takes."""
+        """Its length."""
         return sum(segment.seconds for segment in self.segments)
 
     def at(self, time: float) -> Actor:
-        """The actor so many seconds after the tick began."""
+        """The actor `time` seconds after the start of the tick."""
         for segment in self.segments:
             if time < segment.seconds:
                 return segment.at(time / segment.seconds)
@@ -95,56 +95,58 @@ class Track:
         return self.segments[-1].at(1.0)
 
 
-def frames(staged: Play, fps: float = 15.0, speed: float = 1.0) -> Iterator[Frame]:
-    """The film of an execution.
+def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Iterator[Frame]:
+    """The frames of a film of an execution.
 
     Args:
-        staged: what `snapshots.play` makes of it.
-        fps: pictures a second.
-        speed: 2 has everyone move twice as fast.
+        trajectory: as `snapshots.trajectory_of` gives it.
+        fps: frames per second.
+        speed: factor of all motions' speed.
     """
-    ways = _ways(staged)
-    set_ = _Set(staged)
+    ways = _ways(trajectory)
+    set_ = _SceneCache(trajectory)
     number = 0
-    for span, before, after, tracks in _spans(staged, ways, speed):
+    for span, before, after, tracks in _spans(trajectory, ways, speed):
         change, swings = _change(tracks), swinging(before, after)
         while number / fps < span.end:
             time = number / fps
             past = (time - span.start) * speed
             actors = tuple(track.at(past) for track in tracks)
-            moment, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
+            keyframe, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
             ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
-            yield Frame(time, span.tick, span.steps, set_.scene(moment, actors, ajar), actors)
+            yield Frame(time, span.tick, span.steps, set_.scene(keyframe, actors, ajar), actors)
             number += 1
 
 
-def swinging(before: Moment, after: Moment) -> dict[int, bool]:
-    """The things that are opened (True) or closed from one moment to the next, by id."""
+def swinging(before: Keyframe, after: Keyframe) -> dict[int, bool]:
+    """Things that open (True) or close (False) between two keyframes, by id."""
     one, other = ({n.id for n in m.places.graph.nodes if "OPEN" in n.states} for m in (before, after))
     return {node: node in other for node in sorted(one ^ other)}
 
 
 def _change(tracks: Sequence[Track]) -> float:
-    """Seconds after which all hands have arrived."""
+    """Seconds until all hands have arrived."""
     return max((track.change for track in tracks), default=0.0)
 
 
-def spans(staged: Play, speed: float = 1.0) -> list[Span]:
-    """When each tick begins and ends in the film; the first is the moment before the program."""
-    return [span for span, *_ in _spans(staged, _ways(staged), speed)]
+def spans(trajectory: Trajectory, speed: float = 1.0) -> list[Span]:
+    """Start and end of each tick in the film; the first span is before the program."""
+    return [span for span, *_ in _spans(trajectory, _ways(trajectory), speed)]
 
 
-def _ways(staged: Play) -> Ways | None:
-    first = staged.moments[0]
-    return ways_of(staged.prepared.rooms.values(), first.places.nodes())
+def _ways(trajectory: Trajectory) -> Ways | None:
+    first = trajectory.keyframes[0]
+    return ways_of(trajectory.prepared.rooms.values(), first.places.nodes())
 
 
-def _spans(staged: Play, ways: Ways | None, speed: float) -> Iterator[tuple[Span, Moment, Moment, tuple[Track, ...]]]:
-    first = staged.moments[0]
-    still = tuple(Track((_held_still(actor, 1.0),), 0.0) for actor in first.actors)
-    yield Span(0, (), 0.0, 1.0 / speed), first, first, still
+def _spans(
+    trajectory: Trajectory, ways: Ways | None, speed: float
+) -> Iterator[tuple[Span, Keyframe, Keyframe, tuple[Track, ...]]]:
+    first = trajectory.keyframes[0]
+    static = tuple(Track((_motionless(actor, 1.0),), 0.0) for actor in first.actors)
+    yield Span(0, (), 0.0, 1.0 / speed), first, first, static
     time = 1.0 / speed
-    for before, after in zip(staged.moments, staged.moments[1:], strict=False):
+    for before, after in zip(trajectory.keyframes, trajectory.keyframes[1:], strict=False):
         by_agent = {step.agent: step for step in after.steps}
         tracks = tuple(
             track(one, other, before, by_agent.get(number), ways)
@@ -158,18 +160,18 @@ def _spans(staged: Play, ways: Ways | None, speed: float) -> Iterator[tuple[Span
         time = end
 
 
-class _Set:
-    """Scenes of one play: all that stays between frames is kept."""
+class _SceneCache:
+    """Scenes of a trajectory, with a cache of the things that frames share."""
 
-    def __init__(self, staged: Play) -> None:
-        self.staged = staged
+    def __init__(self, trajectory: Trajectory) -> None:
+        self.trajectory = trajectory
         self.known: dict[tuple[int, frozenset[int], frozenset[int]], tuple[tuple[Thing, ...], Scene]] = {}
 
-    def scene(self, moment: Moment, actors: tuple[Actor, ...], ajar: Mapping[int, float]) -> Scene:
-        """The scene of a moment with the actors as they are in a frame, and some things open by a share."""
-        prepared, places = self.staged.prepared, moment.places
+    def scene(self, keyframe: Keyframe, actors: tuple[Actor, ...], ajar: Mapping[int, float]) -> Scene:
+        """A keyframe's scene with actors as in a frame, and some things partly open."""
+        prepared, places = self.trajectory.prepared, keyframe.places
         held = carried(actors, places)
-        things, base = self._rest(moment, frozenset(held), frozenset(ajar))
+        things, base = self._rest(keyframe, frozenset(held), frozenset(ajar))
         nodes = {node.id: node for node in places.graph.nodes if node.id in held}
         swung = [
             thing
@@ -183,55 +185,55 @@ class _Set:
             for thing in prepared.things(replace(nodes[number], box=pose.box, yaw=pose.yaw))
         ]
         people = [Thing(a.node.id, a.node.class_name, a.figure(), a.position, a.yaw) for a in actors]
-        return replace(base, things=(*things, *hands, *swung, *people), still=self.staged.still)
+        return replace(base, things=(*things, *hands, *swung, *people), static=self.trajectory.static)
 
-    def _rest(self, moment: Moment, held: frozenset[int], swung: frozenset[int]) -> tuple[tuple[Thing, ...], Scene]:
-        key = (moment.tick, held, swung)
+    def _rest(self, keyframe: Keyframe, held: frozenset[int], swung: frozenset[int]) -> tuple[tuple[Thing, ...], Scene]:
+        key = (keyframe.tick, held, swung)
         if key not in self.known:
-            # What swings is left out afterwards: windows give light while they are opened.
-            nodes = [node for node in moment.places.nodes() if node.id not in held]
-            base = self.staged.prepared.scene(nodes)
-            kept = frozenset(self.staged.still.things)
+            # Swinging things are removed only afterwards: windows give light while they open.
+            nodes = [node for node in keyframe.places.nodes() if node.id not in held]
+            base = self.trajectory.prepared.scene(nodes)
+            kept = frozenset(self.trajectory.static.things)
             self.known[key] = tuple(t for t in base.things if t not in kept and t.id not in swung), base
         return self.known[key]
 
 
 def _opened(node: Node) -> Node:
-    """A node as it is while it swings: neither closed nor quite open."""
+    """The node with state OPEN, drawn while it swings."""
     return replace(node, states=tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})))
 
 
-def track(one: Actor, other: Actor, before: Moment, step: Step | None, ways: Ways | None) -> Track:
-    """What an actor does to get from one moment to the next."""
+def track(one: Actor, other: Actor, before: Keyframe, step: Step | None, ways: Ways | None) -> Track:
+    """An actor's motion from one keyframe to the next."""
     segments: list[Segment] = []
     rest = _resting(one, before)
-    if rest.stance != one.stance:
+    if rest.body_pose != one.body_pose:
         segments.append(_blended(one, rest, RELAX))
-    here = _gone(segments, rest, other, step, ways)
+    here = _approach(segments, rest, other, step, ways)
     if step is not None:
         reach = reach_for(here, other, before.places, step)
-        if reach.stance != here.stance:
+        if reach.body_pose != here.body_pose:
             segments.append(_blended(here, reach, REACH))
         here = reach
     change = sum(segment.seconds for segment in segments)
     if here != other:
         segments.append(_blended(here, other, BACK))
-    segments.append(_held_still(other, HOLD))
+    segments.append(_motionless(other, HOLD))
     return Track(tuple(segments), change)
 
 
-def _held_still(actor: Actor, seconds: float) -> Segment:
+def _motionless(actor: Actor, seconds: float) -> Segment:
     return Segment(seconds, lambda share: actor)
 
 
-def _gone(segments: list[Segment], one: Actor, other: Actor, step: Step | None, ways: Ways | None) -> Actor:
-    """Add what brings an actor where it acts; gives it as it then is, hands at rest."""
-    seated, sits = one.stance.posture != "standing", other.stance.posture != "standing"
+def _approach(segments: list[Segment], one: Actor, other: Actor, step: Step | None, ways: Ways | None) -> Actor:
+    """Append the segments up to the acting position; returns the actor there, hands in default pose."""
+    seated, sits = one.body_pose.posture != "standing", other.body_pose.posture != "standing"
     if seated and sits and one.place == other.place:
-        return replace(other, stance=replace(other.stance, right=one.stance.right, left=one.stance.left))
+        return replace(other, body_pose=replace(other.body_pose, right=one.body_pose.right, left=one.body_pose.left))
     route = path(ways, one.spot, other.spot)
     if seated:
-        up = replace(one, spot=_edge(route, one.spot), stance=_hands(Stance(), one.stance), place=0)
+        up = replace(one, spot=_edge(route, one.spot), body_pose=_hands(BodyPose(), one.body_pose), place=0)
         segments.append(_risen(one, up))
         one, route = up, path(ways, up.spot, other.spot)
     stop = _edge(route[::-1], other.spot) if sits else other.spot
@@ -244,20 +246,20 @@ def _gone(segments: list[Segment], one: Actor, other: Actor, step: Step | None, 
     if angle > 1:
         segments.append(_blended(one, turned, angle / TURNING))
     if sits:
-        down = replace(other, stance=_hands(Stance("sitting", other.stance.seat), turned.stance))
+        down = replace(other, body_pose=_hands(BodyPose("sitting", other.body_pose.seat), turned.body_pose))
         rising = _risen(down, turned)
         segments.append(Segment(rising.seconds, lambda share: rising.at(1 - share)))
-        return replace(other, stance=_hands(other.stance, turned.stance))
+        return replace(other, body_pose=_hands(other.body_pose, turned.body_pose))
     return turned
 
 
-def _hands(stance: Stance, other: Stance) -> Stance:
-    """A stance with the hands of another, if it has hands to hold out."""
-    return stance if stance.posture == "lying" else replace(stance, right=other.right, left=other.left)
+def _hands(body_pose: BodyPose, other: BodyPose) -> BodyPose:
+    """A body pose with the hands of another; unchanged when lying."""
+    return body_pose if body_pose.posture == "lying" else replace(body_pose, right=other.right, left=other.left)
 
 
 def _edge(route: Sequence[Spot], spot: Spot, far: float = 0.55) -> Spot:
-    """Where on a way one stands when one has just got up from its beginning."""
+    """The point of a route at which an actor stands after rising from the route's start."""
     for a, b in pairwise(route):
         length = hypot(b[0] - a[0], b[1] - a[1])
         if length >= far:
@@ -266,30 +268,30 @@ def _edge(route: Sequence[Spot], spot: Spot, far: float = 0.55) -> Spot:
     return route[-1]
 
 
-def _resting(actor: Actor, moment: Moment) -> Actor:
-    """With the hands down, or holding before it what they hold."""
-    return posed(actor, moment.places.graph, moment.places, None)
+def _resting(actor: Actor, keyframe: Keyframe) -> Actor:
+    """The actor with arms hanging, or carrying what it holds."""
+    return posed(actor, keyframe.places.graph, keyframe.places, None)
 
 
 def _risen(seated: Actor, up: Actor) -> Segment:
-    """From a seat to one's feet: hips rise while the feet stay before the seat."""
+    """Standing up: hips rise while the feet stay in front of the seat."""
     high = HIP * up.body.height - PELVIS_ON_SEAT
-    low = seated.stance.seat
+    low = seated.body_pose.seat
 
     def at(share: float) -> Actor:
         if share >= 1:
             return up
         eased = _eased(share)
-        stance = replace(_hands(Stance("sitting"), seated.stance), seat=low + (high - low) * eased)
+        body_pose = replace(_hands(BodyPose("sitting"), seated.body_pose), seat=low + (high - low) * eased)
         spot = _between(seated.spot, up.spot, eased)
         yaw = seated.yaw + _angle(seated.yaw, up.yaw) * eased
-        return replace(up, spot=spot, yaw=yaw, stance=stance, level=up.level)
+        return replace(up, spot=spot, yaw=yaw, body_pose=body_pose, level=up.level)
 
     return Segment(RISE, at)
 
 
 def _walked(segments: list[Segment], actor: Actor, route: Sequence[Spot], speed: float) -> Actor:
-    """Add the way along a route: a turn, then steps; the planted foot stays where it is."""
+    """Append a walk along a route: a turn, then steps, during which the planted foot does not slide."""
     for a, b in pairwise(route):
         length = hypot(b[0] - a[0], b[1] - a[1])
         if length < 0.05:
@@ -304,7 +306,7 @@ def _walked(segments: list[Segment], actor: Actor, route: Sequence[Spot], speed:
 
 
 def _leg(actor: Actor, a: Spot, b: Spot, length: float, speed: float) -> Segment:
-    """Straight from a to b in whole steps, from where the feet are side by side to where they are again."""
+    """A straight walk from a to b in whole steps; feet are side by side at both ends."""
     pace = 2 * STEP_LENGTH * actor.body.height * (0.75 if speed < 2 else 1.0)
     steps = max(1, ceil(length / pace))
     stride = length / steps / (2 * STEP_LENGTH * actor.body.height)
@@ -313,16 +315,16 @@ def _leg(actor: Actor, a: Spot, b: Spot, length: float, speed: float) -> Segment
         phase = share * steps + 0.5
         number = int(phase)
         side, part = (1.0 if number % 2 == 0 else -1.0), phase - number
-        # The planted foot goes back under the body as fast as the body goes on.
+        # Relative to the body the planted foot moves backwards at walking speed.
         lift = sin(pi * part) * min(1.0, 3 * share * steps, 3 * (1 - share) * steps)
-        stance = replace(actor.stance, stride=stride * side * (1 - 2 * part), swing=-side * max(lift, 1e-6))
-        return replace(actor, spot=_between(a, b, share), stance=stance)
+        body_pose = replace(actor.body_pose, stride=stride * side * (1 - 2 * part), swing=-side * max(lift, 1e-6))
+        return replace(actor, spot=_between(a, b, share), body_pose=body_pose)
 
     return Segment(length / speed, at)
 
 
 def _blended(one: Actor, other: Actor, seconds: float) -> Segment:
-    """From one pose to another."""
+    """A transition between two actors' poses."""
 
     def at(share: float) -> Actor:
         return other if share >= 1 else blend(one, other, _eased(share))
@@ -331,11 +333,11 @@ def _blended(one: Actor, other: Actor, seconds: float) -> Segment:
 
 
 def blend(one: Actor, other: Actor, share: float) -> Actor:
-    """Between two poses; from the second's posture on as soon as they differ in that."""
-    if one.stance.posture != other.stance.posture:
+    """Interpolation between two poses; if postures differ, the second's."""
+    if one.body_pose.posture != other.body_pose.posture:
         return one if share < 0.5 else other
-    a, b = one.stance, other.stance
-    stance = replace(
+    a, b = one.body_pose, other.body_pose
+    body_pose = replace(
         b,
         seat=a.seat + (b.seat - a.seat) * share,
         stride=a.stride + (b.stride - a.stride) * share,
@@ -346,12 +348,12 @@ def blend(one: Actor, other: Actor, share: float) -> Actor:
     )
     yaw = one.yaw + _angle(one.yaw, other.yaw) * share
     level = one.level + (other.level - one.level) * share
-    return replace(other, spot=_between(one.spot, other.spot, share), level=level, yaw=yaw, stance=stance)
+    return replace(other, spot=_between(one.spot, other.spot, share), level=level, yaw=yaw, body_pose=body_pose)
 
 
 def _hand(one: Actor, other: Actor, side: str, share: float) -> Point | None:
-    a, b = ((actor.stance.right if side == "r" else actor.stance.left) for actor in (one, other))
-    if (a is None and b is None) or one.stance.posture == "lying":
+    a, b = ((actor.body_pose.right if side == "r" else actor.body_pose.left) for actor in (one, other))
+    if (a is None and b is None) or one.body_pose.posture == "lying":
         return b
     start, end = (at or _hanging(actor, side) for at, actor in ((a, one), (b, other)))
     x, y, z = (p + (q - p) * share for p, q in zip(start, end, strict=True))
@@ -359,14 +361,14 @@ def _hand(one: Actor, other: Actor, side: str, share: float) -> Point | None:
 
 
 def _hanging(actor: Actor, side: str) -> Point:
-    """Where the hand of an arm at rest is."""
-    stance = replace(actor.stance, right=None, left=None)
-    x, y, z = Figure(actor.body, stance).joints()[f"hand_{side}"]
+    """Position of the hand of a hanging arm, in the figure's frame."""
+    body_pose = replace(actor.body_pose, right=None, left=None)
+    x, y, z = Figure(actor.body, body_pose).joints()[f"hand_{side}"]
     return float(x), float(y), float(z)
 
 
 def _gaze(one: Actor, other: Actor, share: float) -> Point | None:
-    a, b = one.stance.gaze, other.stance.gaze
+    a, b = one.body_pose.gaze, other.body_pose.gaze
     if a is None and b is None:
         return None
     ahead = (0.0, 0.88 * other.body.height, 2.0)
@@ -379,7 +381,7 @@ def _between(a: Spot, b: Spot, share: float) -> Spot:
 
 
 def _angle(start: float, end: float) -> float:
-    """The shorter way from one direction to another, degrees."""
+    """The smaller angle from one direction to another, degrees."""
     return (end - start + 180) % 360 - 180
 
 

@@ -1,4 +1,4 @@
-"""Casting rays at triangles: the only place that needs open3d (Embree)."""
+"""Ray casting against triangles with open3d (Embree), which no other file imports."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def engine() -> Any:
     """The module open3d.
 
     Raises:
-        HearthError: it is not installed, or a system library it needs is missing; says what to install.
+        HearthError: it, or a system library that it needs, is not installed; the suggestion names the package.
     """
-    # The package's viewers import a web server, which takes longer than all the rest.
+    # The package's viewers import a web server, which takes longer than everything else.
     viewers = "open3d.visualization"
     skipped = viewers not in sys.modules
     if skipped:
@@ -49,11 +49,11 @@ def engine() -> Any:
 
 
 class Hits(NamedTuple):
-    """What N rays hit first.
+    """First hits of N rays.
 
     Attributes:
-        distance: (N,) in units of the ray's direction; infinite for none.
-        triangle: (N,) which triangle; -1 for none.
+        distance: (N,) in units of the ray's direction; infinite without a hit.
+        triangle: (N,) index of the triangle; -1 without a hit.
         u, v: (N,) barycentric weights of its second and third corner.
     """
 
@@ -64,25 +64,24 @@ class Hits(NamedTuple):
 
     @classmethod
     def none(cls, size: int) -> Hits:
-        """Of rays that hit nothing."""
+        """Hits of `size` rays that hit nothing."""
         far, flat = np.full(size, np.inf, np.float32), np.zeros(size, np.float32)
         return cls(far, np.full(size, -1, np.int32), flat, flat.copy())
 
     def copy(self) -> Hits:
-        """The same, to be written to."""
+        """A writable copy."""
         return Hits(self.distance.copy(), self.triangle.copy(), self.u.copy(), self.v.copy())
 
 
 NO_TRIANGLE = 0xFFFFFFFF
-"""What Embree calls the triangle of a ray that hits nothing; -1 when read with a sign."""
+"""Embree's triangle index for a ray that hits nothing; -1 as a signed number."""
 
 
 @dataclass(frozen=True, eq=False)
 class Caster:
-    """Triangles that rays can be cast at. Rays are (N, 6) float32: origins x, y, z and directions x, y, z.
+    """Triangles for ray casting. Rays are (N, 6) float32: origins x, y, z and directions x, y, z.
 
-    A cast is shared among all processors by Embree itself: it holds the interpreter's lock, so that threads of ours
-    would cast one after the other.
+    Embree spreads a cast over all processors and holds the interpreter's lock; our threads would not be parallel.
     """
 
     count: int
@@ -90,7 +89,7 @@ class Caster:
 
     @classmethod
     def of(cls, corners: Floats) -> Caster:
-        """Over (T, 3, 3) corners."""
+        """A caster of triangles with (T, 3, 3) corners."""
         core, geometry = engine().core, engine().t.geometry
         scene = geometry.RaycastingScene(1 if len(corners) < SMALL else 0)
         if len(corners):
@@ -100,7 +99,7 @@ class Caster:
         return cls(len(corners), scene)
 
     def raw(self, rays: Floats) -> tuple[Floats, NDArray[np.uint32], Floats]:
-        """(N,) distances, (N,) triangles and (N, 2) weights of the first hits; infinitely far where there is none."""
+        """(N,) distances, (N,) triangles and (N, 2) weights of the first hits; infinite distance without a hit."""
         size = len(rays)
         if not self.count or not size:
             nothing = np.full(size, NO_TRIANGLE, np.uint32)
@@ -123,7 +122,7 @@ class Caster:
 
 
 ALL = 0
-"""As many threads as there are processors, in open3d's words."""
+"""open3d's number for one thread per processor."""
 
 SMALL = 20_000
-"""Triangles up to which the tree over them is built by one thread."""
+"""Number of triangles up to which one thread builds the tree."""

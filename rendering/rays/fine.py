@@ -1,4 +1,4 @@
-"""Fine pictures: soft shadows, ambient occlusion, and several rays where one is not enough."""
+"""Fine pictures: soft shadows, ambient occlusion, and four rays per pixel at edges."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, prepare, s
 from hearth.rendering.rays.threads import each
 
 SUBPIXELS = ((0.625, 0.125), (0.125, 0.375), (0.875, 0.625), (0.375, 0.875))
-"""Where the four rays of a pixel at an edge go: a rotated grid."""
+"""Offsets of the four rays of an edge pixel: a rotated grid."""
 
 STEP = 14
-"""Grey levels between neighbouring pixels from which on they are drawn with four rays."""
+"""Least difference in grey levels at which neighbouring pixels are drawn with four rays."""
 
 
-class Sight(NamedTuple):
-    """What all pixels show: (N, 3) points and normals of triangles, and (N, K) what they see of the lights."""
+class LightVisibility(NamedTuple):
+    """(N, 3) surface points and flat normals of all pixels, and the (N, K) visibility of the lights from them."""
 
     points: Floats
     flats: Floats
@@ -30,53 +30,53 @@ class Sight(NamedTuple):
 
 
 def fine(shot: Shot) -> Bytes:
-    """(H*W, 3) colours: each point sees lights with one ray, and shares what it sees with its neighbours on the same
-    surface; pixels at edges are drawn again with four rays each.
+    """(H*W, 3) colours. Visibility of lights is sampled with one ray per point and averaged over neighbours on the same
+    surface; edge pixels are drawn again with four rays each.
     """
     camera, size = shot.camera, len(shot.rays)
     prepare(shot.geometry)
     setting, chunks = setting_of(shot, fine=True), shading.chunks(everywhere(size))
-    sight = _smoothed(shot, _looked(shot, setting, chunks))
+    visibility = _smoothed(shot, _looked(shot, setting, chunks))
     out = np.empty((size, 3), np.uint8)
 
     def paint(chunk: Ints) -> None:
-        spots = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
-        near = setting.reaching(spots.bounds)
-        shading.paint(spots, near, sight.seen[chunk], shot.rays, shot.hits, setting, out)
+        surface = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
+        near = setting.reaching(surface.bounds)
+        shading.paint(surface, near, visibility.seen[chunk], shot.rays, shot.hits, setting, out)
 
     each(paint, chunks)
     rough = np.zeros(size, np.bool_)
     maps.edges(out, shot.hits.triangle, shot.geometry.owners, camera.width, camera.height, STEP, rough)
     again = np.flatnonzero(rough).astype(np.int32)
     if len(again):
-        out[again] = _mixed(shot, again, sight)
+        out[again] = _mixed(shot, again, visibility)
     return out
 
 
-def _looked(shot: Shot, setting: Setting, chunks: list[Ints]) -> Sight:
-    """What each pixel sees of the lights with one ray at each."""
+def _looked(shot: Shot, setting: Setting, chunks: list[Ints]) -> LightVisibility:
+    """The lights' visibility from each pixel, sampled with one ray per light."""
     size = len(shot.rays)
     points, flats = np.empty((2, size, 3), np.float32)
     seen = np.empty((size, len(setting.lights) + 2), np.uint8)
     noise = _noise(shot.camera.height, shot.camera.width, 0)
 
     def look(chunk: Ints) -> None:
-        spots = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
-        points[chunk], flats[chunk] = spots.points, spots.flats
-        seen[chunk] = shading.expose(spots, shot.geometry, setting, noise[chunk]).seen
+        surface = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
+        points[chunk], flats[chunk] = surface.points, surface.flats
+        seen[chunk] = shading.expose(surface, shot.geometry, setting, noise[chunk]).seen
 
     each(look, chunks)
-    return Sight(points, flats, seen)
+    return LightVisibility(points, flats, seen)
 
 
 BAND = 40
-"""Rows of pixels that are smoothed together."""
+"""Rows of pixels in one unit of smoothing work."""
 
 
-def _smoothed(shot: Shot, sight: Sight) -> Sight:
-    """Shared with the neighbours."""
+def _smoothed(shot: Shot, visibility: LightVisibility) -> LightVisibility:
+    """Visibility averaged over neighbouring pixels."""
     width, height = shot.camera.width, shot.camera.height
-    points, flats, seen = sight
+    points, flats, seen = visibility
     columns = np.flatnonzero((seen != seen[0]).any(axis=0)).astype(np.int32)
     smooth = seen.copy()
 
@@ -84,19 +84,19 @@ def _smoothed(shot: Shot, sight: Sight) -> Sight:
         maps.smoothed(seen, columns, flats, points, width, height, top, min(top + BAND, height), smooth)
 
     each(work, range(0, height, BAND))
-    return Sight(points, flats, smooth)
+    return LightVisibility(points, flats, smooth)
 
 
-def _mixed(shot: Shot, pixels: Ints, sight: Sight) -> Bytes:
-    """(M, 3) colours of some pixels, each from four rays."""
+def _mixed(shot: Shot, pixels: Ints, visibility: LightVisibility) -> Bytes:
+    """(M, 3) colours of M pixels, each from four rays."""
     setting, total = setting_of(shot, fine=True, share=0.5), np.zeros((len(pixels), 3), np.uint16)
     for number in range(len(SUBPIXELS)):
-        total += _again(shot, pixels, sight, setting, number)
+        total += _again(shot, pixels, visibility, setting, number)
     return ((total + len(SUBPIXELS) // 2) // len(SUBPIXELS)).astype(np.uint8)
 
 
-def _again(shot: Shot, pixels: Ints, sight: Sight, setting: Setting, number: int) -> Bytes:
-    """(M, 3) colours of some pixels from one ray each, through one of `SUBPIXELS`."""
+def _again(shot: Shot, pixels: Ints, visibility: LightVisibility, setting: Setting, number: int) -> Bytes:
+    """(M, 3) colours of M pixels from one ray each, through one of `SUBPIXELS`."""
     camera, geometry = shot.camera, shot.geometry
     rays = camera_rays(camera, SUBPIXELS[number])[0][pixels]
     noise = _noise(camera.height, camera.width, number)[pixels]
@@ -106,16 +106,18 @@ def _again(shot: Shot, pixels: Ints, sight: Sight, setting: Setting, number: int
         part = slice(int(chunk[0]), int(chunk[-1]) + 1)
         for values, found in zip(hits, geometry.cast(rays[part]), strict=True):
             values[part] = found
-        spots = shading.located(chunk, rays, hits, geometry)
-        seen, rest = np.zeros((len(chunk), sight.seen.shape[1]), np.uint8), np.empty(len(chunk), np.int32)
+        surface = shading.located(chunk, rays, hits, geometry)
+        seen, rest = np.zeros((len(chunk), visibility.seen.shape[1]), np.uint8), np.empty(len(chunk), np.int32)
         size = (camera.width, camera.height)
-        faces = (spots.flats, spots.points)
-        missing = maps.borrowed(pixels[part], *faces, *size, sight.flats, sight.points, sight.seen, seen, rest)
+        faces = (surface.flats, surface.points)
+        missing = maps.borrowed(
+            pixels[part], *faces, *size, visibility.flats, visibility.points, visibility.seen, seen, rest
+        )
         if missing:
             rest = rest[:missing]
             some = shading.located(chunk[rest], rays, hits, geometry, "others")
             seen[rest] = shading.expose(some, geometry, setting, noise[chunk[rest]]).seen
-        shading.paint(spots, setting.reaching(spots.bounds), seen, rays, hits, setting, out)
+        shading.paint(surface, setting.reaching(surface.bounds), seen, rays, hits, setting, out)
 
     each(work, shading.chunks(everywhere(len(pixels))))
     return out
@@ -126,6 +128,6 @@ ORDER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
 
 @lru_cache(maxsize=8)
 def _noise(height: int, width: int, number: int) -> Floats:
-    """(H*W, 2) numbers from 0 to 1: 16 points of a plastic sequence over each 4 by 4 pixels, other ones a pass."""
+    """(H*W, 2) numbers from 0 to 1: 16 points of a plastic sequence per 4 by 4 pixels, different in each pass."""
     index = np.tile(ORDER, (height // 4 + 1, width // 4 + 1))[:height, :width].reshape(-1) + 16 * number
     return np.stack(((0.5 + index * 0.7548776662) % 1, (0.5 + index * 0.5698402910) % 1), axis=1).astype(np.float32)

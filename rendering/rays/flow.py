@@ -1,4 +1,4 @@
-"""Optical flow: where each visible point is in the next picture (thesis 2.4)."""
+"""Optical flow between two pictures (thesis 2.4)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from hearth.rendering.scene.scene import Scene
 
 
 def flow(shot: Shot, after: Shot) -> Floats:
-    """(H, W, 2) how many pixels each point moves right and down until the next picture; NaN where it is not seen there.
+    """(H, W, 2) pixels by which each point moves right and down until the next picture; NaN if it is not visible there.
 
-    Points move with their triangles, so limbs count as well as what is carried; things whose shape changes (a door
-    that opens) move as a whole. The sky turns with the camera only.
+    Points move with their triangles, so limbs and carried things have flow; things whose mesh changes (an opening door)
+    move as a whole. The sky moves with the camera only.
 
     Args:
         shot: a picture.
-        after: the next one, of any camera of the same size.
+        after: the next one, by any camera of the same size.
     """
     ids, later = each(_ids, (shot, after))
     far = np.where(after.hits.triangle >= 0, after.distance, np.float32(HORIZON))
@@ -42,12 +42,12 @@ def flow(shot: Shot, after: Shot) -> Floats:
 
 
 def flow_of(scene: Scene, shot: Shot) -> Floats:
-    """Flow from a shot to the same camera's picture of a later scene."""
+    """Flow from a shot to the same camera's shot of `scene`."""
     return flow(shot, shoot_after(scene, shot))
 
 
 def _ids(shot: Shot) -> NDArray[np.int32]:
-    """(N,) node ids of what is seen, -1 for nothing."""
+    """(N,) node ids of the visible things, -1 for the background."""
     return np.array([*(thing.id for thing in shot.geometry.things), -1], np.int32).take(shot.owner, mode="wrap")
 
 
@@ -57,7 +57,7 @@ def _frame(camera: Camera) -> Floats:
 
 
 def _shifts(shot: Shot, after: Shot) -> Floats:
-    """(M, 3, 3) by how much the corners of the triangles that move do so until the later moment."""
+    """(M, 3, 3) displacements of the moving triangles' corners until the later shot."""
     part = shot.geometry.moving
     shifts = np.zeros_like(part.mesh.corners)
     later: dict[int, Thing] = {}
@@ -72,11 +72,11 @@ def _shifts(shot: Shot, after: Shot) -> Floats:
 
 
 def _displaced(before: Floats, thing: Thing, other: Thing) -> Floats:
-    """(T, 3, 3) by how much corners move when one thing becomes another."""
+    """(T, 3, 3) displacements of a thing's corners to its later state."""
     now = placed(other).corners
     if len(before) == len(now):
         return now - before
-    # Another shape: it moves as a whole.
+    # The mesh changed: it moves as a whole.
     turn = rotation("y", other.yaw - thing.yaw).T
     moved: Floats = (before - np.array(thing.position, np.float32)) @ turn + np.array(other.position, np.float32)
     return moved - before

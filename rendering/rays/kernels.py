@@ -1,9 +1,9 @@
-"""Loops over pixels and triangles, compiled by numba: the small ones that everything else is made with.
+"""Basic loops over pixels and triangles, compiled by numba.
 
-Compiled on first use and kept on disk beside the source (or in the user's cache folder where that is not writable).
-They let go of the interpreter, so that threads run side by side. Numbers are float32 throughout: constants too, since
-one double makes doubles of all that it touches. Kernels that are called for every pixel take numbers, never arrays:
-counting the references to arrays costs more than all the rest, and threads wait for each other to do it.
+They are compiled on first use and cached beside the source (or in the user's cache folder if that is not writable).
+They release the interpreter's lock, so that threads run in parallel. All numbers, constants included, are float32: one
+double would turn every result into doubles. Kernels called for every pixel take numbers, not arrays: reference counts
+of arrays cost more than the computation, and threads contend for them.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from hearth.rendering.arrays import Floats, Ints
 F = TypeVar("F", bound=Callable[..., Any])
 
 FAST = {"contract", "reassoc", "nsz", "arcp", "afn"}
-"""Liberties that floats may take; not with infinities, which stand for rays that hit nothing."""
+"""LLVM's fast-math flags without those for infinities, which mark rays that hit nothing."""
 
 
 def kernel(function: F) -> F:
-    """Compile when first called."""
+    """Compile a function at its first call."""
     return cast(F, njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")(function))
 
 
 ZERO, HALF, ONE, TWO = np.float32(0), np.float32(0.5), np.float32(1), np.float32(2)
 TINY = np.float32(1e-12)
 
-# Columns of a part's rows: what shading looks up of a triangle. Differences are to the first corner.
+# Columns of a part's rows, which shading looks up for each triangle. Differences are to the first corner.
 NORMAL, NORMAL_U, NORMAL_V = 0, 3, 6
 UV, UV_U, UV_V = 9, 11, 13
 FLAT, DENSITY, COLOR, GLOW, SHINE, TEXTURE, SOLID = 15, 18, 19, 22, 23, 24, 25
@@ -54,9 +54,9 @@ def ray_grid(frame: Floats, width: int, height: int, offset: Floats, out: Floats
     """Fill (height * width, 6) rays of a camera.
 
     Args:
-        frame: eye, right, up, forward (three numbers each) and the focal length, pixels.
+        frame: eye, right, up, forward (three numbers each) and the focal length in pixels.
         width, height: of the image.
-        offset: across and down, where in a pixel its ray goes.
+        offset: position of the ray within its pixel, across and down.
         out: origins and directions; directions have camera-space z = 1.
     """
     focal = frame[12]
@@ -104,17 +104,17 @@ def nearer(
     pixels: Ints, found: Floats, numbers: Any, uvs: Floats, first: int,
     distance: Floats, triangle: Ints, u: Floats, v: Floats, won: Ints,
 ) -> int:  # fmt: skip
-    """Write hits on other triangles over the hits of some pixels where they are nearer.
+    """Replace the hits of some pixels by nearer hits on other triangles.
 
     Args:
-        pixels: (M,) whose rays were cast again.
-        found, numbers, uvs: what these rays hit.
-        first: what their triangles are counted from.
+        pixels: (M,) pixels whose rays were cast again.
+        found, numbers, uvs: distances, triangles and weights of the new hits.
+        first: index of their first triangle.
         distance, triangle, u, v: the hits of all pixels; changed.
-        won: (M,) filled with the pixels that changed.
+        won: (M,) filled with the changed pixels.
 
     Returns:
-        How many those are.
+        The number of changed pixels.
     """
     count = 0
     for k in range(len(pixels)):
@@ -136,12 +136,12 @@ def taken(values: Floats, index: Ints, out: Floats) -> None:
 
 
 @kernel
-def gather_rows(pixels: Ints, triangle: Ints, still: Floats, moving: Floats, out: Floats) -> None:
-    """Fill in (M, COLUMNS) what is known of the triangles that some pixels show; zeros where there is none.
+def gather_rows(pixels: Ints, triangle: Ints, static: Floats, moving: Floats, out: Floats) -> None:
+    """Fill in the (M, COLUMNS) rows of the triangles that some pixels show; zeros without a triangle.
 
-    Triangles that move are counted after those that stay.
+    Indices of moving triangles follow those of static ones.
     """
-    first, columns = len(still), out.shape[1]
+    first, columns = len(static), out.shape[1]
     for k in range(len(pixels)):
         t = triangle[pixels[k]]
         if t < 0:
@@ -149,7 +149,7 @@ def gather_rows(pixels: Ints, triangle: Ints, still: Floats, moving: Floats, out
                 out[k, c] = ZERO
         elif t < first:
             for c in range(columns):
-                out[k, c] = still[t, c]
+                out[k, c] = static[t, c]
         else:
             for c in range(columns):
                 out[k, c] = moving[t - first, c]
@@ -157,7 +157,7 @@ def gather_rows(pixels: Ints, triangle: Ints, still: Floats, moving: Floats, out
 
 @kernel
 def slab(low: Any, high: Any, start: Any, way: Any, near: Any, far: Any) -> Any:
-    """The part, from `near` to `far`, of a stretch that lies between two planes across an axis."""
+    """The part of a ray segment, from `near` to `far`, between two planes across an axis."""
     if abs(way) < TINY:
         return (near, far) if low <= start <= high else (ONE, ZERO)
     one, other = (low - start) / way, (high - start) / way

@@ -1,4 +1,4 @@
-"""Compiled loops of light over some thousand points: what arrives, what is mirrored, the colours that come of it."""
+"""Compiled loops over surface points: incoming light, reflections, and the resulting colours."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from hearth.rendering.rays.kernels import (
 from hearth.rendering.rays.light_rays import D_AMBIENT, D_HORIZON, D_PLAIN, D_SKY, D_ZENITH, FAINT
 
 GROUND = np.float32(0.55)
-"""How bright the plain ground is that a view from above shows around a home."""
+"""Brightness of the plain background around a home in views from above."""
 
 GRASS = np.int64(SLOTS["grass"])
 LENGTH = np.int64(OFFSETS[-1])
@@ -46,7 +46,7 @@ TONE_SCALE = np.float32(TONE_STEPS / 4.0)
 
 @kernel
 def ambient(normals: Floats, seen: Any, day: Floats, light: Floats) -> None:
-    """Fill in (M, 3) light from everywhere: more from above, less in corners."""
+    """Fill in (M, 3) ambient light: more from above, less in corners."""
     level, last = day[D_AMBIENT], seen.shape[1] - 1
     for k in range(len(normals)):
         found = level * (ONE + np.float32(0.22) * normals[k, 1] + np.float32(0.06) * normals[k, 0])
@@ -56,7 +56,7 @@ def ambient(normals: Floats, seen: Any, day: Floats, light: Floats) -> None:
 
 @kernel
 def add(power: Floats, seen: Any, column: int, color: Floats, light: Floats) -> None:
-    """Add a light of some colour to what arrives."""
+    """Add a light to the incoming light."""
     r, g, b = color[0], color[1], color[2]
     for k in range(len(power)):
         found = power[k] * np.float32(seen[k, column]) * SHARE
@@ -67,7 +67,7 @@ def add(power: Floats, seen: Any, column: int, color: Floats, light: Floats) -> 
 
 @kernel
 def shiny(rows: Floats, index: Ints) -> int:
-    """Fill in the points whose surface mirrors; gives how many."""
+    """Fill in the indices of points with a reflecting surface; returns their number."""
     count = 0
     for k in range(len(rows)):
         if rows[k, SHINE] > ZERO:
@@ -81,7 +81,7 @@ def add_glints(
     index: Ints, rows: Floats, points: Floats, normals: Floats, views: Floats, power: Floats, seen: Any, column: int,
     place: Floats, color: Floats, gloss: Floats,
 ) -> None:  # fmt: skip
-    """Add the mirror image of a light on polished surfaces; too faint ones are not worked out."""
+    """Add a light's specular reflection on polished surfaces; faint ones are skipped."""
     least = FAINT / max(color[0], TINY)
     for j in range(len(index)):
         k = index[j]
@@ -104,7 +104,7 @@ def add_glints(
 
 @kernel
 def texel(slot: Any, u: Any, v: Any, footprint: Any) -> Any:
-    """Where in the atlas the nearest texel is; its mipmap is chosen by how many tiles a pixel spans."""
+    """Index of the nearest texel in the atlas; the number of tiles that a pixel spans selects the mipmap."""
     spread, level, side = footprint * SPREAD, 0, SIDE
     while spread >= TWO and level < LAST:
         spread *= HALF
@@ -117,7 +117,7 @@ def texel(slot: Any, u: Any, v: Any, footprint: Any) -> Any:
 
 @kernel
 def mirrored(shine: Any, ny: Any, vy: Any, cosine: Any) -> Any:
-    """The share of the light around that a polished surface shows: of a bright ceiling or a darker floor."""
+    """The share of surrounding light that a polished surface reflects: of a bright ceiling or a darker floor."""
     up = vy + TWO * cosine * ny
     away = ONE - min(max(cosine, ZERO), ONE)
     square = away * away
@@ -131,7 +131,7 @@ def mirrored(shine: Any, ny: Any, vy: Any, cosine: Any) -> Any:
 
 @kernel
 def tone(value: Any) -> Any:
-    """The place in the table of tones."""
+    """Index into the table of tones."""
     return min(int(root(max(value, ZERO)) * TONE_SCALE), TONE_STEPS)
 
 
@@ -140,17 +140,17 @@ def colour(
     pixels: Ints, rays: Floats, distance: Floats, u: Floats, v: Floats, rows: Floats, normals: Floats, flats: Floats,
     views: Floats, light: Floats, gloss: Floats, angle: Any, texels: Any, decode: Floats, tones: Any, out: Any,
 ) -> None:  # fmt: skip
-    """Write the colours of pixels that show something.
+    """Write the colours of pixels that show a surface.
 
     Args:
-        pixels: (M,) which.
+        pixels: (M,) their indices.
         rays, distance, u, v: of all pixels.
-        rows, normals, flats, views: of those M, as `locate` gives them.
-        light, gloss: (M, 3) what arrives, and what is mirrored.
-        angle: radians that a pixel spans.
+        rows, normals, flats, views: of the M pixels, as `locate` gives them.
+        light, gloss: (M, 3) incoming light, and reflections.
+        angle: radians per pixel.
         texels, decode: the atlas, and the linear value of its bytes.
-        tones: bytes by TONE_SCALE times the root of linear light.
-        out: (N, 3) colours of all pixels.
+        tones: sRGB bytes, indexed by TONE_SCALE times the root of linear light.
+        out: (N, 3) colours of all pixels, filled.
     """
     for k in range(len(pixels)):
         i = pixels[k]
@@ -158,7 +158,7 @@ def colour(
         if fx == ZERO and fy == ZERO and fz == ZERO:
             continue
         if rows[k, SOLID] > ZERO and dot3(rows[k, FLAT], rows[k, FLAT + 1], rows[k, FLAT + 2], fx, fy, fz) < ZERO:
-            # Where a view from above cuts through a wall.
+            # A wall's section in a view from above.
             out[i, 0], out[i, 1], out[i, 2] = tones[CUT[0]], tones[CUT[1]], tones[CUT[2]]
             continue
         shine, extra = rows[k, SHINE], ZERO
@@ -183,7 +183,7 @@ def outside(
     pixels: Ints, rays: Floats, flats: Floats, views: Floats, day: Floats, texels: Any, decode: Floats, tones: Any,
     out: Any,
 ) -> None:  # fmt: skip
-    """Write the colours of pixels that show nothing: sky and lawn, or a plain ground for views from above."""
+    """Write the colours of background pixels: sky and lawn, or a plain colour in views from above."""
     plain = day[D_PLAIN] > ZERO
     bright = np.float32(0.25) + np.float32(0.75) * min(ONE, day[D_SKY])
     for k in range(len(pixels)):

@@ -1,4 +1,4 @@
-"""Compiled loops of light over some thousand points: where rays ended, and which rays to cast at which light."""
+"""Compiled loops over surface points: their positions and normals, and rays from them to lights."""
 
 from __future__ import annotations
 
@@ -24,36 +24,36 @@ from hearth.rendering.rays.kernels import (
 )
 
 LIFT = np.float32(2e-3)
-"""Metres by which points are lifted off their surface before rays are cast from them."""
+"""Metres by which ray origins are lifted off their surface."""
 
 FAR = np.float32(60.0)
-"""Metres beyond which nothing keeps the sun away."""
+"""Length of shadow rays to the sun, metres."""
 
 REACH = np.float32(7.0)
-"""Metres beyond which lamps are not looked at."""
+"""Metres beyond which lamps give no light."""
 
 FAINT = np.float32(0.012)
-"""Light below which nobody looks for its shadow or its mirror image."""
+"""Light below which shadows and reflections are not computed."""
 
 NEAR = np.float32(0.7)
-"""Metres within which something darkens the ambient light of a corner."""
+"""Metres within which surfaces occlude ambient light."""
 
-# A light's row: position, colour, whether it is a window, the way that faces, (x0, x1, z0, z1) it reaches, its span.
+# A light's row: position, colour, whether it is a window, its direction, (x0, x1, z0, z1) that it reaches, its span.
 L_PLACE, L_COLOR, L_WINDOW, L_FACING, L_AREA, L_SPAN, L_COLUMNS = 0, 3, 6, 7, 10, 14, 17
-# The day's row: towards the sun, its colour, whether it is up, ambient light; zenith, horizon, how bright the sky is,
-# whether plain ground is shown instead; and the radians that a pixel spans.
+# The day's row: direction to the sun, its colour, whether it is up, ambient light; zenith, horizon, brightness of the
+# sky, whether the background is plain; and radians per pixel.
 D_SUN, D_COLOR, D_UP, D_AMBIENT = 0, 3, 6, 7
 D_ZENITH, D_HORIZON, D_SKY, D_PLAIN, D_ANGLE = 8, 11, 14, 15, 16
 
 OPEN = np.uint8(255)
-"""How visible a light is that nothing hides."""
+"""Visibility of an unoccluded light."""
 
 FADE = ONE / (REACH * REACH)
 
 
 @kernel
 def side_of(x: Any, y: Any, z: Any, wx: Any, wy: Any, wz: Any) -> Any:
-    """-1 where a vector points along a way, else 1."""
+    """-1 if a vector points along a direction, else 1."""
     return -ONE if dot3(x, y, z, wx, wy, wz) > ZERO else ONE
 
 
@@ -62,14 +62,14 @@ def locate(
     pixels: Ints, rays: Floats, distance: Floats, u: Floats, v: Floats, rows: Floats,
     points: Floats, normals: Floats, flats: Floats, views: Floats, bounds: Floats,
 ) -> None:  # fmt: skip
-    """Where the rays of some pixels ended.
+    """Surface points of some pixels.
 
     Args:
-        pixels: (M,) which.
+        pixels: (M,) their indices.
         rays, distance, u, v: of all pixels.
-        rows: (M, COLUMNS) of the triangles they show.
+        rows: (M, COLUMNS) of their triangles.
         points, normals, flats: (M, 3) filled: points lifted off their surface; normals towards the viewer, smooth and
-            of the triangles, which are 0 where nothing is.
+            flat; flat ones are 0 for the background.
         views: (M, 3) unit vectors along the rays, filled.
         bounds: filled with the least and greatest x and z of the points.
     """
@@ -102,7 +102,7 @@ def locate(
 
 @kernel
 def facing_sun(normals: Floats, flats: Floats, day: Floats, power: Floats) -> None:
-    """Fill in (M,) how much of the sun reaches points, before shadows."""
+    """Fill in (M,) the sun's strength at points, before shadows."""
     sx, sy, sz = day[D_SUN], day[D_SUN + 1], day[D_SUN + 2]
     for k in range(len(normals)):
         found = max(dot3(normals[k, 0], normals[k, 1], normals[k, 2], sx, sy, sz), ZERO)
@@ -111,7 +111,7 @@ def facing_sun(normals: Floats, flats: Floats, day: Floats, power: Floats) -> No
 
 @kernel
 def aim_at_sun(points: Floats, power: Floats, day: Floats, noise: Floats, out: Floats, index: Ints) -> int:
-    """Fill in the rays towards the sun of the points that it could light, and which points those are; gives how many.
+    """Fill in rays to the sun and the indices of their points, for points that it may light; returns their number.
 
     `noise`, (M, 2) from 0 to 1, softens the edges of shadows; (0, 2) leaves them hard.
     """
@@ -132,25 +132,25 @@ def aim_at_sun(points: Floats, power: Floats, day: Floats, noise: Floats, out: F
 
 @kernel
 def strength(window: bool, cosine: Any, leaving: Any, square: Any) -> Any:
-    """How much of a light reaches a point, before shadows.
+    """A light's strength at a point, before shadows.
 
     Args:
-        window: whether it is one; else a lamp.
-        cosine: between the surface's normal and the way to the light.
-        leaving: between the way a window faces and the way from it.
+        window: whether the light is a window; else a lamp.
+        cosine: between the surface's normal and the direction to the light.
+        leaving: cosine between a window's direction and the direction from it.
         square: of the distance.
     """
     if not window:
         fade = square * FADE
         return max(cosine, ZERO) * max(ONE - fade * fade, ZERO) / (square + np.float32(0.35))
-    # The sky is wide: surfaces turned a little away from the window still see some of it.
+    # The sky is wide: surfaces turned slightly away from the window still receive light.
     wide = max((cosine + np.float32(0.25)) * np.float32(0.8), ZERO)
     return wide * (np.float32(0.25) + np.float32(0.75) * max(leaving, ZERO)) / (square + np.float32(0.8))
 
 
 @kernel
 def reach(points: Floats, normals: Floats, light: Floats, power: Floats) -> None:
-    """Fill in (M,) how much of a light reaches points, before shadows."""
+    """Fill in (M,) a light's strength at points, before shadows."""
     lx, ly, lz, window = light[L_PLACE], light[L_PLACE + 1], light[L_PLACE + 2], light[L_WINDOW] > ZERO
     fx, fy, fz = light[L_FACING], light[L_FACING + 1], light[L_FACING + 2]
     west, east, south, north = light[L_AREA], light[L_AREA + 1], light[L_AREA + 2], light[L_AREA + 3]
@@ -170,9 +170,9 @@ def reach(points: Floats, normals: Floats, light: Floats, power: Floats) -> None
 def aim_at_light(
     points: Floats, flats: Floats, power: Floats, light: Floats, noise: Floats, out: Floats, index: Ints
 ) -> int:
-    """Fill in the rays towards a light of the points that it could light, and which points those are; gives how many.
+    """Fill in rays to a light and the indices of their points, for points that it may light; returns their number.
 
-    `noise`, (M, 2), aims all over the light; (0, 2) at its middle.
+    `noise`, (M, 2), spreads the targets over the light; (0, 2) aims at its middle.
     """
     count, soft, least = 0, len(noise) > 0, FAINT / max(light[L_COLOR], TINY)
     lx, ly, lz = light[L_PLACE], light[L_PLACE + 1], light[L_PLACE + 2]
@@ -198,7 +198,7 @@ def aim_at_light(
 
 @kernel
 def aim_around(points: Floats, flats: Floats, noise: Floats, number: int, share: Any, out: Floats, index: Ints) -> int:
-    """Fill in one ray of each point over its hemisphere, NEAR metres long; gives how many."""
+    """Fill in one ray per point over its hemisphere, NEAR metres long; returns their number."""
     count = 0
     for k in range(len(points)):
         fx, fy, fz = flats[k, 0], flats[k, 1], flats[k, 2]
@@ -207,7 +207,7 @@ def aim_around(points: Floats, flats: Floats, noise: Floats, number: int, share:
         height = ONE - TWO * ((noise[k, 0] + share) % ONE)
         phi = np.float32(2 * np.pi) * ((noise[k, 1] + np.float32(number) * np.float32(0.618)) % ONE)
         ring = root(max(ONE - height * height, ZERO))
-        # A point of the unit ball set on the normal's tip is a direction of cosine density.
+        # A point of the unit sphere around the normal's tip gives a cosine-weighted direction.
         x = fx * np.float32(1.02) + ring * np.float32(np.cos(phi))
         y = fy * np.float32(1.02) + height
         z = fz * np.float32(1.02) + ring * np.float32(np.sin(phi))
@@ -221,7 +221,7 @@ def aim_around(points: Floats, flats: Floats, noise: Floats, number: int, share:
 
 @kernel
 def _meets(boxes: Floats, x: Any, y: Any, z: Any, dx: Any, dy: Any, dz: Any) -> bool:
-    """Whether a ray, up to its tip, goes through one of (B, 6) boxes."""
+    """Whether a ray, up to its end, intersects one of (B, 6) boxes."""
     for b in range(len(boxes)):
         near, far = slab(boxes[b, 0], boxes[b, 3], x, dx, ZERO, ONE)
         near, far = slab(boxes[b, 1], boxes[b, 4], y, dy, near, far)
@@ -235,14 +235,14 @@ def _meets(boxes: Floats, x: Any, y: Any, z: Any, dx: Any, dy: Any, dz: Any) -> 
 def aim_again(
     lit: Ints, skipped: Any, points: Floats, target: Floats, is_sun: bool, boxes: Floats, out: Floats, index: Ints
 ) -> int:
-    """Of points that a light reaches, fill in the rays that may meet something in the boxes; gives how many.
+    """Of points that a light reaches, fill in the rays to it that intersect the boxes; returns their number.
 
     Args:
-        lit: (K,) which points.
-        skipped: (M,) points that need not be looked at.
+        lit: (K,) indices of the points.
+        skipped: (M,) whether a point is excluded.
         points: (M, 3).
-        target: the light's place, or the way to the sun.
-        is_sun: which of the two.
+        target: the light's position, or the direction to the sun.
+        is_sun: whether it is the sun.
         boxes: (B, 6) low and high corners.
         out, index: (K, 6) rays and (K,) their points.
     """
@@ -264,7 +264,7 @@ def aim_again(
 
 @kernel
 def meeting(rays: Floats, done: Any, boxes: Floats, index: Ints) -> int:
-    """Fill in which of (N, 6) rays, but for those that are done, meet one of (B, 6) boxes; gives how many."""
+    """Fill in the indices of (N, 6) rays, without `done`, that intersect one of (B, 6) boxes; returns their number."""
     count = 0
     for k in range(len(rays)):
         ray = rays[k]
@@ -276,7 +276,7 @@ def meeting(rays: Floats, done: Any, boxes: Floats, index: Ints) -> int:
 
 @kernel
 def mark(index: Ints, blocked: Any, seen: Any, column: int, value: Any, lit: Ints) -> int:
-    """Write `value` into a column of `seen` where rays were blocked; fill in the others, and give how many they are."""
+    """Write `value` into a column of `seen` for blocked rays; fill `lit` with the others and return their number."""
     count = 0
     for j in range(len(index)):
         if blocked[j]:
@@ -289,7 +289,7 @@ def mark(index: Ints, blocked: Any, seen: Any, column: int, value: Any, lit: Int
 
 @kernel
 def darken(index: Ints, blocked: Any, seen: Any, column: int, amount: Any) -> None:
-    """Take `amount` from a column of `seen` where rays were blocked."""
+    """Subtract `amount` from a column of `seen` for blocked rays."""
     for j in range(len(index)):
         if blocked[j]:
             seen[index[j], column] -= amount

@@ -1,4 +1,4 @@
-"""Compiled loops over a picture's pixels: depth, labels, normals, boxes, flow, and what fine pictures are made of."""
+"""Compiled loops over a picture's pixels: depth, labels, normals, boxes, flow, and smoothing for fine pictures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hearth.rendering.rays.kernels import HALF, ONE, ZERO, dot3, kernel, root
 
 @kernel
 def depths(distance: Floats, triangle: Ints, skipped: Floats, out: Any) -> None:
-    """Fill in millimetres along the axis, 0 for nothing; `skipped` (N,) or (0,) lies before the rays."""
+    """Fill in millimetres along the axis, 0 for the background; `skipped`, (N,) or (0,), lies before the rays."""
     cut = len(skipped) > 0
     for i in range(len(distance)):
         far = ZERO
@@ -23,14 +23,14 @@ def depths(distance: Floats, triangle: Ints, skipped: Floats, out: Any) -> None:
 
 @kernel
 def labels(triangle: Ints, owners: Ints, values: Any, out: Any) -> None:
-    """Fill in a value of the thing that each pixel shows; `values` is one a thing, and one for nothing."""
+    """Fill in the value of the thing that each pixel shows; `values` has one per thing, and one for the background."""
     for i in range(len(triangle)):
         out[i] = values[owners[triangle[i]]]
 
 
 @kernel
 def facings(pixels: Ints, normals: Floats, out: Floats) -> None:
-    """Write (N, 3) unit normals of some pixels, from (M, 3) normals of any length; 0 for nothing."""
+    """Write (N, 3) unit normals of some pixels from (M, 3) normals of any length; 0 for the background."""
     for k in range(len(pixels)):
         i = pixels[k]
         x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
@@ -40,7 +40,7 @@ def facings(pixels: Ints, normals: Floats, out: Floats) -> None:
 
 @kernel
 def extents(triangle: Ints, owners: Ints, width: int, out: Ints) -> None:
-    """Fill in (things, 5) of each thing: left, top, right, bottom (outside) and how many pixels show it.
+    """Fill in (things, 5): left, top, right, bottom (excluded) and number of pixels of each thing.
 
     `out` begins as width, height, 0, 0, 0.
     """
@@ -55,10 +55,10 @@ def extents(triangle: Ints, owners: Ints, width: int, out: Ints) -> None:
 
 
 HORIZON = np.float32(1e5)
-"""Metres away that the sky is taken to be."""
+"""Distance of the sky, metres."""
 
 TOLERANCE = np.float32(0.02)
-"""How far a depth may be from the one expected, as a share of it, for the same point to be seen."""
+"""Relative difference between expected and seen depth up to which a point counts as visible."""
 
 
 @kernel
@@ -66,16 +66,16 @@ def motion(
     rays: Floats, distance: Floats, triangle: Ints, u: Floats, v: Floats, shifts: Floats, first: int, frame: Floats,
     width: int, height: int, start: int, stop: int, ids: Ints, later: Ints, far: Floats, out: Floats,
 ) -> None:  # fmt: skip
-    """Fill in (N, 2) by how many pixels points move right and down; NaN where they are not seen afterwards.
+    """Fill in (N, 2) pixels by which points move right and down; NaN for points that are not visible afterwards.
 
-    Only the pixels from `start` to `stop` are filled in.
+    Fills in the pixels from `start` to `stop`.
 
     Args:
         rays, distance, triangle, u, v: of the first picture.
-        shifts: (M, 3, 3) by how much the corners of the moving triangles, counted from `first`, move.
+        shifts: (M, 3, 3) displacements of the corners of the moving triangles, which begin at index `first`.
         frame: of the second camera: eye, right, up, forward, focal length.
         width, height: of both pictures.
-        ids, later: (N,) what the pixels show, in the first and in the second picture; -1 for nothing.
+        ids, later: (N,) node ids in the first and in the second picture; -1 for the background.
         far: (N,) depth of the second picture.
         out: filled.
     """
@@ -108,7 +108,7 @@ def motion(
 
 @kernel
 def edges(colors: Any, triangle: Ints, owners: Ints, width: int, height: int, step: int, out: Any) -> None:
-    """Mark pixels that differ from a neighbour: another thing, or colours `step` apart."""
+    """Mark pixels that differ from a neighbour by the thing, or by `step` in colour."""
     for row in range(height):
         for column in range(width):
             i = row * width + column
@@ -130,8 +130,8 @@ def smoothed(
 ) -> None:
     """Fill in some columns of `seen`, (N, K), averaged over the 4 by 4 pixels around each that show the same plane.
 
-    Neighbouring pixels of such a square cast rays at 16 different places of a light; together they see all of it.
-    Only the rows from `top` to `bottom` are filled in.
+    The pixels of such a square cast rays at 16 different places of a light; together they sample all of it.
+    Fills in the rows from `top` to `bottom`.
     """
     total = np.zeros(len(columns), np.int32)
     for row in range(top, bottom):
@@ -162,18 +162,18 @@ def borrowed(
     pixels: Ints, flats: Floats, points: Floats, width: int, height: int, around: Floats, places: Floats, seen: Any,
     out: Any, index: Ints,
 ) -> int:  # fmt: skip
-    """Fill in what some points see of the lights: what the pixel on the same surface sees that is nearest to each.
+    """Fill in the lights' visibility from some points, copied from the nearest pixel on the same surface.
 
     Args:
-        pixels: (M,) in which the points are.
-        flats, points: (M, 3) of them.
+        pixels: (M,) pixels of the points.
+        flats, points: (M, 3) their flat normals and positions.
         width, height: of the picture.
-        around, places, seen: flat normals, points and what is seen of all pixels.
+        around, places, seen: flat normals, positions and visibility of all pixels.
         out: (M, K) filled.
-        index: filled with the points for which there is no such pixel.
+        index: filled with the points without such a pixel.
 
     Returns:
-        How many those are.
+        The number of points without such a pixel.
     """
     count = 0
     for k in range(len(pixels)):

@@ -1,4 +1,4 @@
-"""Memory that is used again: fresh pages cost the system more than most loops take to fill them."""
+"""Reused memory: allocating fresh pages costs more than most loops over them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 
 class _Kept(threading.local):
-    """The buffers of a thread, by what they are used for and the kind of their values."""
+    """The buffers of a thread, by use and type of their values."""
 
     def __init__(self) -> None:
         self.buffers: dict[tuple[str, Any], NDArray[Any]] = {}
@@ -23,7 +23,7 @@ _kept = _Kept()
 
 
 def scratch(use: str, *shape: int, dtype: Any = np.float32) -> NDArray[Any]:
-    """An array of any content, which is the calling thread's until it asks for another of the same use."""
+    """An uninitialised array, valid until the calling thread asks for another of the same use."""
     size = prod(shape)
     buffer = _kept.buffers.get((use, dtype))
     if buffer is None or buffer.size < size:
@@ -37,7 +37,7 @@ TRIM_THRESHOLD, TOP_PAD, MMAP_THRESHOLD = -1, -2, -3
 
 @cache
 def keep() -> bool:
-    """Have the C library keep what is freed, up to 128 MB, for whoever asks next; gives whether it does."""
+    """Let the C library keep up to 128 MB of freed memory for reuse; returns whether it does."""
     try:
         mallopt = ctypes.CDLL(None).mallopt
     except (AttributeError, OSError):

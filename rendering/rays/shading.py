@@ -1,7 +1,7 @@
-"""From hits to light: which lights each visible point sees, and the colours that come of it.
+"""Shading of hits: visibility of lights from each visible point, and the resulting colours.
 
-Pixels are worked on some thousands at a time, by as many threads as there are processors: their numbers stay in the
-processor's cache. The loops are in `light_rays` and `lamplight`.
+Pixels are processed in chunks that fit the processor's cache, by one thread per processor. The loops are in
+`light_rays` and `lamplight`.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.triangles import Geometry, Part
 
 CHUNK = 65536
-"""Pixels that are worked on together."""
+"""Pixels in one chunk."""
 
 SUN = 0
-"""Column of `Plate.seen` for the sun; lights follow."""
+"""Column of `Exposure.seen` for the sun; lights follow."""
 
 DIM = np.uint8(64)
-"""How visible a window stays when something stands before its middle: it is wide."""
+"""Remaining visibility of a window whose middle is occluded: windows are wide."""
 
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What light there is, in rows for the loops.
+    """The lights of a scene, as rows for the loops.
 
     Attributes:
-        lights: those of the scene; their rows and the day's row are (L, L_COLUMNS) and (D_COLUMNS,).
+        lights: of the scene; their rows and the day's row are (L, L_COLUMNS) and (D_COLUMNS,).
         fine: soft shadows and ambient occlusion.
     """
 
@@ -51,13 +51,13 @@ class Setting:
 
     @classmethod
     def of(cls, lights: tuple[Light, ...], day: Daylight, *, plain: bool, angle: float, fine: bool = False) -> Setting:
-        """Of a scene's lights.
+        """The rows of a scene's lights.
 
         Args:
             lights: lamps that are on, and windows.
             day: sun and sky.
-            plain: whether a plain ground is shown outside.
-            angle: radians a pixel spans.
+            plain: whether the background is plain.
+            angle: radians per pixel.
             fine: soft shadows and ambient occlusion.
         """
         rows = np.array([_light_row(light) for light in lights], np.float32).reshape(-1, light_rays.L_COLUMNS)
@@ -70,12 +70,12 @@ class Setting:
         return np.flatnonzero((area[0] < x1) & (area[1] > x0) & (area[2] < z1) & (area[3] > z0)).astype(np.int32)
 
     def shadowed(self, number: int) -> bool:
-        """Whether shadows of a light are looked for: windows are wide, and have only soft ones."""
+        """Whether a light casts shadows: windows are wide and cast only soft ones."""
         return self.fine or self.lights[number].facing is None
 
 
 def area(source: Light) -> tuple[float, float, float, float]:
-    """(x0, x1, z0, z1) beyond which a light is not looked at."""
+    """(x0, x1, z0, z1) that a light reaches."""
     x, _, z = source.position
     reach = float(light_rays.REACH)
     return source.room or (x - reach, x + reach, z - reach, z + reach)
@@ -94,14 +94,14 @@ def _day_row(day: Daylight, plain: bool, angle: float) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class Spots:
-    """What some pixels show.
+class SurfacePoints:
+    """Surface points of some pixels.
 
     Attributes:
-        pixels: (M,) which.
+        pixels: (M,) their indices.
         rows: (M, COLUMNS) of their triangles.
         points: (M, 3) lifted off their surface.
-        normals, flats: (M, 3) towards the viewer; those of the triangles are 0 where nothing is.
+        normals, flats: (M, 3) smooth and flat normals towards the viewer; flat ones are 0 for the background.
         views: (M, 3) unit vectors along the rays.
         bounds: least and greatest x and z of the points.
     """
@@ -115,27 +115,27 @@ class Spots:
     bounds: Floats
 
 
-def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> Spots:
-    """What some pixels show, given the rays and hits of all; good until this thread asks again for the same `use`."""
+def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> SurfacePoints:
+    """The surface points of some pixels, given all rays and hits; valid until this thread's next call with `use`."""
     count = len(pixels)
     rows = scratch(f"{use} rows", count, COLUMNS)
-    gather_rows(pixels, hits.triangle, geometry.still.rows, geometry.moving.rows, rows)
+    gather_rows(pixels, hits.triangle, geometry.static.rows, geometry.moving.rows, rows)
     points, normals, flats, views = scratch(use, 4, count, 3)
     bounds = np.empty(4, np.float32)
     light_rays.locate(pixels, rays, hits.distance, hits.u, hits.v, rows, points, normals, flats, views, bounds)
-    return Spots(pixels, rows, points, normals, flats, views, bounds)
+    return SurfacePoints(pixels, rows, points, normals, flats, views, bounds)
 
 
 @dataclass(frozen=True, eq=False)
-class Plate:
-    """Some pixels, and what lights what they show.
+class Exposure:
+    """Visibility of lights from some pixels' surface points.
 
     Attributes:
-        pixels: (M,) which.
-        points: (M, 3) what they show, lifted off its surface.
+        pixels: (M,) their indices.
+        points: (M, 3) surface points, lifted off their surface.
         near: lights that may reach them.
-        seen: (M, lights + 2) how visible the sun, each light and the open are, 0 to 255.
-        lit: for the sun and each light that has shadows, the points (of M) that it reaches.
+        seen: (M, lights + 2) visibility of the sun, of each light and of ambient light, 0 to 255.
+        lit: for the sun and each light with shadows, the indices (of M) of the points that it reaches.
     """
 
     pixels: Ints
@@ -146,7 +146,7 @@ class Plate:
 
 
 def chunks(pixels: Ints) -> list[Ints]:
-    """Pixels in parts that are worked on together."""
+    """Pixels in chunks."""
     return [pixels[start : start + CHUNK] for start in range(0, len(pixels), CHUNK)]
 
 
@@ -154,47 +154,47 @@ NO_NOISE: Floats = np.zeros((0, 2), np.float32)
 NO_LIGHT: Ints = np.zeros(0, np.int32)
 
 
-def expose(spots: Spots, geometry: Geometry, setting: Setting, noise: Floats = NO_NOISE) -> Plate:
-    """What the part that stays lets through to the points that some pixels show; `dim` does the rest.
+def expose(surface: SurfacePoints, geometry: Geometry, setting: Setting, noise: Floats = NO_NOISE) -> Exposure:
+    """Visibility of lights from some surface points, occluded by static things only; `dim` adds moving things.
 
     Args:
-        spots: what they show.
+        surface: the points.
         geometry, setting: triangles and lights.
-        noise: (M, 2) from 0 to 1 for soft shadows and occlusion, which look at what moves, too.
+        noise: (M, 2) from 0 to 1 for soft shadows and occlusion, which include moving things.
     """
-    count, points = len(spots.pixels), spots.points
-    near = setting.reaching(spots.bounds)
+    count, points = len(surface.pixels), surface.points
+    near = setting.reaching(surface.bounds)
     seen = np.full((count, len(setting.lights) + 2), OPEN, np.uint8)
     lit: dict[int, Ints] = {}
     out, index, power = scratch("rays", count, 6), scratch("index", count, dtype=np.int32), scratch("power", count)
-    # Soft rays go all over a light: they are cast at everything at once, since they can't be found again.
-    parts = (geometry.still, geometry.moving) if setting.fine else (geometry.still,)
+    # Soft shadow rays are random and can't be repeated: they are cast at static and moving things at once.
+    parts = (geometry.static, geometry.moving) if setting.fine else (geometry.static,)
     if setting.day[light_rays.D_UP]:
-        light_rays.facing_sun(spots.normals, spots.flats, setting.day, power)
+        light_rays.facing_sun(surface.normals, surface.flats, setting.day, power)
         found = light_rays.aim_at_sun(points, power, setting.day, noise, out, index)
         blocked = _blocked(parts, out[:found], 0.999)
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
-            light_rays.reach(points, spots.normals, light, power)
-            found = light_rays.aim_at_light(points, spots.flats, power, light, noise, out, index)
+            light_rays.reach(points, surface.normals, light, power)
+            found = light_rays.aim_at_light(points, surface.flats, power, light, noise, out, index)
             blocked = _blocked(parts, out[:found], 0.97, lamps=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
             lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
     for number in range(AROUND if setting.fine else 0):
-        found = light_rays.aim_around(points, spots.flats, noise, number, np.float32(number / AROUND), out, index)
+        found = light_rays.aim_around(points, surface.flats, noise, number, np.float32(number / AROUND), out, index)
         blocked = _blocked(parts, out[:found], 0.999)
         light_rays.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
-    return Plate(spots.pixels, points.copy(), near, seen, lit)
+    return Exposure(surface.pixels, points.copy(), near, seen, lit)
 
 
 AROUND = 1
-"""Rays a fine point casts over its hemisphere."""
+"""Rays per point over its hemisphere in fine pictures."""
 
 
 def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = False) -> NDArray[np.bool_]:
-    """(N,) whether rays meet something; `lamps`: but for lamps."""
+    """(N,) whether rays are blocked; with `lamps`, lamps do not block."""
     stays = parts[0]
     found = (stays.shadows if lamps else stays.caster).occluded(rays, far)
     for moves in parts[1:]:
@@ -206,74 +206,76 @@ def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = Fals
 
 
 def _marked(seen: Bytes, column: int, index: Ints, blocked: NDArray[np.bool_], value: np.uint8) -> Ints:
-    """The points whose rays got through; the others are marked."""
+    """The points with unblocked rays; the others are marked in `seen`."""
     lit = scratch("lit", len(index), dtype=np.int32)
     return lit[: light_rays.mark(index, blocked, seen, column, value, lit)].copy()
 
 
-def dim(plate: Plate, geometry: Geometry, setting: Setting, skipped: NDArray[np.bool_]) -> tuple[Bytes, Ints]:
-    """What moving things take away.
+def dim(exposure: Exposure, geometry: Geometry, setting: Setting, skipped: NDArray[np.bool_]) -> tuple[Bytes, Ints]:
+    """Visibility of lights after occlusion by moving things.
 
     Args:
-        plate: what gets through the part that stays.
-        geometry, setting: as of `expose`, without noise.
-        skipped: (M,) points that need not be looked at.
+        exposure: visibility with static things only.
+        geometry, setting: as in `expose`, without noise.
+        skipped: (M,) whether a point is excluded.
 
     Returns:
-        `seen` as it is with them, and the points where that differs.
+        The new `seen`, and the indices of the points where it changed.
     """
     moving = geometry.moving
     changed: list[Ints] = []
-    seen = plate.seen
-    for column, lit in plate.lit.items():
+    seen = exposure.seen
+    for column, lit in exposure.lit.items():
         target = setting.day[:3] if column == SUN else setting.rows[column - 1, :3]
         out, index = scratch("rays", len(lit), 6), scratch("index", len(lit), dtype=np.int32)
-        found = light_rays.aim_again(lit, skipped, plate.points, target, column == SUN, moving.boxes, out, index)
+        found = light_rays.aim_again(lit, skipped, exposure.points, target, column == SUN, moving.boxes, out, index)
         if not found:
             continue
         caster, far = (moving.caster, 0.999) if column == SUN else (moving.shadows, 0.97)
         dark = index[:found][caster.occluded(out[:found], far)]
         if len(dark):
-            seen = seen.copy() if seen is plate.seen else seen
+            seen = seen.copy() if seen is exposure.seen else seen
             window = column != SUN and setting.lights[column - 1].facing is not None
             seen[dark, column] = DIM if window else 0
             changed.append(dark)
     return seen, np.unique(np.concatenate(changed)) if changed else NO_LIGHT
 
 
-def paint(spots: Spots, near: Ints, seen: Bytes, rays: Floats, hits: Hits, setting: Setting, out: Bytes) -> None:
+def paint(
+    surface: SurfacePoints, near: Ints, seen: Bytes, rays: Floats, hits: Hits, setting: Setting, out: Bytes
+) -> None:
     """Write the colours of some pixels.
 
     Args:
-        spots: (M) what they show.
+        surface: their M surface points.
         near: lights that may reach them.
-        seen: (M, lights + 2) as of `Plate`.
+        seen: (M, lights + 2) as in `Exposure`.
         rays, hits: of all pixels.
         setting: the lights.
-        out: (N, 3) sRGB of all pixels, written to.
+        out: (N, 3) sRGB of all pixels, filled.
     """
-    count, day = len(spots.pixels), setting.day
+    count, day = len(surface.pixels), setting.day
     light, gloss, power = scratch("light", count, 3), scratch("gloss", count, 3), scratch("power", count)
     gloss[:] = 0
-    loops.ambient(spots.normals, seen, day, light)
+    loops.ambient(surface.normals, seen, day, light)
     if day[light_rays.D_UP]:
-        light_rays.facing_sun(spots.normals, spots.flats, day, power)
+        light_rays.facing_sun(surface.normals, surface.flats, day, power)
         loops.add(power, seen, SUN, day[light_rays.D_COLOR :], light)
     polished = scratch("index", count, dtype=np.int32)
-    polished = polished[: loops.shiny(spots.rows, polished)]
+    polished = polished[: loops.shiny(surface.rows, polished)]
     for number in near.tolist():
         row = setting.rows[number]
         color = row[light_rays.L_COLOR :]
-        light_rays.reach(spots.points, spots.normals, row, power)
+        light_rays.reach(surface.points, surface.normals, row, power)
         loops.add(power, seen, number + 1, color, light)
         if len(polished):
-            faces = (spots.rows, spots.points, spots.normals, spots.views)
+            faces = (surface.rows, surface.points, surface.normals, surface.views)
             loops.add_glints(polished, *faces, power, seen, number + 1, row, color, gloss)
-    faces = (spots.rows, spots.normals, spots.flats, spots.views)
+    faces = (surface.rows, surface.normals, surface.flats, surface.views)
     atlas = (texels(), decode(), tones(), out)
-    where = (spots.pixels, rays, hits.distance, hits.u, hits.v)
+    where = (surface.pixels, rays, hits.distance, hits.u, hits.v)
     loops.colour(*where, *faces, light, gloss, day[light_rays.D_ANGLE], *atlas)
-    loops.outside(spots.pixels, rays, spots.flats, spots.views, day, *atlas)
+    loops.outside(surface.pixels, rays, surface.flats, surface.views, day, *atlas)
 
 
 EXPOSURE = 1.5
@@ -281,8 +283,8 @@ EXPOSURE = 1.5
 
 @cache
 def tones() -> Bytes:
-    """(TONE_STEPS + 1,) sRGB bytes of linear light, by TONE_SCALE times its root: neighbours differ by less than one
-    grey level. Bright parts are compressed, so that nothing is blown out.
+    """(TONE_STEPS + 1,) sRGB bytes of linear light, indexed by TONE_SCALE times its root: neighbours differ by less
+    than one grey level. Bright values are compressed rather than clipped.
     """
     light = (np.arange(loops.TONE_STEPS + 1) / float(loops.TONE_SCALE)) ** 2
     tone = 1 - np.exp(-EXPOSURE * light)
@@ -292,14 +294,14 @@ def tones() -> Bytes:
 
 def whole(
     pixels: Sequence[Ints], rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes
-) -> list[Plate]:
-    """Draft colours of pixels, chunk by chunk; gives the plates with what stays let through."""
+) -> list[Exposure]:
+    """Draft colours of pixels, chunk by chunk; returns the exposures with static occlusion."""
 
-    def work(chunk: Ints) -> Plate:
-        spots = located(chunk, rays, hits, geometry)
-        plate = expose(spots, geometry, setting)
-        seen, _ = dim(plate, geometry, setting, np.zeros(len(chunk), np.bool_))
-        paint(spots, plate.near, seen, rays, hits, setting, out)
-        return plate
+    def work(chunk: Ints) -> Exposure:
+        surface = located(chunk, rays, hits, geometry)
+        exposure = expose(surface, geometry, setting)
+        seen, _ = dim(exposure, geometry, setting, np.zeros(len(chunk), np.bool_))
+        paint(surface, exposure.near, seen, rays, hits, setting, out)
+        return exposure
 
     return each(work, pixels)

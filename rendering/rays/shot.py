@@ -1,4 +1,4 @@
-"""Shots: a camera's rays, cast once at a scene, that every modality is made from."""
+"""Shots: a camera's rays, cast once at a scene; every modality is computed from them."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class Shot:
     """One cast of a camera's rays, shared by all modalities.
 
     Attributes:
-        scene, camera, geometry: what, from where.
-        rays: (H*W, 6); moved down to the cut for views from above.
+        scene, camera, geometry: the scene, its camera and its triangles.
+        rays: (H*W, 6); in views from above they begin at the cut.
         skipped: (H*W,) length of the ray before `rays` begins, in units of its direction; empty without a cut.
-        hits: what they hit.
+        hits: first hits of the rays.
         class_ids: class -> number.
-        after: the next moment, if it is known: for optical flow.
-        behind: what the rays hit of the part that stays; for the next moment, too.
+        after: the next scene, if known, for optical flow.
+        behind: first hits on static things, reused by the next shot.
     """
 
     scene: Scene
@@ -48,12 +48,12 @@ class Shot:
 
     @cached_property
     def owner(self) -> NDArray[np.int32]:
-        """(H*W,) index of the thing that is seen, -1 for none."""
+        """(H*W,) index of the visible thing, -1 for the background."""
         return self.geometry.owner(self.hits.triangle)
 
     @cached_property
     def distance(self) -> Floats:
-        """(H*W,) along the camera's axis, metres; infinite for none."""
+        """(H*W,) depth along the camera's axis, metres; infinite for the background."""
         far: Floats = self.hits.distance + self.skipped if len(self.skipped) else self.hits.distance
         return far
 
@@ -74,10 +74,10 @@ def shoot(scene: Scene, camera: Camera, class_ids: Mapping[str, int] | None = No
 
 
 def shoot_after(scene: Scene, shot: Shot) -> Shot:
-    """A later scene by the camera of a shot, whose rays are only cast again at what may have moved."""
+    """The shot of a later scene by the same camera; rays are cast again only at moving things."""
     camera = shot.camera
     geometry = scene.geometry if camera.cut is None else scene.opened
-    if shot.behind is None or geometry.still is not shot.geometry.still:
+    if shot.behind is None or geometry.static is not shot.geometry.static:
         return shoot(scene, camera)
     prepare(geometry)
     hits = shot.behind.copy()
@@ -86,25 +86,25 @@ def shoot_after(scene: Scene, shot: Shot) -> Shot:
 
 
 def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:
-    """Fill in what some pixels' rays hit of the part that stays."""
+    """Fill in the hits of some pixels' rays on static things."""
     prepare(geometry)
 
     def work(chunk: NDArray[np.int32]) -> None:
         part = slice(int(chunk[0]), int(chunk[-1]) + 1)
-        for values, found in zip(hits, geometry.still.caster.cast(rays[part]), strict=True):
+        for values, found in zip(hits, geometry.static.caster.cast(rays[part]), strict=True):
             values[part] = found
 
     each(work, shading.chunks(pixels))
 
 
 def prepare(geometry: Geometry) -> None:
-    """Build what threads share, before they do."""
-    for part in (geometry.still, geometry.moving):
+    """Build the casters before threads share them."""
+    for part in (geometry.static, geometry.moving):
         _ = part.caster, part.shadows, part.rows
 
 
 def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDArray[np.int32]:
-    """Cast the rays that can meet moving things at them; gives the pixels that show one."""
+    """Cast at moving things the rays that can hit them; returns the pixels that show one."""
     moving = geometry.moving
     if not len(moving.mesh):
         return everywhere(0)
@@ -125,7 +125,7 @@ def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDA
 
 @lru_cache(maxsize=8)
 def everywhere(size: int) -> NDArray[np.int32]:
-    """All pixels. Not to be written to."""
+    """All pixels; read-only."""
     return np.arange(size, dtype=np.int32)
 
 
@@ -134,7 +134,7 @@ NO_CUT: Floats = np.zeros(0, np.float32)
 
 @lru_cache(maxsize=6)
 def camera_rays(camera: Camera, offset: tuple[float, float] = (0.5, 0.5)) -> tuple[Floats, Floats]:
-    """(N, 6) rays that begin at the camera's cut, and what of them lies before it. Not to be written to."""
+    """(N, 6) rays that begin at the camera's cut, and their length before it; read-only."""
     rays = camera.rays(offset)
     if camera.cut is None:
         return rays, NO_CUT
@@ -144,7 +144,7 @@ def camera_rays(camera: Camera, offset: tuple[float, float] = (0.5, 0.5)) -> tup
 
 
 def draft(shot: Shot) -> NDArray[np.uint8]:
-    """(H*W, 3) colours with one ray a pixel and hard shadows."""
+    """(H*W, 3) colours with one ray per pixel and hard shadows."""
     out = np.empty((len(shot.rays), 3), np.uint8)
     shading.whole(
         shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting_of(shot), out
@@ -153,16 +153,16 @@ def draft(shot: Shot) -> NDArray[np.uint8]:
 
 
 def setting_of(shot: Shot, *, fine: bool = False, share: float = 1.0) -> Setting:
-    """The light of a shot; `share` of a pixel is what one ray stands for."""
+    """The light of a shot; one ray covers `share` of a pixel."""
     above = shot.camera.cut is not None
     day = from_above(shot.scene.day) if above else shot.scene.day
     return Setting.of(shot.scene.lights, day, plain=above, angle=pixel_angle(shot) * share, fine=fine)
 
 
 def pixel_angle(shot: Shot) -> float:
-    """Radians a pixel spans, as distances along the rays have it."""
+    """Radians per pixel, for distances along the rays."""
     angle = 1 / float(shot.camera.intrinsics[0, 0])
     if shot.camera.cut is None:
         return angle
-    # Distances count from the cut, and textures must shrink with the distance from the eye.
+    # Distances begin at the cut, but textures shrink with the distance from the camera.
     return angle * (1 + float(np.median(shot.skipped)) / max((shot.camera.cut - shot.camera.target[1]) / 2, 0.1))

@@ -1,4 +1,4 @@
-"""A few threads for work that lets go of the interpreter: compiled loops."""
+"""Threads for compiled loops, which release the interpreter's lock."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ R = TypeVar("R")
 
 
 def count() -> int:
-    """How many processors this process may use."""
+    """Number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @cache
 def _pool(process: int) -> ThreadPoolExecutor:
-    """Threads do not survive a fork: each process has its own."""
+    """The threads of a process; they do not survive a fork."""
     return ThreadPoolExecutor(count(), "pixels")
 
 
 def each(work: Callable[[T], R], items: Iterable[T]) -> list[R]:
-    """`work` of every item, side by side; results in the items' order."""
+    """Apply `work` to every item in parallel; results in the items' order."""
     known = list(items)
     if len(known) < 2 or count() == 1:
         return [work(item) for item in known]

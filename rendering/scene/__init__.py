@@ -1,1 +1,1 @@
-"""From a graph with boxes to triangles: what stands where, what shines."""
+"""From a graph with boxes to triangles: placement of things, and lights."""

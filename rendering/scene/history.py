@@ -1,4 +1,4 @@
-"""The graphs of an execution, one a tick, at a cost that follows what changes."""
+"""The graphs of an execution, one per tick, at a cost proportional to the changes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.simulation.engine import Execution
 
 SHOWN = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
-"""Relations that decide where things are."""
+"""Relations that decide positions of things."""
 
 
 def graphs(execution: Execution) -> Iterator[EnvironmentGraph]:
-    """The graph at the start and after each tick, with the relations that can be seen."""
+    """The graph at the start and after each tick, with the relations of `SHOWN`."""
     start = execution.worlds[0].graph()
     graph = WorkingGraph(start.nodes, filter(_shown, start.edges))
     yield graph.graph()

@@ -1,4 +1,4 @@
-"""Things: what a scene is made of, each with a model, a place and the id that its pixels carry."""
+"""Things of a scene, each with a model, a position and a node id."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from hearth.schemas.graph import Point
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """Something in a scene: its pixels carry its id.
+    """A drawn instance of a model.
 
     Attributes:
-        id: of its node.
+        id: of its node; the value of its pixels in `instance_ids`.
         class_name: of its node.
-        model: what it looks like.
+        model: its mesh.
         position: of its foot's middle, metres.
-        yaw: the way it faces, degrees from +z towards +x.
-        above: what a view from above leaves out whole (ceilings and what hangs there).
-        laid: whether it is part of the building: its texture follows the world, and its inside is never seen.
-        lamp: whether it is a lamp that is on, and so casts no shadow.
+        yaw: its direction, degrees from +z towards +x.
+        above: whether views from above leave it out (ceilings and hanging things).
+        structural: whether it is part of the building: texture in world coordinates, inside never seen.
+        lamp: whether it is a lamp that is on, which casts no shadow.
     """
 
     id: int
@@ -35,7 +35,7 @@ class Thing:
     position: Point = (0.0, 0.0, 0.0)
     yaw: float = 0.0
     above: bool = False
-    laid: bool = False
+    structural: bool = False
     lamp: bool = False
 
 
@@ -44,11 +44,11 @@ def placed(thing: Thing) -> Mesh:
     """A thing's mesh in world coordinates."""
     mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
     mesh = transform(mesh, rotation("y", thing.yaw), thing.position)
-    return replace(mesh, uvs=_world_uvs(mesh, thing)) if thing.laid else mesh
+    return replace(mesh, uvs=_world_uvs(mesh, thing)) if thing.structural else mesh
 
 
 def _world_uvs(mesh: Mesh, thing: Thing) -> Floats:
-    """Texture coordinates by place, so that floor tiles and wall panels continue each other."""
+    """Texture coordinates in the world, so that adjacent floor and wall panels match."""
     before = draw(thing.model) if isinstance(thing.model, Model) else mesh
     corners = before.corners
     span = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)

@@ -1,4 +1,4 @@
-"""Where light comes from: the sun by the time of day, the sky through windows, lamps that are on."""
+"""Lights: the sun by the time of day, the sky through windows, lamps that are on."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ LinearColor = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """A lamp, or a window that lets in the light of the sky.
+    """A lamp, or a window with the light of the sky.
 
     Attributes:
         position: of its middle, metres.
         color: linear; a lamp of strength 1 lights white paper fully at a distance of one metre.
         span: half extents along x, y and z, for soft shadows; lamps are small balls, windows flat.
-        facing: the way a window looks into its room; None for lamps.
-        room: (x0, x1, z0, z1) that it lights; by night a lamp lights a little more than its room, through doors.
+        facing: direction of a window into its room; None for lamps.
+        room: (x0, x1, z0, z1) that it lights; by night a lamp's area exceeds its room, for light through doors.
     """
 
     position: Point
@@ -31,14 +31,14 @@ class Light:
 
 @dataclass(frozen=True, slots=True)
 class Daylight:
-    """What an hour of the day looks like.
+    """Sun and sky at an hour of the day.
 
     Attributes:
         sun: unit vector towards the sun; None after sunset.
         sunlight: its linear colour.
-        zenith, horizon: of the sky.
-        ambient: light that is everywhere indoors.
-        sky: how bright a square metre of window is.
+        zenith, horizon: colours of the sky.
+        ambient: ambient light indoors.
+        sky: brightness of a square metre of window.
     """
 
     sun: Point | None
@@ -85,7 +85,7 @@ LAMP_COLOR: LinearColor = (1.0, 0.86, 0.64)
 
 
 SPILL = 2.0
-"""Metres that a lamp's light is followed beyond its room by night; by day nobody sees what falls through doors."""
+"""Metres that a lamp's light reaches beyond its room by night; by day light through doors is too faint to show."""
 
 
 def lamp(
@@ -94,14 +94,14 @@ def lamp(
     room: tuple[float, float, float, float] | None = None,
     spill: float = SPILL,
 ) -> Light:
-    """A lamp that is on, and lights its room and `spill` metres around it."""
+    """A lamp that lights its room and `spill` metres around it."""
     red, green, blue = (strength * c for c in LAMP_COLOR)
     beyond = room and (room[0] - spill, room[1] + spill, room[2] - spill, room[3] + spill)
     return Light(position, (red, green, blue), room=beyond)
 
 
 def window(center: Point, size: Point, facing: Point, room: tuple[float, float, float, float], day: Daylight) -> Light:
-    """The light of the sky through a window of full `size`, looking into `room` along `facing`."""
+    """The light of the sky through a window of full `size` that faces into `room` along `facing`."""
     area = sorted(size)[1] * sorted(size)[2]
     strength = 0.62 * area * day.sky
     color = (0.94 * strength, 0.98 * strength, 1.04 * strength)

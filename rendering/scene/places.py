@@ -1,4 +1,4 @@
-"""Where things are when a world says only ON, INSIDE or held: boxes for what was moved, put down or added."""
+"""Positions of things from relations: boxes for things that were moved, put down or added."""
 
 from __future__ import annotations
 
@@ -20,18 +20,23 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 HANDS = {"HOLDS_RH": "right", "HOLDS_LH": "left"}
 BUILDING = frozenset({"floor", "wall", "ceiling", "doorjamb", "window"})
 STEP = 0.04
-"""Metres between the places that are tried."""
+"""Metres between candidate positions."""
 
 
-class Where(NamedTuple):
-    """Where a thing is by the graph: `held` by, `worn` by, `on` or `inside` what; `room` when only that is known."""
+class Location(NamedTuple):
+    """A thing's location in the graph.
 
-    how: str
-    what: int
+    Attributes:
+        kind: `held`, `worn`, `on`, `inside`, or `room` if no nearer holder is known.
+        holder: id of the character, support, container or room.
+    """
+
+    kind: str
+    holder: int
 
 
 class Pose(NamedTuple):
-    """A box and the way it faces."""
+    """A box and its direction."""
 
     box: Box
     yaw: float | None
@@ -39,54 +44,54 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Where everything is at one moment. Immutable; `settled` gives the next.
+    """Positions of all things in one keyframe. Immutable; `settled` gives the next.
 
     Attributes:
-        graph: of the moment.
-        where: node id -> where it is by the graph.
-        poses: node id -> box and yaw; what is held, worn or has no place has none.
+        graph: of the keyframe.
+        locations: node id -> its location in the graph.
+        poses: node id -> box and yaw; held and worn things, and those without a location, are absent.
         knowledge: for recipes and sizes.
     """
 
     graph: EnvironmentGraph
-    where: Mapping[int, Where]
+    locations: Mapping[int, Location]
     poses: Mapping[int, Pose]
     knowledge: Knowledge
 
     @cached_property
     def building(self) -> frozenset[int]:
-        """Floors, walls and the like, which nobody walks up to for what stands on them."""
+        """Floors, walls and the like: supports that actors do not walk to."""
         return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
 
     @classmethod
     def start(cls, home: EnvironmentGraph, knowledge: Knowledge) -> Places:
-        """A home as it was built: boxes as given."""
+        """The places of a home as it was built, with its boxes."""
         poses = {node.id: Pose(node.box, node.yaw) for node in home.nodes if node.box}
-        return cls(home, whereabouts(home), poses, knowledge)
+        return cls(home, locations_of(home), poses, knowledge)
 
     def settled(self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None) -> Places:
-        """The places after the graph changed: what it does not say to have moved stays, the rest finds a place.
+        """The places after the graph changed: things with an unchanged location stay, others get a free position.
 
         Args:
-            graph: of the next moment.
-            near: character id -> where it stands; things are put down on that side.
+            graph: of the next keyframe.
+            near: character id -> its position; things are put down on that side.
         """
-        where = whereabouts(graph)
+        locations = locations_of(graph)
         nodes = {node.id: node for node in graph.nodes}
         poses: dict[int, Pose] = {}
-        for node_id in _parents_first(nodes, where):
-            node, spot = nodes[node_id], where.get(node_id)
+        for node_id in _parents_first(nodes, locations):
+            node, location = nodes[node_id], locations.get(node_id)
             if node.category in (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts"):
                 if node_id in self.poses:
                     poses[node_id] = self.poses[node_id]
                 continue
-            pose = self._pose(node, spot, nodes, poses, tuple((near or {}).values()))
+            pose = self._pose(node, location, nodes, poses, tuple((near or {}).values()))
             if pose is not None:
                 poses[node_id] = pose
-        return Places(graph, where, poses, self.knowledge)
+        return Places(graph, locations, poses, self.knowledge)
 
     def nodes(self) -> list[Node]:
-        """The graph's nodes with their boxes of this moment."""
+        """The graph's nodes with their current boxes."""
         found = []
         for node in self.graph.nodes:
             pose = self.poses.get(node.id)
@@ -110,49 +115,49 @@ class Places:
     def _pose(
         self,
         node: Node,
-        spot: Where | None,
+        location: Location | None,
         nodes: Mapping[int, Node],
         poses: Mapping[int, Pose],
         near: tuple[Point, ...],
     ) -> Pose | None:
         before = self.poses.get(node.id)
-        if spot is None or spot.how in ("held", "worn"):
-            return before if spot is None else None
-        if before and self.where.get(node.id) == spot:
-            old, new = self.poses.get(spot.what), poses.get(spot.what)
-            if spot.how == "room" or old is None or new is None or old == new:
+        if location is None or location.kind in ("held", "worn"):
+            return before if location is None else None
+        if before and self.locations.get(node.id) == location:
+            old, new = self.poses.get(location.holder), poses.get(location.holder)
+            if location.kind == "room" or old is None or new is None or old == new:
                 return before
-        parent = nodes.get(spot.what)
+        parent = nodes.get(location.holder)
         if parent is None:
             return before
-        support = poses.get(spot.what)
-        if spot.how == "room" or parent.class_name == "floor" or support is None:
-            return self._on_floor(node, parent, poses, near) if spot.how != "on" or support else before
-        if node.class_name in LIQUIDS and spot.how == "inside" and max(support.box.size) < 0.5:
+        support = poses.get(location.holder)
+        if location.kind == "room" or parent.class_name == "floor" or support is None:
+            return self._on_floor(node, parent, poses, near) if location.kind != "on" or support else before
+        if node.class_name in LIQUIDS and location.kind == "inside" and max(support.box.size) < 0.5:
             return Pose(liquid(node, support.box).box or support.box, support.yaw)
-        return self._placed(node, parent, support, spot.how, poses, near)
+        return self._placed(node, parent, support, location.kind, poses, near)
 
     def _placed(
-        self, node: Node, parent: Node, support: Pose, how: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
+        self, node: Node, parent: Node, support: Pose, kind: str, poses: Mapping[int, Pose], near: tuple[Point, ...]
     ) -> Pose:
-        """On or in a thing that has a box: at the free place nearest to whoever is there."""
+        """The free pose on or in a support with a box that is nearest to a character."""
         recipe = recipe_of(parent.class_name, self.knowledge)
         yaw = support.yaw or 0.0
         known = form(parent.class_name, self.knowledge)
         size = local_size(support.box.size, yaw)
         level = known.levels[0] if known and known.levels and known.levels[0] < size[1] else 0.0
-        regions = (recipe.inside if how == "inside" else recipe.on)(Look(size, level=level, kind=""))
+        regions = (recipe.inside if kind == "inside" else recipe.on)(Look(size, level=level, kind=""))
         regions = regions or (Region(0.02, -size[0] * 0.3, size[0] * 0.3, -size[2] * 0.3, size[2] * 0.3, size[1]),)
         wanted = (
-            _laid(self.size_of(node))
-            if how == "on" and recipe_of(node.class_name, self.knowledge).size[1] < 0.05
+            _lying_flat(self.size_of(node))
+            if kind == "on" and recipe_of(node.class_name, self.knowledge).size[1] < 0.05
             else self.size_of(node)
         )
         others = self._around(support.box, poses, (node.id, parent.id))
         return _best(wanted, regions, support, others, near, derive(0, "place", node.id))
 
     def _around(self, box: Box, poses: Mapping[int, Pose], but: tuple[int, ...]) -> list[Box]:
-        """The boxes of other things over or in a box."""
+        """The boxes of other things above or in a box."""
         (x, y, z), (w, h, d) = box
         space = Box((x, y + 0.5, z), (w, h + 1.0, d))
         bulky = {node.id for node in self.graph.nodes if node.category == ROOM_CATEGORY}
@@ -160,7 +165,7 @@ class Places:
         return [other for other in found if _overlap(other, space) > 0]
 
     def _on_floor(self, node: Node, room: Node, poses: Mapping[int, Pose], near: tuple[Point, ...]) -> Pose | None:
-        """On the floor, beside whoever is there, else in the middle of the room."""
+        """A pose on the floor beside a character, else in the middle of the room."""
         base = poses.get(room.id)
         if base is None:
             return self.poses.get(node.id)
@@ -174,23 +179,23 @@ class Places:
         return _best(self.size_of(node), (region,), ground, others + people, tuple(inside), derive(0, "place", node.id))
 
 
-def whereabouts(graph: EnvironmentGraph) -> dict[int, Where]:
-    """For every thing the most particular place that a graph names: hand, wearer, support, container or room."""
+def locations_of(graph: EnvironmentGraph) -> dict[int, Location]:
+    """The most specific location of every thing: hand, wearer, support, container or room."""
     nodes = {node.id: node for node in graph.nodes}
     ranks = {"held": 0, "worn": 1, "on": 2, "inside": 3, "on building": 4, "room": 5}
-    best: dict[int, tuple[int, int, Where]] = {}
+    best: dict[int, tuple[int, int, Location]] = {}
     for edge in graph.edges:
-        how, thing, what = _read(edge.relation, edge.source, edge.target, nodes)
-        if not how:
+        kind, thing, holder = _read(edge.relation, edge.source, edge.target, nodes)
+        if not kind:
             continue
-        rank = (ranks[how], what, Where(how.removesuffix(" building"), what))
+        rank = (ranks[kind], holder, Location(kind.removesuffix(" building"), holder))
         if thing not in best or rank < best[thing]:
             best[thing] = rank
     return {thing: found[2] for thing, found in sorted(best.items())}
 
 
 def _read(relation: str, source: int, target: int, nodes: Mapping[int, Node]) -> tuple[str, int, int]:
-    """(how, thing, what) that an edge says about a thing's place; how is empty if nothing."""
+    """(kind, thing, holder) of the location that an edge gives; kind is empty if it gives none."""
     if source not in nodes or target not in nodes:
         return "", source, target
     if relation in HANDS:
@@ -206,23 +211,23 @@ def _read(relation: str, source: int, target: int, nodes: Mapping[int, Node]) ->
     return "", source, target
 
 
-def _parents_first(nodes: Mapping[int, Node], where: Mapping[int, Where]) -> list[int]:
-    """Ids so that what something is on or in comes before it."""
+def _parents_first(nodes: Mapping[int, Node], locations: Mapping[int, Location]) -> list[int]:
+    """Ids, each after its support or container."""
     done: dict[int, None] = {}
 
     def visit(node_id: int, trail: tuple[int, ...]) -> None:
-        spot = where.get(node_id)
-        if spot and spot.what in nodes and spot.what not in done and spot.what not in trail:
-            visit(spot.what, (*trail, node_id))
+        location = locations.get(node_id)
+        if location and location.holder in nodes and location.holder not in done and location.holder not in trail:
+            visit(location.holder, (*trail, node_id))
         done.setdefault(node_id)
 
-    # What stays where it is comes first by being older: low ids are the home's own.
+    # Things that stay come first: low ids are the home's own.
     for node_id in sorted(nodes):
         visit(node_id, ())
     return list(done)
 
 
-def _laid(size: Point) -> Point:
+def _lying_flat(size: Point) -> Point:
     """The size of a flat thing lying down."""
     w, h, d = size
     return (w, d, h) if h > d else size
@@ -231,7 +236,7 @@ def _laid(size: Point) -> Point:
 def _best(
     size: Point, regions: Iterable[Region], support: Pose, others: list[Box], near: tuple[Point, ...], seed: int
 ) -> Pose:
-    """The free place nearest to someone; the first region that has one. Stacked where there is none."""
+    """The free pose nearest to a character, in the first region that has one; stacked if none has."""
     yaw = support.yaw or 0.0
     fallback: tuple[float, Pose] | None = None
     for region in regions:
@@ -247,7 +252,7 @@ def _best(
 
 
 def _fitted(size: Point, region: Region) -> Point:
-    """Scaled down where the region is too small for it."""
+    """The size, scaled down to fit the region."""
     room = (region.x1 - region.x0, region.clear, region.z1 - region.z0)
     share = min(1.0, *(max(r, 0.01) / max(s, 1e-6) for r, s in zip(room, size, strict=True)))
     return size[0] * share, size[1] * share, size[2] * share
@@ -256,7 +261,7 @@ def _fitted(size: Point, region: Region) -> Point:
 def _candidates(
     size: Point, region: Region, support: Pose, yaw: float, near: tuple[Point, ...], seed: int
 ) -> list[Pose]:
-    """Places all over a region, the best first."""
+    """Candidate poses all over a region, best first."""
     (cx, cy, cz), height = support.box.center, support.box.size[1]
     c, s = cos(radians(yaw)), sin(radians(yaw))
     y = cy - height / 2 + region.y + size[1] / 2 + 0.001
@@ -281,7 +286,7 @@ def _ticks(low: float, high: float) -> list[float]:
 
 
 def _overlap(a: Box, b: Box) -> float:
-    """Volume shared by two boxes."""
+    """Volume of the intersection of two boxes."""
     volume = 1.0
     for p, q, s, t in zip(a.center, b.center, a.size, b.size, strict=True):
         side = (s + t) / 2 - abs(p - q)
@@ -292,7 +297,7 @@ def _overlap(a: Box, b: Box) -> float:
 
 
 def _stacked(pose: Pose, others: list[Box]) -> Pose:
-    """Lifted onto what is in its place, if that is small enough to stand on."""
+    """The pose lifted onto things at its position that are small enough to carry it."""
     (x, y, z), size = pose.box.center, pose.box.size
     low = y - size[1] / 2
     tops = [o.center[1] + o.size[1] / 2 for o in others if _overlap(pose.box, o) > 1e-9 and o.size[1] < 0.35]

@@ -1,4 +1,4 @@
-"""From an environment graph to a scene: which model stands where, and what shines."""
+"""From an environment graph to a scene: models, positions and lights."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
 UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
-"""Categories that are not objects to be drawn; characters are drawn as figures."""
+"""Categories that are not drawn as objects; characters are drawn as figures."""
 
 BUILDING = ("floor", "wall", "ceiling")
 
@@ -42,18 +42,18 @@ LIQUIDS = {
     "cleaning_solution": "#9fc8d8",
     "milkshake": "#e9c3cc",
 }
-"""Classes that fill what they are INSIDE, and their colours."""
+"""Classes that fill the vessel that they are INSIDE, and their colours."""
 
 SURFACE = 0.004
 """Height of the box of a liquid in a vessel: only its surface is drawn."""
 
 STRENGTH = {"ceiling_lamp": 2.3, "ceiling_fan": 1.8, "floor_lamp": 1.4, "candle": 0.15, "fireplace": 1.2}
-"""How bright a lamp is by its recipe; others 0.7."""
+"""Brightness of lamps by recipe; 0.7 for others."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
-    """A graph, prepared for taking scenes of it at many moments.
+class PreparedScene:
+    """A graph, prepared for making many scenes of it.
 
     Attributes:
         graph: the home, with boxes.
@@ -108,11 +108,11 @@ class Stage:
 
     @cached_property
     def openings(self) -> tuple[Box, ...]:
-        """What opens in walls."""
+        """Boxes of doors and windows in walls."""
         return tuple(node.box for node in self.graph.nodes if node.class_name in OPENINGS and node.box)
 
     def seed_of(self, node: Node) -> int:
-        """What decides a node's colours: furniture of one class in one room is alike."""
+        """The seed of a node's colours; furniture of one class in one room has the same."""
         if (
             node.category in ("Furniture", "Doors", "Windows", "Walls", "Floor", "Ceiling")
             or "curtain" in node.class_name
@@ -123,12 +123,12 @@ class Stage:
     def scene(
         self, nodes: Iterable[Node] | None = None, figures: Iterable[tuple[Node, Figure, Point, float]] = ()
     ) -> Scene:
-        """The scene of a moment.
+        """The scene of a keyframe.
 
         Args:
-            nodes: the graph's nodes as they are now: boxes, yaws and states; as in the graph when None. A node
-                without a box is not there.
-            figures: for each character its node, pose, place on the floor and yaw.
+            nodes: the graph's nodes with their current boxes, yaws and states; None takes those of the graph. A node
+                without a box is not drawn.
+            figures: for each character its node, figure, position on the floor and yaw.
         """
         present = [
             node for node in (self.graph.nodes if nodes is None else nodes) if node.box and node.category not in UNSEEN
@@ -141,11 +141,11 @@ class Stage:
 
     @cached_property
     def walls(self) -> tuple[Thing, ...]:
-        """Walls, floors and ceilings that the graph does not name."""
+        """Walls, floors and ceilings that the graph lacks."""
         return tuple(walls_of(self.graph, tuple(self.rooms.values())))
 
     def _remembered(self, node: Node) -> tuple[tuple[Thing, ...], tuple[Light, ...]]:
-        """A node's things and lights; most nodes are the same at most moments."""
+        """A node's things and lights, cached: most nodes are the same in most scenes."""
         key = (node.id, node.class_name, node.states, node.box, node.yaw)
         found = self._drawn.get(key)
         if found is None:
@@ -153,7 +153,7 @@ class Stage:
         return found
 
     def things(self, node: Node, ajar: float = 1.0) -> Iterator[Thing]:
-        """What a node is drawn as; `ajar` is how far it is open if it is OPEN."""
+        """The things that draw a node; `ajar` is its opening share if it is OPEN."""
         if node.box is None:
             return
         room = self.rooms.get(self.room_of.get(node.id, -1))
@@ -189,7 +189,7 @@ class Stage:
         yield Thing(node.id, node.class_name, model, (x, y - h / 2, z), yaw, above, building, shining)
 
     def lights(self, node: Node) -> Iterator[Light]:
-        """The light a node gives."""
+        """The lights of a node."""
         if node.box is None:
             return
         choice = choice_of(node.class_name, self.knowledge)
@@ -205,31 +205,31 @@ class Stage:
             yield window(node.box.center, size, _rounded(facing), _bounds(room.box), self.day)
 
     def _level(self, class_name: str, height: float) -> float:
-        """The height at which things stand on it, if the home's forms say so and it is not the top."""
+        """Height of the supporting surface if the class's form gives one below the top, else 0."""
         known = form(class_name, self.knowledge)
         if known is None or not known.levels or known.levels[0] >= height:
             return 0.0
         return known.levels[0]
 
     def _leaf(self, leaf: Box, share: float) -> tuple[Box, float] | None:
-        """Middle, size in its own frame and yaw of a door that is open by a share of its way; None without a doorway.
+        """Center, size in its own frame and yaw of a partly open door leaf; None without a doorway.
 
         Its own +x points away from the hinge.
         """
-        shut = self._shut(leaf)
-        if shut is None:
+        closed = self._closed_leaf(leaf)
+        if closed is None:
             return None
         width, thick = (f(leaf.size[0], leaf.size[2]) for f in (max, min))
-        width = width if share else max(shut.size[0], shut.size[2])
-        hung, one, other = _hinge(shut, leaf)
+        width = width if share else max(closed.size[0], closed.size[2])
+        hung, one, other = _hinge(closed, leaf)
         hinge = [a + (b - a) * share for a, b in zip(*hung, strict=True)]
         angle = one + ((other - one + 180) % 360 - 180) * share
         x, z = cos(radians(angle)) * width / 2, sin(radians(angle)) * width / 2
         center = (hinge[0] + x, leaf.center[1] - 0.025 * (1 - share), hinge[1] + z)
         return Box(center, (width, leaf.size[1], thick)), round(-angle, 4)
 
-    def _shut(self, leaf: Box) -> Box | None:
-        """The box of a closed door: in the nearest doorway."""
+    def _closed_leaf(self, leaf: Box) -> Box | None:
+        """The box of a closed door leaf, in the nearest doorway."""
         if not self.jambs:
             return None
         jamb = min(self.jambs, key=lambda node: _distance(node.box, leaf) if node.box else 1e9)
@@ -241,9 +241,11 @@ class Stage:
         return Box((x, leaf.center[1] - 0.025, z), size)
 
 
-def stage(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Stage:
+def prepared_scene(
+    graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0
+) -> PreparedScene:
     """A graph prepared for rendering."""
-    return Stage(graph, knowledge, seed, hour)
+    return PreparedScene(graph, knowledge, seed, hour)
 
 
 def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0) -> Scene:
@@ -251,11 +253,11 @@ def scene_of(graph: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, ho
 
     Args:
         graph: with boxes, yaws and states.
-        knowledge: for hypernyms.
+        knowledge: of the classes.
         seed: decides colours and variants.
         hour: of the day, 0 to 24.
     """
-    return stage(graph, knowledge, seed=seed, hour=hour).scene()
+    return prepared_scene(graph, knowledge, seed=seed, hour=hour).scene()
 
 
 def local_size(size: Size, yaw: float) -> Size:
@@ -266,7 +268,7 @@ def local_size(size: Size, yaw: float) -> Size:
         return size
     if c < 0.02:
         return d, h, w
-    # The box of a turned rectangle: X = a c + b s, Z = a s + b c; near 45 degrees that says nothing of a and b.
+    # The box of a turned rectangle: X = a c + b s, Z = a s + b c; near 45 degrees a and b can't be solved for.
     det = c * c - s * s
     if abs(det) < 0.2:
         side = min(w, d) / (c + s)
@@ -282,10 +284,10 @@ def liquid(node: Node, vessel: Box) -> Node:
     return replace(node, box=Box((x, y + h * 0.24, z), (side, SURFACE, side)))
 
 
-def _hinge(shut: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
-    """Where a door hangs (x, z), and the ways it points from there, degrees: when it is shut and when it is open."""
+def _hinge(closed: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
+    """The hinge (x, z) of a door, and the leaf's directions from there, degrees: closed and open."""
     ends = []
-    for box in (shut, leaf):
+    for box in (closed, leaf):
         along = 0 if box.size[0] >= box.size[2] else 2
         ends.append([(sign, along, _end(box, along, sign)) for sign in (-1, 1)])
     pairs = [(one, other) for one in ends[0] for other in ends[1]]
@@ -295,7 +297,7 @@ def _hinge(shut: Box, leaf: Box) -> tuple[tuple[Spot, Spot], float, float]:
 
 
 def _end(box: Box, along: int, sign: int) -> Spot:
-    """(x, z) of one end of a leaf."""
+    """(x, z) of one end of a door leaf."""
     x, z = box.center[0], box.center[2]
     half = sign * box.size[along] / 2
     return (x + half, z) if along == 0 else (x, z + half)

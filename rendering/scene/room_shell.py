@@ -1,4 +1,4 @@
-"""Walls, floor and ceiling for rooms of graphs that name none: rooms must not stand in the open."""
+"""Walls, floors and ceilings for the rooms of graphs without them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Hole = tuple[float, float, float, float]
 
 
 def walls_of(graph: EnvironmentGraph, rooms: Sequence[Node]) -> list[Thing]:
-    """Floor, ceiling and four walls around each room that has a box, if no wall of the graph has one."""
+    """Floor, ceiling and four walls around each room with a box; none if a wall of the graph has a box."""
     if any(node.class_name == "wall" and node.box for node in graph.nodes):
         return []
     holes = [node.box for node in graph.nodes if node.class_name in OPENINGS and node.box]
@@ -25,7 +25,7 @@ def walls_of(graph: EnvironmentGraph, rooms: Sequence[Node]) -> list[Thing]:
 
 
 def around_openings(wall: Box, openings: Sequence[Box]) -> list[Box]:
-    """A wall panel without what opens in it: itself where nothing does."""
+    """A wall panel minus its openings; the panel itself without any."""
     (x, y, z), (w, h, d) = wall
     axis = 2 if w > d else 0
     middle, length = (x, w) if axis == 2 else (z, d)
@@ -62,7 +62,7 @@ def _around(room: Node, box: Box, openings: Sequence[Box]) -> Iterator[Thing]:
 
 
 def _cut(openings: Sequence[Box], at: float, axis: int) -> list[Hole]:
-    """Openings that lie in the wall across `axis` at `at`, as (from, to, bottom, top)."""
+    """Openings in the wall across `axis` at `at`, as (from, to, bottom, top)."""
     along = 2 - axis
     found = []
     for center, size in openings:
@@ -73,7 +73,7 @@ def _cut(openings: Sequence[Box], at: float, axis: int) -> list[Hole]:
 
 
 def pieces(wall: Hole, holes: Sequence[Hole]) -> list[Hole]:
-    """A rectangle (from, to, bottom, top) without the holes, as rectangles."""
+    """A rectangle (from, to, bottom, top) minus the holes, as rectangles."""
     left = [wall]
     for a, b, c, d in holes:
         left = [piece for rest in left for piece in _without(rest, (a, b, c, d))]

@@ -1,4 +1,4 @@
-"""Ways for feet: the walkable floor of a graph with boxes, and the straightened path over it."""
+"""Routes of walks: the walkable floor of a graph with boxes, and straightened paths over it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from hearth.schemas.graph import Box, Node, Spot
 from hearth.simulation.motion.navigation import Ways
 
 DOORS = frozenset({"door", "maindoor", "balcony_door"})
-"""Classes that one opens to walk through."""
+"""Classes of doors."""
 
 
 def ways_of(rooms: Iterable[Node], nodes: Sequence[Node]) -> Ways | None:
-    """The floor of rooms and doorways that things leave free; None for rooms without boxes."""
+    """The free floor of rooms and doorways; None for rooms without boxes."""
     boxes = [room.box for room in rooms if room.box]
     if not boxes:
         return None
@@ -35,13 +35,13 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node]) -> Ways | None:
 
 
 def _deeper(jamb: Box) -> Box:
-    """A doorway that reaches into both rooms."""
+    """A doorway extended into both rooms."""
     (w, h, d), more = jamb.size, 2 * CELL
     return Box(jamb.center, (w + more, h, d) if w < d else (w, h, d + more))
 
 
 def path(ways: Ways | None, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...]:
-    """A path with few corners from start to goal; the straight line where there is no floor to walk on."""
+    """A path with few corners from start to goal; a straight line without a walkable path."""
     found = ways.path(start, goal, others) if ways else None
     if not found or ways is None:
         return start, goal
@@ -58,7 +58,7 @@ def path(ways: Ways | None, start: Spot, goal: Spot, others: Sequence[Spot] = ()
 
 
 def _clear(ways: Ways, a: Spot, b: Spot) -> bool:
-    """Whether one can walk straight; ends that stand close to furniture do not count."""
+    """Whether the straight line is walkable; ends close to furniture are ignored."""
     floor = ways.floor
     distance = float(np.hypot(b[0] - a[0], b[1] - a[1]))
     for step in np.arange(0.25, max(distance - 0.25, 0.26), CELL / 2):

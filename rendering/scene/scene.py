@@ -7,40 +7,40 @@ from functools import cached_property
 
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import Daylight, Light, daylight
-from hearth.rendering.scene.triangles import NOTHING, Geometry, Part, Still
+from hearth.rendering.scene.triangles import NOTHING, Geometry, Part, StaticThings
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a picture is taken of. Immutable; geometry is built when it is first needed.
+    """Things, lights and daylight of one picture. Immutable; geometry is built at its first use.
 
     Attributes:
-        things: what has a shape and is not among `still`.
+        things: the moving things.
         lights: lamps that are on, and windows by day.
         day: sun and sky.
-        still: further things, whose geometry is shared with other scenes that have the same ones.
+        static: further things, whose geometry is shared with other scenes.
     """
 
     things: tuple[Thing, ...]
     lights: tuple[Light, ...] = ()
     day: Daylight = field(default_factory=daylight)
-    still: Still = NOTHING
+    static: StaticThings = NOTHING
 
     @property
     def everything(self) -> tuple[Thing, ...]:
-        """All things with a shape."""
-        return self.still.things + self.things
+        """Static and moving things."""
+        return self.static.things + self.things
 
     @cached_property
     def geometry(self) -> Geometry:
         """Everything."""
-        return Geometry(self.still.whole, Part.of(self.things))
+        return Geometry(self.static.whole, Part.of(self.things))
 
     @cached_property
     def opened(self) -> Geometry:
-        """Everything but ceilings and what hangs there: for views from above."""
+        """Geometry without ceilings and hanging things, for views from above."""
         moving = tuple(thing for thing in self.things if not thing.above)
-        return Geometry(self.still.opened, Part.of(moving) if len(moving) < len(self.things) else self.geometry.moving)
+        return Geometry(self.static.opened, Part.of(moving) if len(moving) < len(self.things) else self.geometry.moving)
 
     @cached_property
     def _by_id(self) -> dict[int, Thing]:
@@ -50,5 +50,5 @@ class Scene:
         return found
 
     def find(self, node_id: int) -> Thing | None:
-        """The thing of that id; the first, if it is drawn as several."""
+        """The thing of a node; the first if the node is drawn as several."""
         return self._by_id.get(node_id)

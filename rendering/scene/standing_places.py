@@ -1,4 +1,4 @@
-"""The floor people can stand on, and where one stands to use a thing."""
+"""Free floor, and positions from which objects are used."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from hearth.schemas.graph import Box, Node, Spot
 
 CELL = 0.1
 BODY = 2
-"""Cells that a standing person needs on each side of the middle one."""
+"""Cells that a standing character needs on each side of the middle one."""
 HEADROOM = 1.7
 STEP_OVER = 0.06
 IGNORED = frozenset({"floor", "ceiling", "mat", "carpet", "doorjamb", "window", "curtain", "blinds", "doormat"})
-"""Classes one walks on, through or past."""
+"""Classes that do not block the floor."""
 
 NEAR, FAR = 0.32, 1.1
-"""Metres from a thing at which one likes to stand, and at which one can hardly use it."""
+"""Preferred distance from an object, and distance from which it is hard to use, metres."""
 
 SIDE = 0.26
-"""Metres from a person's middle within which a door touches it."""
+"""Metres from a character's middle within which a door touches it."""
 
 
 def nothing(node: int) -> Floats:
-    """What passes over the floor while a thing without doors opens."""
+    """The empty swept area of a thing without doors."""
     return np.zeros((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
-    """Cells of a home's floor.
+class FreeFloor:
+    """Cells of a home's free floor.
 
     Attributes:
         origin: (x, z) of the first cell's corner.
-        centers: (n, 2) x and z of the cells one can stand on, row by row.
-        rooms: (n,) id of the room each lies in.
+        centers: (n, 2) x and z of the cells where a character can stand, row by row.
+        rooms: (n,) id of each cell's room.
         level: height of the floor.
-        sweeps: gives, for a node's id, (n, 2) x and z of what its doors or drawers pass over.
+        sweeps: node id -> (n, 2) x and z of the floor that its doors or drawers sweep.
     """
 
     origin: Spot
@@ -52,8 +52,8 @@ class Ground:
     sweeps: Callable[[int], Floats] = nothing
 
     @classmethod
-    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Floats] = nothing) -> Ground:
-        """The free floor of rooms with boxes, between things with boxes."""
+    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Floats] = nothing) -> FreeFloor:
+        """The free floor of rooms between things; both have boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
         if not known:
             return cls((0.0, 0.0), np.zeros((0, 2)), np.zeros(0, np.int64), 0.0)
@@ -73,7 +73,7 @@ class Ground:
         return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps)
 
     def spot_in(self, room: int, taken: Iterable[Spot] = ()) -> Spot | None:
-        """Where one stands in a room: the free place nearest to the middle of its free floor."""
+        """The free spot nearest to the middle of a room's free floor."""
         mine = self.centers[self.rooms == room]
         if not len(mine):
             return None
@@ -82,7 +82,7 @@ class Ground:
         return float(x), float(z)
 
     def any_in(self, room: int, numbers: Random, taken: Iterable[Spot] = ()) -> Spot | None:
-        """A free place of a room by chance, not where others are."""
+        """A random free spot of a room, away from other characters."""
         mine = self.centers[self.rooms == room]
         mine = mine[_crowding(mine, taken) == 0]
         if not len(mine):
@@ -93,15 +93,15 @@ class Ground:
     def spot_for(
         self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
     ) -> Spot | None:
-        """Where one stands to use a thing: near it, before its front if it has one, not far from where one is.
+        """The best spot for using an object: near it, in front of it if it has a front, and close to `now`.
 
         Args:
-            box: the thing's.
-            yaw: the way it faces; None for things without a front.
-            room: only there.
-            now: where one is.
-            taken: where others are.
-            opens: the node whose doors pass beside one: the thing's, or that of what it is in.
+            box: the object's.
+            yaw: its direction; None for objects without a front.
+            room: id of the room to stand in.
+            now: the character's position.
+            taken: positions of other characters.
+            opens: the node whose doors may swing there: the object or its outermost container.
         """
         mine = self.centers[self.rooms == room]
         if not len(mine):
@@ -114,7 +114,7 @@ class Ground:
             front = np.array((sin(radians(yaw)), cos(radians(yaw))))
             way = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
             cost += (1 - way @ front) * 0.9
-            # Straight before it rather than aslant.
+            # Prefer spots straight in front.
             cost += np.maximum(np.abs(offset @ np.array((front[1], -front[0]))) - 0.2, 0) * 0.6
         if now is not None:
             cost += np.linalg.norm(mine - np.array(now), axis=1) * 0.08
@@ -122,7 +122,7 @@ class Ground:
         return float(x), float(z)
 
     def _hit(self, centers: NDArray[np.float64], opens: int) -> NDArray[np.float64]:
-        """A cost for standing where a door would hit one."""
+        """A cost for standing in the swept area of a door."""
         passed = self.sweeps(opens)
         if not len(passed):
             return np.zeros(len(centers))
@@ -131,7 +131,7 @@ class Ground:
 
 
 def is_in_the_way(node: Node, floor: float) -> bool:
-    """Whether a thing with a box keeps people from where it stands, on a floor of that height."""
+    """Whether a thing with a box blocks the floor of that height."""
     assert node.box is not None
     low, high = node.box.center[1] - node.box.size[1] / 2 - floor, node.box.center[1] + node.box.size[1] / 2 - floor
     return node.class_name not in IGNORED and low < HEADROOM and high > STEP_OVER and node.category not in (
@@ -140,7 +140,7 @@ def is_in_the_way(node: Node, floor: float) -> bool:
 
 
 def cells_of(box: Box, origin: Spot) -> tuple[slice, slice]:
-    """Cells whose middle lies in a box."""
+    """Cells with their middle in a box."""
 
     def part(center: float, size: float, start: float) -> slice:
         first = int(np.ceil((center - size / 2 - start) / CELL - 0.5))
@@ -162,7 +162,7 @@ def eroded(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _crowding(centers: NDArray[np.float64], taken: Iterable[Spot]) -> NDArray[np.float64]:
-    """A cost for standing where others are."""
+    """A cost for standing near other characters."""
     cost = np.zeros(len(centers))
     for spot in taken:
         cost += np.where(np.linalg.norm(centers - np.array(spot), axis=1) < 0.55, 5.0, 0.0)

@@ -1,4 +1,4 @@
-"""The floor that doors and drawers pass over while they open: people stand beside it."""
+"""The floor area that opening doors and drawers sweep; characters stand outside it."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ import numpy as np
 
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.prepared import Stage
-from hearth.rendering.scene.standing_places import Ground, nothing
+from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.standing_places import FreeFloor, nothing
 from hearth.schemas.graph import Node
 
 AJAR = (0.3, 0.65, 1.0)
-"""How far it is open where it is looked at."""
+"""Opening shares at which the swept area is sampled."""
 ALONG = np.linspace(0, 1, 7)
 GRID = 0.05
 OUT = 0.04
-"""Metres that something sticks out of a shut thing at most: a handle."""
+"""Greatest length of a handle in front of a closed thing, metres."""
 REACHED = 1.7
-"""Metres above the floor up to which a door would hit somebody."""
+"""Metres above the floor up to which a door would hit a character."""
 
 
-def ground_of(prepared: Stage) -> Ground:
-    """The floor of a home, with what its doors and drawers pass over; that is only worked out where it is asked for."""
+def free_floor(prepared: PreparedScene) -> FreeFloor:
+    """The free floor of a home, with the areas that doors and drawers sweep, computed at first use."""
     nodes = {node.id: node for node in prepared.graph.nodes if node.box and "CAN_OPEN" in node.properties}
 
     @cache
     def sweeps(number: int) -> Floats:
-        return swept(prepared, nodes[number], ground.level) if number in nodes else nothing(number)
+        return swept(prepared, nodes[number], floor.level) if number in nodes else nothing(number)
 
-    ground = Ground.of(prepared.rooms.values(), prepared.graph.nodes, sweeps)
-    return ground
+    floor = FreeFloor.of(prepared.rooms.values(), prepared.graph.nodes, sweeps)
+    return floor
 
 
-def swept(prepared: Stage, node: Node, floor: float) -> Floats:
-    """(n, 2) x and z of what leaves a thing's box while it opens; in steps of `GRID` metres."""
+def swept(prepared: PreparedScene, node: Node, floor: float) -> Floats:
+    """(n, 2) x and z of the floor outside a thing's box that it sweeps while it opens, in steps of `GRID` metres."""
     assert node.box is not None
     opened = replace(node, states=("OPEN",))
     (x, _, z), (w, _, d) = node.box.center, node.box.size
@@ -50,6 +50,6 @@ def swept(prepared: Stage, node: Node, floor: float) -> Floats:
 
 
 def _edges(corners: Floats) -> Floats:
-    """(T * 3 * steps, 3) points on the sides of (T, 3, 3) triangles."""
+    """(T * 3 * steps, 3) points on the edges of (T, 3, 3) triangles."""
     ways = np.roll(corners, -1, axis=1) - corners
     return (corners[:, :, None] + ways[:, :, None] * ALONG[:, None]).reshape(-1, 3)

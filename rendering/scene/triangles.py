@@ -1,4 +1,4 @@
-"""Triangles that rays meet: a part that stays, shared by many moments, and a part that is built for each."""
+"""Triangles for ray casting: a static part, shared by many scenes, and a moving part, built for each scene."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MARGIN = 0.01
 """Metres by which boxes around moving things are widened."""
 
 NEXT_TO = 0.15
-"""Metres between boxes that are taken for one."""
+"""Distance in metres below which boxes are merged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +29,8 @@ class Part:
     """The triangles of some things.
 
     Attributes:
-        things: those that are in it.
-        mesh: of everything, in world coordinates.
+        things: the things.
+        mesh: their joined meshes, in world coordinates.
         owner: (T,) index of each triangle's thing.
         starts: (things,) each thing's first triangle.
     """
@@ -42,7 +42,7 @@ class Part:
 
     @classmethod
     def of(cls, things: tuple[Thing, ...]) -> Part:
-        """Of the things, in their order."""
+        """The part of some things, in order."""
         meshes = [placed(thing) for thing in things]
         lengths = np.array([len(mesh) for mesh in meshes], np.int64)
         owner = np.repeat(np.arange(len(meshes), dtype=np.int32), lengths)
@@ -55,15 +55,15 @@ class Part:
 
     @cached_property
     def shadows(self) -> Caster:
-        """What keeps the light of lamps away: everything but the lamps themselves."""
+        """A caster for shadows of lamps: all things but lamps that are on."""
         lamps = np.array([thing.lamp for thing in self.things], np.bool_)
         return Caster.of(self.mesh.corners[~lamps[self.owner]]) if lamps.any() else self.caster
 
     @cached_property
     def rows(self) -> Floats:
-        """(T, COLUMNS) what shading looks up; `solid` is what one must not see from behind."""
+        """(T, COLUMNS) rows that shading looks up; `solid` marks triangles invisible from behind."""
         mesh = self.mesh
-        solid = np.array([thing.laid for thing in self.things], np.float32)
+        solid = np.array([thing.structural for thing in self.things], np.float32)
         rows = np.empty((len(mesh), COLUMNS), np.float32)
         corners, normals, uvs, surface = (
             np.ascontiguousarray(a, np.float32) for a in (mesh.corners, mesh.normals, mesh.uvs, mesh.surface)
@@ -74,14 +74,14 @@ class Part:
 
     @cached_property
     def boxes(self) -> Floats:
-        """(K, 6) low and high corners of boxes that hold everything, few and small."""
+        """(K, 6) low and high corners of a few small boxes that contain all triangles."""
         bounds = [placed(thing).bounds() for thing in self.things if len(placed(thing))]
         merged = _merged([(low - MARGIN, high + MARGIN) for low, high in bounds])
         return np.array([(*low, *high) for low, high in merged], np.float32).reshape(-1, 6)
 
 
 def _merged(boxes: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
-    """Boxes around groups of boxes that are next to each other."""
+    """Boxes around groups of neighbouring boxes."""
     groups: list[tuple[Floats, Floats]] = []
     for low, high in boxes:
         apart = []
@@ -94,8 +94,8 @@ def _merged(boxes: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
     return groups
 
 
-class Still:
-    """Things that stay: their triangles are prepared once and shared by all scenes that hold this object."""
+class StaticThings:
+    """Static things; their triangles are prepared once and shared by all scenes with this object."""
 
     def __init__(self, things: tuple[Thing, ...] = ()) -> None:
         self.things = things
@@ -107,52 +107,52 @@ class Still:
 
     @cached_property
     def opened(self) -> Part:
-        """Everything but ceilings and what hangs there."""
+        """The part without ceilings and hanging things."""
         kept = tuple(thing for thing in self.things if not thing.above)
         return Part.of(kept) if len(kept) < len(self.things) else self.whole
 
 
-NOTHING = Still()
+NOTHING = StaticThings()
 
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """All triangles of a scene: those of the part that stays come first."""
+    """All triangles of a scene, the static ones first."""
 
-    still: Part
+    static: Part
     moving: Part
 
     @cached_property
     def things(self) -> tuple[Thing, ...]:
-        """Everything that is in it."""
-        return self.still.things + self.moving.things
+        """Static and moving things."""
+        return self.static.things + self.moving.things
 
     @cached_property
     def first(self) -> int:
-        """The number of the first triangle that moves."""
-        return len(self.still.mesh)
+        """Index of the first moving triangle."""
+        return len(self.static.mesh)
 
     @cached_property
     def owners(self) -> NDArray[np.int32]:
-        """(T + 1,) index into `things` of each triangle; the last is -1: none."""
+        """(T + 1,) index into `things` of each triangle; the last entry is -1, for rays without a hit."""
         return np.concatenate(
-            (self.still.owner, self.moving.owner + np.int32(len(self.still.things)), np.array([-1], np.int32))
+            (self.static.owner, self.moving.owner + np.int32(len(self.static.things)), np.array([-1], np.int32))
         )
 
     def cast(self, rays: Floats) -> Hits:
         """The first hit of each of (N, 6) rays."""
-        hits = self.still.caster.cast(rays)
+        hits = self.static.caster.cast(rays)
         everywhere = np.arange(len(rays), dtype=np.int32)
         self.overlay(everywhere, rays, hits)
         return hits
 
     def overlay(self, pixels: NDArray[np.int32], rays: Floats, hits: Hits) -> NDArray[np.int32]:
-        """Write what moves over the hits of all pixels where it is nearer; gives the pixels where it is.
+        """Replace hits on static things by nearer hits on moving things; returns the changed pixels.
 
         Args:
-            pixels: (M,) whose rays these are.
+            pixels: (M,) pixels of the rays.
             rays: (M, 6).
-            hits: of all pixels, on what stays.
+            hits: of all pixels, on static things.
         """
         found, numbers, uvs = self.moving.caster.raw(rays)
         won = np.empty(len(pixels), np.int32)
@@ -160,5 +160,5 @@ class Geometry:
         return won[: nearer(pixels, found, numbers, uvs, self.first, distance, triangle, u, v, won)]
 
     def owner(self, triangle: Numbers) -> NDArray[np.int32]:
-        """(N,) index into `things` of N triangles; -1 for none."""
+        """(N,) index into `things` of N triangles; -1 without a triangle."""
         return self.owners.take(triangle, mode="wrap")

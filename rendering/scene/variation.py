@@ -1,4 +1,4 @@
-"""What may differ between two films of one execution: chosen by a seed, and recorded with the film."""
+"""Random variation between films of one execution, chosen by a seed and recorded with the film."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from hearth.schemas.rng import derive
 from hearth.schemas.structs import VariationRow
 
 HOURS = (7.5, 18.5)
-"""Hours of the day between which light is drawn."""
+"""Range of the random hour of the day."""
 
 SPEEDS = (0.85, 1.25)
 JITTER = 0.12
-"""Metres by which a camera may be off its place along each axis."""
+"""Greatest offset of a camera along each axis, metres."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """How a film is made.
+    """The variable parameters of a film.
 
     Attributes:
-        seed: bodies, colours and designs of objects.
+        seed: decides bodies, colours and designs of objects.
         hour: of the day.
-        speed: 2 has everyone move twice as fast.
-        jitter: metres by which cameras are off their places, at most.
-        scatter: metres by which small things are off their places, at most.
-        wander: whether people begin anywhere in their room, not where the home has them.
+        speed: factor of the characters' speed.
+        jitter: greatest offset of cameras, metres.
+        scatter: greatest offset of small things, metres.
+        wander: whether characters begin at a random spot of their room.
     """
 
     seed: int = 0
@@ -40,24 +40,24 @@ class Variation:
     wander: bool = False
 
     def random(self, *use: object) -> random.Random:
-        """Numbers for one use: the same ones for the same seed."""
+        """A random generator for one use, the same for the same seed."""
         return random.Random(derive(self.seed, "variation", *use))
 
     def moved(self, camera: Camera) -> Camera:
-        """A camera, off its place by `jitter`; one of a name always by the same amount."""
+        """A camera with an offset of at most `jitter`, the same for the same name."""
         if not self.jitter:
             return camera
         numbers = self.random("camera", camera.name)
         x, y, z = (value + numbers.uniform(-self.jitter, self.jitter) for value in camera.eye)
         return replace(camera, eye=(x, y, z), fov=camera.fov * numbers.uniform(0.95, 1.05))
 
-    def told(self) -> VariationRow:
-        """All of it as plain values, to be recorded."""
+    def row(self) -> VariationRow:
+        """The variation as a row of the published table."""
         return cast(VariationRow, asdict(self))
 
 
 def scattered(home: EnvironmentGraph, variation: Variation) -> EnvironmentGraph:
-    """A home with its small things a little off their places: on what they were on, and in nobody's way."""
+    """A home with its small things moved slightly on their supports, without collisions."""
     if not variation.scatter:
         return home
     boxes = {node.id: node.box for node in home.nodes if node.box}
@@ -78,7 +78,7 @@ TRIES = 6
 
 
 def _nudged(box: Box, support: Box, others: list[Box], variation: Variation, node_id: int) -> Box | None:
-    """The box at another place of its support; None where none was found."""
+    """The box at another position on its support; None if none was found."""
     numbers = variation.random("place", node_id)
     (x, y, z), far = box.center, variation.scatter
     for _ in range(TRIES):
@@ -96,15 +96,15 @@ def _touch(one: Box, other: Box) -> bool:
 
 
 PLAIN = Variation()
-"""Nothing is drawn: things are where the home has them."""
+"""No variation."""
 
 
 def drawn(seed: int, record_id: str = "") -> Variation:
-    """A variation by chance.
+    """A random variation.
 
     Args:
         seed: of the run.
-        record_id: of what is filmed.
+        record_id: of the filmed execution.
     """
     numbers = random.Random(derive(seed, "film", record_id))
     return Variation(

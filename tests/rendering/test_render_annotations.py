@@ -13,7 +13,7 @@ from hearth.rendering.film import png
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
 from hearth.rendering.people.figure import BODIES, Figure
-from hearth.rendering.people.skeleton import Stance
+from hearth.rendering.people.skeleton import BodyPose
 from hearth.rendering.rays.flow import flow, flow_of
 from hearth.rendering.rays.shot import shoot
 from hearth.rendering.scene.instances import Thing
@@ -87,7 +87,7 @@ def test_what_is_hidden_has_no_box():
 
 
 def test_joints_are_where_the_body_is():
-    person = Thing(9, "character", Figure(BODIES["ben"], Stance()), (0.3, -0.9, 3.0), 180.0)
+    person = Thing(9, "character", Figure(BODIES["ben"], BodyPose()), (0.3, -0.9, 3.0), 180.0)
     (found,) = skeletons(shoot(Scene((BACK, person)), CAMERA))
     head, hand = found.joints["head"], found.joints["hand_r"]
     assert head == pytest.approx((0.3, 0.7, 3.0), abs=0.1)
@@ -99,7 +99,7 @@ def test_joints_are_where_the_body_is():
 
 
 def test_joints_behind_a_wall_are_not_visible():
-    person = Thing(9, "character", Figure(BODIES["ben"], Stance()), (0.0, -0.9, 3.0), 180.0)
+    person = Thing(9, "character", Figure(BODIES["ben"], BodyPose()), (0.0, -0.9, 3.0), 180.0)
     wall = slab(3, (0, -1.0, 1.5), (4, 2.0, 0.1))
     (found,) = skeletons(shoot(Scene((BACK, person, wall)), CAMERA))
     assert "ankle_l" not in found.visible
@@ -108,8 +108,8 @@ def test_joints_behind_a_wall_are_not_visible():
 
 def test_a_picture_is_described_in_plain_values():
     person = Thing(9, "character", Figure(BODIES["ben"]), (0.0, -0.9, 3.0), 180.0)
-    told = described(shoot(Scene((BACK, person)), CAMERA))
-    assert told["camera"] == camera_of(CAMERA)
-    assert np.array(told["camera"]["intrinsics"])[0, 0] == pytest.approx(FOCAL, abs=1e-3)
-    assert [one["node"] for one in told["objects"]] == [1, 9]
-    assert told["people"][0]["joints_3d"].keys() == told["people"][0]["joints_2d"].keys()
+    row = described(shoot(Scene((BACK, person)), CAMERA))
+    assert row["camera"] == camera_of(CAMERA)
+    assert np.array(row["camera"]["intrinsics"])[0, 0] == pytest.approx(FOCAL, abs=1e-3)
+    assert [one["node"] for one in row["objects"]] == [1, 9]
+    assert row["people"][0]["joints_3d"].keys() == row["people"][0]["joints_2d"].keys()

@@ -11,8 +11,8 @@ pytest.importorskip("open3d", exc_type=ImportError)
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film.video import Writer
-from hearth.rendering.scene.laid_out import laid
 from hearth.rendering.scene.variation import PLAIN, drawn, scattered
+from hearth.rendering.scene.with_geometry import with_geometry
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
@@ -69,7 +69,7 @@ def test_small_things_are_moved_on_their_support_and_not_into_each_other():
 def test_chance_is_the_same_for_the_same_seed_and_is_told():
     assert drawn(3, "a") == drawn(3, "a")
     assert drawn(3, "a") != drawn(3, "b")
-    assert set(drawn(3, "a").told()) == {"seed", "hour", "speed", "jitter", "scatter", "wander"}
+    assert set(drawn(3, "a").row()) == {"seed", "hour", "speed", "jitter", "scatter", "wander"}
     camera = look_at("kitchen.1", (0, 1, 0), (0, 1, 5))
     how = drawn(3, "a")
     assert how.moved(camera) == how.moved(camera) != camera
@@ -108,11 +108,11 @@ def test_a_home_without_geometry_is_laid_out_and_said():
         (Node(9, "kitchen", "Rooms"), *(replace(node, box=None) for node in HOME.nodes)),
         (*HOME.edges, *(Edge(node.id, "INSIDE", 9) for node in HOME.nodes)),
     )
-    found = laid(bare, "bare", default())
+    found = with_geometry(bare, "bare", default())
     assert found.made
     assert [node.id for node in found.graph.nodes] == [node.id for node in bare.nodes]
     assert all(node.box for node in found.graph.nodes)
     assert "bare has no geometry" in found.note("bare")
-    again = laid(found.graph, "", default())
+    again = with_geometry(found.graph, "", default())
     assert again.graph is found.graph, "what has geometry keeps its own"
     assert not again.note("bare")

@@ -4,23 +4,23 @@ import numpy as np
 import pytest
 
 from hearth.rendering.people.figure import BODIES, Figure, figure_mesh
-from hearth.rendering.people.skeleton import FOREARM, SHIN, THIGH, UPPER_ARM, Stance, joints, two_bones
+from hearth.rendering.people.skeleton import FOREARM, SHIN, THIGH, UPPER_ARM, BodyPose, joints, two_bones
 
 HEIGHT = 1.7
-STANCES = {
-    "standing": Stance(),
-    "walking": Stance(stride=0.8),
-    "reaching": Stance(right=(0.2, 1.0, 0.5)),
-    "low": Stance(left=(-0.2, 0.25, 0.45)),
-    "sitting": Stance("sitting", 0.46),
-    "typing": Stance("sitting", 0.46, right=(0.1, 0.76, 0.4), left=(-0.1, 0.76, 0.4), gaze=(0, 0.9, 0.8)),
-    "lying": Stance("lying", 0.5, asleep=True),
+BODY_POSES = {
+    "standing": BodyPose(),
+    "walking": BodyPose(stride=0.8),
+    "reaching": BodyPose(right=(0.2, 1.0, 0.5)),
+    "low": BodyPose(left=(-0.2, 0.25, 0.45)),
+    "sitting": BodyPose("sitting", 0.46),
+    "typing": BodyPose("sitting", 0.46, right=(0.1, 0.76, 0.4), left=(-0.1, 0.76, 0.4), gaze=(0, 0.9, 0.8)),
+    "lying": BodyPose("lying", 0.5, asleep=True),
 }
 
 
-@pytest.mark.parametrize("name", STANCES)
+@pytest.mark.parametrize("name", BODY_POSES)
 def test_bones_keep_their_lengths(name):
-    found = joints(STANCES[name], HEIGHT)
+    found = joints(BODY_POSES[name], HEIGHT)
     for side in "rl":
         for a, b, length in (("hip", "knee", THIGH), ("knee", "ankle", SHIN), ("shoulder", "elbow", UPPER_ARM),
                              ("elbow", "wrist", FOREARM)):  # fmt: skip
@@ -28,9 +28,9 @@ def test_bones_keep_their_lengths(name):
             assert np.linalg.norm(bone) == pytest.approx(length * HEIGHT, rel=0.01)
 
 
-@pytest.mark.parametrize("name", STANCES)
+@pytest.mark.parametrize("name", BODY_POSES)
 def test_nobody_sinks_into_the_floor(name):
-    low, high = figure_mesh(Figure(BODIES["ben"], STANCES[name])).bounds()
+    low, high = figure_mesh(Figure(BODIES["ben"], BODY_POSES[name])).bounds()
     assert low[1] > -0.02
     if name == "standing":
         assert high[1] == pytest.approx(BODIES["ben"].height, abs=0.06)
@@ -41,13 +41,13 @@ def test_nobody_sinks_into_the_floor(name):
 
 @pytest.mark.parametrize(("name", "side"), [("reaching", "r"), ("low", "l"), ("typing", "r"), ("typing", "l")])
 def test_hands_arrive(name, side):
-    stance = STANCES[name]
-    goal = stance.right if side == "r" else stance.left
-    assert np.linalg.norm(joints(stance, HEIGHT)[f"hand_{side}"] - np.array(goal)) < 0.06
+    body_pose = BODY_POSES[name]
+    goal = body_pose.right if side == "r" else body_pose.left
+    assert np.linalg.norm(joints(body_pose, HEIGHT)[f"hand_{side}"] - np.array(goal)) < 0.06
 
 
 def test_the_head_turns_to_what_is_looked_at():
-    left = joints(Stance(gaze=(-3, 1.5, 1)), HEIGHT)
+    left = joints(BodyPose(gaze=(-3, 1.5, 1)), HEIGHT)
     assert (left["face"] - left["head"])[0] < -0.05
 
 

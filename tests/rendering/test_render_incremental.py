@@ -13,11 +13,11 @@ from hearth.rendering.modalities import render
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
 from hearth.rendering.people.figure import BODIES, Figure
-from hearth.rendering.people.skeleton import Stance
-from hearth.rendering.rays.incremental import pictures_of, take
+from hearth.rendering.people.skeleton import BodyPose
+from hearth.rendering.rays.incremental import incremental_frame, pictures_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.prepared import scene_of
-from hearth.rendering.scene.triangles import Still
+from hearth.rendering.scene.triangles import StaticThings
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
 ROOM = Node(1, "kitchen", "Rooms", box=Box((0, 1.3, 0), (4.0, 2.6, 4.0)))
@@ -35,31 +35,33 @@ STILL = {}
 
 
 @pytest.fixture(scope="module")
-def still():
+def static():
     graph = EnvironmentGraph(NODES, tuple(Edge(node.id, "INSIDE", 1) for node in NODES[1:]))
     return scene_of(graph, default(), hour=11.0)
 
 
-def moment(still, *moving, lights=None):
-    lights = still.lights if lights is None else lights
-    return replace(still, things=moving, still=STILL.setdefault(id(still), Still(still.things)), lights=lights)
+def keyframe(static, *moving, lights=None):
+    lights = static.lights if lights is None else lights
+    return replace(
+        static, things=moving, static=STILL.setdefault(id(static), StaticThings(static.things)), lights=lights
+    )
 
 
-def person(x, z, **stance):
-    return Thing(2, "character", Figure(BODIES["ana"], Stance(**stance)), (x, 0.0, z), 30.0)
+def person(x, z, **body_pose):
+    return Thing(2, "character", Figure(BODIES["ana"], BodyPose(**body_pose)), (x, 0.0, z), 30.0)
 
 
 def ball(x, y=0.74):
     return Thing(3, "ball", Model("toy", Look((0.2, 0.2, 0.2), kind="ball")), (x, y, -0.6))
 
 
-def film(still):
-    yield moment(still, person(-1, 0.3), ball(0))
-    yield moment(still, person(-0.8, 0.2, stride=0.7), ball(0))
-    yield moment(still, person(-0.8, 0.2), ball(0.3))
-    yield moment(still, person(-0.8, 0.2), ball(0.3), lights=tuple(x for x in still.lights if x.facing))
-    yield moment(still, person(-0.8, 0.2, right=(0.2, 1.0, 0.4)))
-    yield moment(still, person(0.2, 0.9), ball(-0.2, 0.9))
+def film(static):
+    yield keyframe(static, person(-1, 0.3), ball(0))
+    yield keyframe(static, person(-0.8, 0.2, stride=0.7), ball(0))
+    yield keyframe(static, person(-0.8, 0.2), ball(0.3))
+    yield keyframe(static, person(-0.8, 0.2), ball(0.3), lights=tuple(x for x in static.lights if x.facing))
+    yield keyframe(static, person(-0.8, 0.2, right=(0.2, 1.0, 0.4)))
+    yield keyframe(static, person(0.2, 0.9), ball(-0.2, 0.9))
 
 
 def difference(one, other):
@@ -67,31 +69,31 @@ def difference(one, other):
 
 
 @pytest.mark.parametrize("name", CAMERAS)
-def test_only_what_changed_is_drawn_and_nothing_else_differs(still, name):
+def test_only_what_changed_is_drawn_and_nothing_else_differs(static, name):
     last = None
-    for number, scene in enumerate(film(still)):
-        last = take(scene, CAMERAS[name], last)
+    for number, scene in enumerate(film(static)):
+        last = incremental_frame(scene, CAMERAS[name], last)
         seen = pictures_of(last, ("rgb", "instance_ids"))
         whole = render(scene, CAMERAS[name], ("rgb", "instance_ids"))
         assert (seen["instance_ids"] == whole["instance_ids"]).all(), number
         assert difference(seen, whole).max() <= 1, number
         # All triangles in one part: where two walls meet, the other may win.
-        alone = replace(scene, things=scene.everything, still=Still())
+        alone = replace(scene, things=scene.everything, static=StaticThings())
         whole = render(alone, CAMERAS[name], ("rgb", "instance_ids"))
         assert (seen["instance_ids"] == whole["instance_ids"]).all(), number
         assert (difference(seen, whole) > 1).sum() <= 5, number
-        if number and scene.lights == still.lights:
+        if number and scene.lights == static.lights:
             assert 0 < last.drawn < 96 * 72 / 2, number
 
 
-def test_the_same_scene_again_draws_nothing(still):
-    first = take(moment(still, ball(0)), CAMERAS["inside"])
-    assert take(moment(still, ball(0)), CAMERAS["inside"], first).drawn == 0
+def test_the_same_scene_again_draws_nothing(static):
+    first = incremental_frame(keyframe(static, ball(0)), CAMERAS["inside"])
+    assert incremental_frame(keyframe(static, ball(0)), CAMERAS["inside"], first).drawn == 0
 
 
-def test_another_camera_or_hour_draws_all(still):
-    scene = moment(still, ball(0))
-    first = take(scene, CAMERAS["inside"])
-    assert take(scene, CAMERAS["above"], first).drawn == 96 * 72
+def test_another_camera_or_hour_draws_all(static):
+    scene = keyframe(static, ball(0))
+    first = incremental_frame(scene, CAMERAS["inside"])
+    assert incremental_frame(scene, CAMERAS["above"], first).drawn == 96 * 72
     later = replace(scene, day=replace(scene.day, ambient=0.1))
-    assert take(later, CAMERAS["inside"], first).drawn == 96 * 72
+    assert incremental_frame(later, CAMERAS["inside"], first).drawn == 96 * 72

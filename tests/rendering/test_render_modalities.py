@@ -144,14 +144,14 @@ def test_unknown_modalities_are_told():
 def test_flow_boxes_and_camera_come_from_the_same_cast():
     camera = plain((0, 0, 0), (0, 0, 1))
     before, after = (Scene((slab(3, (x, 0, 4), (2, 2, 1)),)) for x in (0.0, 0.2))
-    told = render(before, camera, ("flow", "boxes", "poses", "camera"), after=after)
+    row = render(before, camera, ("flow", "boxes", "poses", "camera"), after=after)
     focal = camera.intrinsics[0, 0]
-    assert told["flow"][H // 2, W // 2] == pytest.approx((0.2 * focal / 3.5, 0), abs=0.01)
-    (box,) = told["boxes"]
+    assert row["flow"][H // 2, W // 2] == pytest.approx((0.2 * focal / 3.5, 0), abs=0.01)
+    (box,) = row["boxes"]
     assert (box["node"], box["box_3d"]["size"]) == (3, [2, 2, 1])
     assert box["box_2d"][0] == pytest.approx(W / 2 - focal / 3.5, abs=1)
-    assert told["poses"] == []
-    assert told["camera"]["intrinsics"][0][0] == pytest.approx(focal, abs=1e-3)
+    assert row["poses"] == []
+    assert row["camera"]["intrinsics"][0][0] == pytest.approx(focal, abs=1e-3)
 
 
 def test_an_empty_scene_is_sky():

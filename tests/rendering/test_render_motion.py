@@ -11,7 +11,7 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.film.player import page
-from hearth.rendering.film.snapshots import play
+from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import Writer, film, record, times
 from hearth.rendering.people.motion import frames, spans
 from hearth.rendering.scene.routes import path, ways_of
@@ -46,22 +46,22 @@ HOME = EnvironmentGraph(
 
 
 @pytest.fixture(scope="module")
-def staged():
+def trajectory():
     program, faults = parse_program(PROGRAM.replace("[Sit]", "[Walk] <chair> (1)\n[Sit]"))
     assert not faults
     bound = program.bound({("cup", 1): CUP, ("table", 1): TABLE, ("chair", 1): CHAIR})
     done = run(World.start(Home.from_graph(HOME, "", default())), bound)
     assert done.executable, done.failure
-    return play(done, HOME, default())
+    return trajectory_of(done, HOME, default())
 
 
 @pytest.fixture(scope="module")
-def shown(staged):
-    return list(frames(staged, FPS))
+def shown(trajectory):
+    return list(frames(trajectory, FPS))
 
 
-def test_steps_follow_each_other_and_frames_fill_them(staged, shown):
-    found = spans(staged)
+def test_steps_follow_each_other_and_frames_fill_them(trajectory, shown):
+    found = spans(trajectory)
     assert [span.tick for span in found] == list(range(8))
     assert all(one.end == two.start for one, two in pairwise(found))
     assert all(span.end > span.start for span in found)
@@ -69,30 +69,30 @@ def test_steps_follow_each_other_and_frames_fill_them(staged, shown):
     assert all(found[frame.tick].start <= frame.time < found[frame.tick].end for frame in shown)
 
 
-def test_a_film_ends_each_step_where_the_snapshot_is(staged, shown):
+def test_a_film_ends_each_step_where_the_snapshot_is(trajectory, shown):
     for tick in range(1, 8):
         last = [frame for frame in shown if frame.tick == tick][-1]
-        assert last.actors == staged.moments[tick].actors
+        assert last.actors == trajectory.keyframes[tick].actors
 
 
 def test_people_walk_at_a_walking_pace_around_furniture(shown):
     for one, two in pairwise(shown):
         (x0, z0), (x1, z1) = one.actors[0].spot, two.actors[0].spot
         assert hypot(x1 - x0, z1 - z0) < 1.5 / FPS
-    walking = [frame for frame in shown if frame.actors[0].stance.swing]
+    walking = [frame for frame in shown if frame.actors[0].body_pose.swing]
     assert len(walking) > 10
     for frame in walking:
         x, z = frame.actors[0].spot
         assert abs(x) > 0.6 or abs(z) > 0.4, (frame.time, x, z)
 
 
-def test_feet_on_the_floor_stay_where_they_are(staged):
+def test_feet_on_the_floor_stay_where_they_are(trajectory):
     planted = 0
-    for one, two in pairwise(frames(staged, 30.0)):
+    for one, two in pairwise(frames(trajectory, 30.0)):
         a, b = one.actors[0], two.actors[0]
-        if not (a.stance.swing and b.stance.swing) or a.yaw != b.yaw or a.stance.swing * b.stance.swing < 0:
+        if not (a.body_pose.swing and b.body_pose.swing) or a.yaw != b.yaw or a.body_pose.swing * b.body_pose.swing < 0:
             continue
-        foot = "ankle_l" if a.stance.swing > 0 else "ankle_r"
+        foot = "ankle_l" if a.body_pose.swing > 0 else "ankle_r"
         (x0, _, z0), (x1, _, z1) = (actor.world(tuple(actor.figure().joints()[foot])) for actor in (a, b))
         assert hypot(x1 - x0, z1 - z0) < 0.015
         planted += 1
@@ -126,12 +126,12 @@ def test_the_way_leads_around_and_through_doors():
     assert path(None, (0, 0), (1, 1)) == ((0, 0), (1, 1))
 
 
-def test_films_are_written_with_the_times_of_their_steps(staged, tmp_path):
-    done = record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=2.5)
+def test_films_are_written_with_the_times_of_their_steps(trajectory, tmp_path):
+    done = record(trajectory, HOME, tmp_path, "auto", size=(48, 36), fps=2.5)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["auto.mp4", "auto.webm"]
     assert "[Grab] <cup>" in done.steps[2]["steps"][0]
     assert all(step["cameras"] for step in done.steps)
-    assert len(done.moments) == 8
+    assert len(done.keyframes) == 8
     import cv2
 
     for file in done.files:
@@ -143,29 +143,29 @@ def test_films_are_written_with_the_times_of_their_steps(staged, tmp_path):
 
 
 @pytest.mark.slow
-def test_films_have_the_same_bytes_each_time(staged, tmp_path):
-    record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=2.5, suffixes=(".mp4",))
+def test_films_have_the_same_bytes_each_time(trajectory, tmp_path):
+    record(trajectory, HOME, tmp_path, "auto", size=(48, 36), fps=2.5, suffixes=(".mp4",))
     first = (tmp_path / "auto.mp4").read_bytes()
-    record(staged, HOME, tmp_path, "auto", size=(48, 36), fps=2.5, suffixes=(".mp4",))
+    record(trajectory, HOME, tmp_path, "auto", size=(48, 36), fps=2.5, suffixes=(".mp4",))
     assert (tmp_path / "auto.mp4").read_bytes() == first
 
 
-def test_every_kind_of_camera_sees_something(staged):
+def test_every_kind_of_camera_sees_something(trajectory):
     for view in ("top", "first", "third", "kitchen.1.2"):
-        shot = next(film(staged, HOME, view, size=(32, 24), fps=5.0))
+        shot = next(film(trajectory, HOME, view, size=(32, 24), fps=5.0))
         assert shot.rgb.shape == (24, 32, 3)
         assert shot.rgb.std() > 5, view
 
 
-def test_unknown_cameras_and_formats_are_told(staged, tmp_path):
+def test_unknown_cameras_and_formats_are_told(trajectory, tmp_path):
     with pytest.raises(HearthError, match="no camera `attic`"):
-        next(film(staged, HOME, "attic"))
+        next(film(trajectory, HOME, "attic"))
     with pytest.raises(HearthError, match="can't write"):
         Writer(tmp_path / "film.avi", 32, 24, 5.0)
 
 
-def test_the_page_has_a_row_for_each_step(staged):
-    steps = times(spans(staged))
+def test_the_page_has_a_row_for_each_step(trajectory):
+    steps = times(spans(trajectory))
     text = page("Tea <for> two", ["auto.webm"], steps)
     assert "Tea &lt;for&gt; two" in text
     assert len(re.findall("<li ", text)) == len(steps)

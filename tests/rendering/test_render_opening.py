@@ -8,12 +8,12 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.film.snapshots import play
+from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.models.catalog import RECIPES
 from hearth.rendering.models.look import Look
 from hearth.rendering.people.motion import OPENING, frames, spans, swinging
 from hearth.rendering.scene.instances import placed
-from hearth.rendering.scene.prepared import stage
+from hearth.rendering.scene.prepared import prepared_scene
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
@@ -40,16 +40,16 @@ HOME = EnvironmentGraph(
 
 
 @pytest.fixture(scope="module")
-def staged():
+def trajectory():
     text = "Look\nFor milk\n\n\n[Walk] <fridge> (1)\n[Open] <fridge> (1)\n[Close] <fridge> (1)\n"
     done = run(World.start(Home.from_graph(HOME, "", default())), parse_program(text)[0].bound({("fridge", 1): FRIDGE}))
     assert done.executable, done.failure
-    return play(done, HOME, default())
+    return trajectory_of(done, HOME, default())
 
 
-def test_a_fridge_opens_and_closes_bit_by_bit_after_the_hand_arrives(staged):
+def test_a_fridge_opens_and_closes_bit_by_bit_after_the_hand_arrives(trajectory):
     reach = {2: [], 3: []}
-    for frame in frames(staged, FPS):
+    for frame in frames(trajectory, FPS):
         if frame.tick in reach:
             reach[frame.tick].append(float(placed(frame.scene.find(FRIDGE)).bounds()[1][2]))
     for tick, way in ((2, 1), (3, -1)):
@@ -59,8 +59,8 @@ def test_a_fridge_opens_and_closes_bit_by_bit_after_the_hand_arrives(staged):
         assert min(moving) > -0.05, "a door passes its widest point shortly before it is open"
         assert found[-1] - found[0] > 0.4
         assert found[1] == found[0], "nothing moves before the hand is there"
-    assert swinging(*staged.moments[1:3]) == {FRIDGE: True}
-    span = spans(staged)[2]
+    assert swinging(*trajectory.keyframes[1:3]) == {FRIDGE: True}
+    span = spans(trajectory)[2]
     assert span.end - span.start > OPENING
 
 
@@ -79,7 +79,7 @@ def test_what_is_ajar_lies_between_closed_and_open(name):
 def test_a_door_turns_about_its_hinge():
     leaf = node(DOOR, "door", "Doors", (2.05, 1.0, 0.45), (0.04, 2.0, 0.9), yaw=90.0, states=("OPEN",))
     jamb = node(JAMB, "doorjamb", "Doors", (2.5, 1.03, 0.0), (1.0, 2.05, 0.1))
-    prepared = stage(EnvironmentGraph((HOME.nodes[0], leaf, jamb), (Edge(DOOR, "INSIDE", ROOM),)), default())
+    prepared = prepared_scene(EnvironmentGraph((HOME.nodes[0], leaf, jamb), (Edge(DOOR, "INSIDE", ROOM),)), default())
     ways = []
     for share in (0.25, 0.5, 0.75, 1.0):
         (thing,) = prepared.things(leaf, share)
@@ -91,9 +91,9 @@ def test_a_door_turns_about_its_hinge():
     assert high == pytest.approx((2.07, 2.0, 0.9), abs=0.09), "and ends there"
 
 
-def test_nobody_stands_where_a_door_passes_over_the_floor(staged):
-    actor = staged.moments[2].acting
-    for frame in frames(staged, FPS):
+def test_nobody_stands_where_a_door_passes_over_the_floor(trajectory):
+    actor = trajectory.keyframes[2].acting
+    for frame in frames(trajectory, FPS):
         if frame.tick == 2:
             corners = placed(frame.scene.find(FRIDGE)).corners.reshape(-1, 3)
             gaps = np.linalg.norm(corners[corners[:, 1] < 1.7][:, (0, 2)] - actor.spot, axis=1)

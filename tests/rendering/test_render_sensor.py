@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.cameras.sensor import Eyes
+from hearth.rendering.cameras.sensor import CameraSensor
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
@@ -33,12 +33,12 @@ def env():
 
 
 def test_who_has_no_eyes_is_told_where_to_get_them(env):
-    with pytest.raises(HearthError, match="no eyes"):
+    with pytest.raises(HearthError, match="no camera sensor"):
         env.observe(0, "rgb")
 
 
 def test_pictures_follow_what_is_done(env):
-    env.eyes = Eyes(HOME, default(), size=(64, 48))
+    env.camera_sensor = CameraSensor(HOME, default(), size=(64, 48))
     before = env.observe(0, "rgb", "instance_ids")
     assert before["rgb"].shape == (48, 64, 3)
     assert env.observe(0).agent == 0
@@ -53,7 +53,7 @@ def test_pictures_follow_what_is_done(env):
 
 
 def test_a_new_beginning_is_seen(env):
-    env.eyes = Eyes(HOME, default(), size=(32, 24), view="third")
+    env.camera_sensor = CameraSensor(HOME, default(), size=(32, 24), view="third")
     start, first = env.world, env.observe(0, "rgb")["rgb"]
     env.step({0: Step("Walk", (CUP,))})
     assert not np.array_equal(env.observe(0, "rgb")["rgb"], first)

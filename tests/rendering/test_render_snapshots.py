@@ -6,8 +6,8 @@ pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.film.contact import caption, contact_sheet
-from hearth.rendering.film.snapshots import moments, snapshots
-from hearth.rendering.scene.places import Places, whereabouts
+from hearth.rendering.film.snapshots import keyframes, snapshots
+from hearth.rendering.scene.places import Places, locations_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
@@ -58,15 +58,15 @@ def execution(graph):
 @pytest.fixture(scope="module")
 def filmed():
     graph = flat()
-    return list(moments(execution(graph), graph, default()))
+    return list(keyframes(execution(graph), graph, default()))
 
 
-def box_of(moment, node_id):
-    return moment.places.poses[node_id].box
+def box_of(keyframe, node_id):
+    return keyframe.places.poses[node_id].box
 
 
 def test_a_moment_for_the_start_and_each_step(filmed):
-    assert [moment.tick for moment in filmed] == list(range(7))
+    assert [keyframe.tick for keyframe in filmed] == list(range(7))
 
 
 def test_what_was_not_moved_stays(filmed):
@@ -94,18 +94,18 @@ def test_what_is_put_down_stands_on_its_support(filmed):
 
 def test_who_sits_sits_on_the_seat(filmed):
     actor = filmed[6].actors[0]
-    assert actor.stance.posture == "sitting"
+    assert actor.body_pose.posture == "sitting"
     assert actor.place == CHAIR
     assert abs(actor.spot[0] - 1.6) < 0.15
     assert abs(actor.spot[1] - 0.3) < 0.2
-    assert 0.3 < actor.stance.seat < 0.6
+    assert 0.3 < actor.body_pose.seat < 0.6
 
 
 def test_people_do_not_stand_in_furniture(filmed):
-    for moment in filmed[1:6]:
-        x, z = moment.actors[0].spot
+    for keyframe in filmed[1:6]:
+        x, z = keyframe.actors[0].spot
         for node_id in (TABLE, SHELF):
-            (cx, _, cz), (w, _, d) = box_of(moment, node_id)
+            (cx, _, cz), (w, _, d) = box_of(keyframe, node_id)
             assert abs(x - cx) > w / 2 or abs(z - cz) > d / 2
 
 
@@ -119,10 +119,10 @@ def test_new_things_find_places_in_and_on_others():
     edges = (Edge(1000, "ON", TABLE), Edge(1001, "INSIDE", ROOM), Edge(1002, "INSIDE", 1001))
     fuller = EnvironmentGraph(graph.nodes + added, graph.edges + edges)
     places = Places.start(graph, default()).settled(fuller)
-    plate, fridge, milk = (places.poses[i].box for i in (1000, 1001, 1002))
-    assert plate.center[1] - plate.size[1] / 2 == pytest.approx(0.74, abs=0.005)
+    exposure, fridge, milk = (places.poses[i].box for i in (1000, 1001, 1002))
+    assert exposure.center[1] - exposure.size[1] / 2 == pytest.approx(0.74, abs=0.005)
     assert all(abs(milk.center[k] - fridge.center[k]) + milk.size[k] / 2 <= fridge.size[k] / 2 + 1e-3 for k in range(3))
-    assert whereabouts(fuller)[1002].how == "inside"
+    assert locations_of(fuller)[1002].kind == "inside"
 
 
 def test_pictures_by_two_cameras_show_person_and_cup():

@@ -9,9 +9,9 @@ import pytest
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
-from hearth.rendering.cameras.visibility import looks, shares
-from hearth.rendering.film.snapshots import play
-from hearth.rendering.film.video import Director, agent_of
+from hearth.rendering.cameras.visibility import shares, tick_visibilities
+from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.video import CameraSelector, agent_of
 from hearth.rendering.people.motion import frames, spans
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
@@ -46,62 +46,62 @@ def staged_of(text, home=HOME):
     program = parse_program("Both\nAt once\n\n\n" + text)[0].bound(IDS)
     done = run(World.start(Home.from_graph(home, "", default())), program)
     assert done.executable, done.failure
-    return play(done, home, default())
+    return trajectory_of(done, home, default())
 
 
 @pytest.fixture(scope="module")
-def staged():
+def trajectory():
     return staged_of("<char0> [Walk] <chair> (1) | <char1> [Walk] <cabinet> (1)\n<char0> [Sit] <chair> (1)\n")
 
 
 @pytest.fixture(scope="module")
-def shown(staged):
-    return list(frames(staged, FPS))
+def shown(trajectory):
+    return list(frames(trajectory, FPS))
 
 
-def test_two_walk_in_the_same_seconds_and_both_are_in_the_scene(staged, shown):
-    span = spans(staged)[1]
+def test_two_walk_in_the_same_seconds_and_both_are_in_the_scene(trajectory, shown):
+    span = spans(trajectory)[1]
     middle = next(frame for frame in shown if frame.tick == 1 and frame.time > (span.start + span.end) / 2 - 0.5)
     for number, start in enumerate(((2.0, 1.6), (-2.0, 1.6))):
         x, z = middle.actors[number].spot
         assert hypot(x - start[0], z - start[1]) > 0.3, "both are on their way"
         assert middle.scene.find((ME, YOU)[number]).position == middle.actors[number].position
     last = shown[-1]
-    assert last.actors[0].stance.posture == "sitting"
-    assert last.actors[1].stance.posture == "standing"
+    assert last.actors[0].body_pose.posture == "sitting"
+    assert last.actors[1].body_pose.posture == "standing"
 
 
 def test_a_camera_goes_with_the_agent_that_it_is_told(shown):
     frame = next(frame for frame in shown if frame.tick == 2)
     for view, number in (("first", 0), ("first.0", 0), ("first.1", 1)):
-        eye = Director(HOME, view, (64, 48)).camera(frame).eye
+        eye = CameraSelector(HOME, view, (64, 48)).camera(frame).eye
         x, z = frame.actors[number].spot
         assert hypot(eye[0] - x, eye[2] - z) < 0.5, view
     with pytest.raises(HearthError, match="no agent 2"):
-        Director(HOME, "first.2", (64, 48)).camera(frame)
+        CameraSelector(HOME, "first.2", (64, 48)).camera(frame)
     with pytest.raises(HearthError, match="no camera"):
-        Director(HOME, "last.1", (64, 48))
+        CameraSelector(HOME, "last.1", (64, 48))
     assert agent_of("kitchen.1.3") == ("kitchen.1.3", None)
 
 
-def test_the_choosing_camera_looks_at_whoever_acts(staged):
+def test_the_choosing_camera_looks_at_whoever_acts(trajectory):
     alone = staged_of("<char1> [Walk] <cabinet> (1)\n")
     frame = [frame for frame in frames(alone, FPS) if frame.tick == 1][-1]
-    camera = Director(HOME, "auto", (64, 48)).camera(frame)
+    camera = CameraSelector(HOME, "auto", (64, 48)).camera(frame)
     places, depths = camera.project(np.array([frame.actors[1].world((0.0, 1.0, 0.0))]))
     assert depths[0] > 0
     assert 0 < places[0, 0] < 64
-    assert alone.moments[1].acting == alone.moments[1].actors[1]
+    assert alone.keyframes[1].acting == alone.keyframes[1].actors[1]
 
 
 def test_what_is_shut_away_is_not_seen_and_is_told_apart():
-    found = list(looks(staged_of("<char1> [Walk] <cabinet> (1)\n<char1> [Close] <cabinet> (1)\n"), HOME))
+    found = list(tick_visibilities(staged_of("<char1> [Walk] <cabinet> (1)\n<char1> [Close] <cabinet> (1)\n"), HOME))
     assert [look.named for look in found] == [(BOX,), (BOX,)]
     assert shares(found) == (2, 1.0, 1.0, 1.0)
-    closed = tuple(replace(n, states=("CLOSED",)) if n.id == BOX else n for n in HOME.nodes)
-    home = replace(HOME, nodes=closed)
-    (look,) = looks(staged_of("<char1> [Walk] <cup> (1)\n", home), home)
-    assert look.named == look.missed == look.unseen == look.shut == (CUP,)
+    in_closed = tuple(replace(n, states=("CLOSED",)) if n.id == BOX else n for n in HOME.nodes)
+    home = replace(HOME, nodes=in_closed)
+    (look,) = tick_visibilities(staged_of("<char1> [Walk] <cup> (1)\n", home), home)
+    assert look.named == look.missed == look.unseen == look.in_closed == (CUP,)
     assert shares([look]) == (1, 0.0, 0.0, 1.0)
-    (look,) = looks(staged_of("<char1> [Walk] <cup> (1)\n"), HOME)
+    (look,) = tick_visibilities(staged_of("<char1> [Walk] <cup> (1)\n"), HOME)
     assert look.missed == (), "a camera looks into what is open"

@@ -1,4 +1,4 @@
-"""Homes as pictures need them: with geometry, which is made for a graph that has none."""
+"""Homes with geometry for drawing; a layout is made for a graph that has none."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import EnvironmentGraph
 
 
-class Laid(NamedTuple):
-    """A home that can be pictured.
+class DrawableHome(NamedTuple):
+    """A home that can be drawn.
 
     Attributes:
-        graph: with boxes; its nodes have the ids they had.
-        made: whether it had no geometry, and was given some.
-        unmet: how many of its relations the geometry that was made does not show.
+        graph: with boxes; ids of nodes are unchanged.
+        made: whether a layout was made, because the home had no geometry.
+        unmet: number of relations that the layout violates.
     """
 
     graph: EnvironmentGraph
@@ -24,20 +24,20 @@ class Laid(NamedTuple):
     unmet: int = 0
 
     def note(self, home: str) -> str:
-        """What to tell whoever looks at the pictures; nothing where the geometry is the home's own."""
+        """A note for the user about a layout that was made; empty for a home with geometry."""
         if not self.made:
             return ""
         few = f"{self.unmet} of its {len(self.graph.edges)} relations do not show"
         return f"{home} has no geometry: rooms and furniture were laid out by its relations; {few}."
 
 
-def laid(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Laid:
-    """A home's graph as it is if it has geometry, else laid out: the same graph always in the same way.
+def with_geometry(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> DrawableHome:
+    """A home's graph, with a deterministic layout if it has no geometry.
 
     Raises:
         HearthError: NO_ROOM: it has no room.
     """
     if has_geometry(graph):
-        return Laid(graph)
+        return DrawableHome(graph)
     found = lay_out(graph, name, knowledge)
-    return Laid(found.graph, True, len(found.unmet))
+    return DrawableHome(found.graph, True, len(found.unmet))
