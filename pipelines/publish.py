@@ -11,7 +11,7 @@ from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.final_tables import finish
 from hearth.pipelines.engine.stage import Job, Stage
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row
+from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row, columns_of
 from hearth.schemas.tables import TABLES
 from hearth.storage.rejects import Reject
 
@@ -42,75 +42,17 @@ def _rows(case: CaseRow, context: Context) -> Iterator[tuple[str, Row]]:
     if case["program_id"] != context.last:
         context.last = case["program_id"]
         yield "programs", {**program_row(case, context.seed), **STAMP}
-    yield "environments", {**environment_row(case), **STAMP}
-    yield "executions", {**execution_row(case), **STAMP}
-    yield from (("repairs", {**row, **STAMP}) for row in repaired_rows(case))
+    yield "environments", {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
+    yield "executions", {**columns_of(ExecutionRow, case), **STAMP}
+    for repair in case["repairs"]:
+        # The repairs that the program came of.
+        yield "repairs", {**columns_of(RepairedRow, {**case, "outcome": "REPAIRED", **repair}), **STAMP}
 
 
 def program_row(case: CaseRow, seed: int) -> ProgramRow:
     """The program of a case; its activity and the build's seed decide its split."""
     activity = activity_id(case["title"])
-    return {
-        "program_id": case["program_id"],
-        "activity_id": activity,
-        "description_id": case["description_id"],
-        "parent_id": case["parent_id"],
-        "origin": case["origin"],
-        "source": case["source"],
-        "place": case["place"],
-        "title": case["title"],
-        "description": case["description"],
-        "split": split_of(activity, seed),
-        "steps": case["steps"],
-        "rooms": case["rooms"],
-        "props": case["props"],
-        "worker": case["worker"],
-        "platform": case["platform"],
-        "warnings": case["warnings"],
-    }
-
-
-def environment_row(case: CaseRow) -> EnvironmentRow:
-    """The environment of a case."""
-    return {
-        "environment_id": case["environment_id"],
-        "home": case["home"],
-        "seed": case["seed"],
-        "program_id": case["program_id"],
-        **case["environment"],
-        "conditions": case["conditions"],
-    }
-
-
-def execution_row(case: CaseRow) -> ExecutionRow:
-    """The run of a case."""
-    return {
-        "execution_id": case["execution_id"],
-        "program_id": case["program_id"],
-        "environment_id": case["environment_id"],
-        "home": case["home"],
-        "rules": case["rules"],
-        "bindings": case["bindings"],
-        "ticks": case["ticks"],
-        "executable": case["executable"],
-        "failure": case["failure"],
-        "reproduces": case["reproduces"],
-    }
-
-
-def repaired_rows(case: CaseRow) -> Iterator[RepairedRow]:
-    """The repairs that the program of a case came of."""
-    for repair in case["repairs"]:
-        yield {
-            "program_id": case["program_id"],
-            "execution_id": case["execution_id"],
-            "environment_id": case["environment_id"],
-            "parent_id": case["parent_id"],
-            "home": case["home"],
-            "perturbations": case["perturbations"],
-            "outcome": "REPAIRED",
-            **repair,
-        }
+    return columns_of(ProgramRow, {**case, "activity_id": activity, "split": split_of(activity, seed)})
 
 
 def open_context(job: Job) -> Context:

@@ -8,7 +8,7 @@ that. Node ids are those of the environment's graph; steps and ticks count from 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, TypedDict
+from typing import Annotated, Any, TypedDict, TypeVar, cast
 
 from hearth.schemas.structs import (
     BindingRow,
@@ -36,6 +36,17 @@ from hearth.schemas.structs import (
 
 Row = Mapping[str, Any]
 """A row of whichever table."""
+
+Declared = TypeVar("Declared")
+
+
+def columns_of(form: type[Declared], row: Row) -> Declared:
+    """The columns of a declared row, out of a row that has these and others.
+
+    Raises:
+        KeyError: it lacks one.
+    """
+    return cast("Declared", {name: row[name] for name in form.__annotations__})
 
 
 class ScriptRow(TypedDict):

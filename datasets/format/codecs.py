@@ -14,7 +14,7 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import NamedRow, ScriptRow
+from hearth.schemas.rows import NamedRow, ScriptRow, columns_of
 from hearth.schemas.structs import (
     BindingRow,
     BoxRow,
@@ -138,20 +138,7 @@ def edges_of(rows: Iterable[EdgeRow]) -> Iterator[Edge]:
 
 def named(row: NamedRow) -> NamedRow:
     """Of a row, the columns that a program keeps from stage to stage."""
-    return {
-        "program_id": row["program_id"],
-        "origin": row["origin"],
-        "source": row["source"],
-        "place": row["place"],
-        "description_id": row["description_id"],
-        "title": row["title"],
-        "description": row["description"],
-        "scene": row["scene"],
-        "worker": row["worker"],
-        "platform": row["platform"],
-        "rooms": row["rooms"],
-        "props": row["props"],
-    }
+    return columns_of(NamedRow, row)
 
 
 def step_rows(program: Program) -> list[StepRow]:

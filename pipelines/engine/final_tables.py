@@ -44,6 +44,7 @@ from hearth.schemas.rows import (
     SplitRow,
     TriedRow,
     VideoRow,
+    columns_of,
 )
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
@@ -147,7 +148,8 @@ class _Told:
         """Take the words of an ingested row; those of a description go before those repeated with a program."""
         name, own = row["description_id"], row["kind"] == "description"
         if name not in self.descriptions or (own and name not in self.described):
-            self.descriptions[name] = _description(row)
+            words = {**row, "activity_id": activity_id(row["title"]), "programs": 0}
+            self.descriptions[name] = columns_of(DescriptionRow, words)
         if own:
             self.described.add(name)
 
@@ -181,21 +183,6 @@ class _Told:
 
     def description_rows(self) -> Iterator[DescriptionRow]:
         yield from (row for _, row in sorted(self.descriptions.items()))
-
-
-def _description(row: IngestedRow) -> DescriptionRow:
-    return {
-        "description_id": row["description_id"],
-        "activity_id": activity_id(row["title"]),
-        "title": row["title"],
-        "description": row["description"],
-        "scene": row["scene"],
-        "origin": row["origin"],
-        "source": row["source"],
-        "worker": row["worker"],
-        "platform": row["platform"],
-        "programs": 0,
-    }
 
 
 _WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
