@@ -14,7 +14,7 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, ON
 from hearth.simulation.world.state import WorldState
 
-Numbered = tuple[int, str, int, bool]
+EdgeTurn = tuple[int, str, int, bool]
 """An edge by indices, and whether it came."""
 
 
@@ -92,7 +92,7 @@ def _state_changes(before: WorldState, after: WorldState, ids: list[int]) -> tup
     return came, went
 
 
-def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator[Numbered]:
+def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator[EdgeTurn]:
     olds = {agent.index: agent for agent in before.agents}
     news = {agent.index: agent for agent in after.agents}
     for i in olds | news:
@@ -109,7 +109,7 @@ def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator
         yield from _door_changes(before.home, after.home, i)
 
 
-def _agent_changes(old: Agent, new: Agent) -> Iterator[Numbered]:
+def _agent_changes(old: Agent, new: Agent) -> Iterator[EdgeTurn]:
     """What came and went of a character's own edges, both ways."""
     me = new.index
     for fields, outwards in ((AGENT_OUT, True), (AGENT_IN, False)):
@@ -148,7 +148,7 @@ def _touched(before: WorldState, after: WorldState) -> set[int]:
     return keys
 
 
-def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[Numbered]:
+def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[EdgeTurn]:
     relation, read, outwards = _KINDS[kind]
     old = read(before, i) if i < len(before.home) else 0
     new = read(after, i) if i < len(after.home) else 0
@@ -159,13 +159,13 @@ def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> It
         yield from _came_and_went(old, new, i, relation, False)
 
 
-def _door_changes(before: Home, after: Home, i: int) -> Iterator[Numbered]:
+def _door_changes(before: Home, after: Home, i: int) -> Iterator[EdgeTurn]:
     old = before.between[i] if i < len(before) else 0
     new = after.between[i] if i < len(after) else 0
     yield from _came_and_went(old, new, i, "BETWEEN", True)
 
 
-def _came_and_went(past: int, now: int, i: int, relation: str, outwards: bool) -> Iterator[Numbered]:
+def _came_and_went(past: int, now: int, i: int, relation: str, outwards: bool) -> Iterator[EdgeTurn]:
     """The edges by which two rows of node i differ, each with whether it came."""
     for came, mask in ((True, now & ~past), (False, past & ~now)):
         for j in indices(mask):
