@@ -34,6 +34,6 @@ def knowledge(overlay: str | None = None) -> Knowledge:
     """
     from pathlib import Path
 
-    from hearth.kb.loading.load import laid_over
+    from hearth.kb.loading.load import overlaid
 
-    return laid_over(Path(overlay) if overlay else None)
+    return overlaid(Path(overlay) if overlay else None)

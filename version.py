@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-VERSION = "0.1.0"
+VERSION = "0.2.0"
 
 RELEASED = "2026-11-21"
 """The day of this version: what it publishes says so, and not when it was built, so that its bytes stay the same."""

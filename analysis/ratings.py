@@ -13,7 +13,7 @@ from statistics import median_low
 from hearth.analysis.spreadsheet_cells import cell_said, sheet_of
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
-from hearth.grounding.preconditions.defaults import habits
+from hearth.grounding.preconditions.defaults import default_conditions
 from hearth.kb.knowledge import Knowledge
 from hearth.repair.loop import repair
 from hearth.schemas.decoding import decode
@@ -52,7 +52,7 @@ def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Compl
     missed: a television that is watched and was never switched on is off. A program that repairs can't save misses
     something crucial. The failure is that of a home where its objects can't be had at all.
     """
-    conditions = Preconditions(tuple(habits(program, known)))
+    conditions = Preconditions(tuple(default_conditions(program, known)))
     found = sample(program, home, seed, conditions=conditions, must_run=False)
     if isinstance(found, Failure):
         return found

@@ -161,7 +161,7 @@ def others() -> Iterator[Figure]:
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
     split = plain.split_words([words] * 1_000)
-    heard = runs(lambda: [plans.parse_spoken(words, 0, "", known) for _ in range(1_000)])
+    heard = runs(lambda: [plans.parse_steps(words, 0, "", known) for _ in range(1_000)])
     yield rate("programs in words understood", 1_000, heard, "a second", ratio=split.ratio(1_000, heard))
     drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
     ratio = plain.drawn_steps().ratio(13 * SLICE, drawn)

@@ -12,7 +12,7 @@ import typer
 from hearth.commands import options, output
 
 if TYPE_CHECKING:
-    from hearth.homes.from_graph.graph_layout import LaidOut
+    from hearth.homes.from_graph.graph_layout import GraphLayout
     from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.graph import EnvironmentGraph
 
@@ -104,7 +104,7 @@ def lint(
 
     graph = _graph(home, homes)
     faults = check(graph, default(), file=home if Path(home).suffix else "")
-    laid = library.laid_out(home, default(), homes) if layout else None
+    laid = library.graph_layout(home, default(), homes) if layout else None
     if as_json:
         told = {"home": home, "faults": faults, "by_code": _codes(faults)}
         output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
@@ -124,7 +124,7 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
     return dict(sorted(Counter(str(fault.code) for fault in faults).items()))
 
 
-def met(laid: LaidOut) -> list[dict[str, Any]]:
+def met(laid: GraphLayout) -> list[dict[str, Any]]:
     """Of each relation, and of the things, how many there are and how many the layout shows."""
     said = Counter(edge.relation for edge in laid.graph.edges)
     lost = Counter(
@@ -163,7 +163,7 @@ def convert(
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(library.laid_out(home, default(), homes).graph if layout else graph, out)
+        written = exporting.write_release(library.graph_layout(home, default(), homes).graph if layout else graph, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 

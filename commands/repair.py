@@ -39,7 +39,7 @@ def repair(
 ) -> None:
     """Perturb what a program relies on, and show how it is repaired.
 
-    Prints what was made otherwise, then each failure with its repair, then the repaired program. Kinds of perturbation
+    Prints the perturbations, then each failure with its repair, then the repaired program. Kinds of perturbation
     are those of perturbations.yaml: open, on, plugged, free, at_reach, ...
     The status is 1 if a program can't be repaired.
 
@@ -103,7 +103,7 @@ def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> N
 
 def _print_pair(pair: Pair, known: Knowledge) -> None:
     for perturbation in pair.perturbations:
-        print(f"\nMade otherwise: {perturbation}")
+        print(f"\nPerturbed: {perturbation}")
     for attempt in pair.attempts:
         _print_attempt(attempt, known)
     if pair.failure is not None:

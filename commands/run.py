@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hearth.schemas.change import Change
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
-    from hearth.simulation.motion.base_pose import Stance
+    from hearth.simulation.motion.base_pose import HandAndBasePose
     from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
@@ -56,7 +56,7 @@ def run(
     known = read_knowledge(kb)
     program = read_program(file, known)
     place = read_home(home, graph, homes, known)
-    trial = attempt(program, place, seed, DEFAULT, at_rest=not as_is, add=not as_is)
+    trial = attempt(program, place, seed, DEFAULT, default_state=not as_is, add=not as_is)
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
     if as_json:
         output.emit(_json(trial, place, homes))
@@ -92,18 +92,18 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
 
 
-def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[Stance, ...], ...]:
+def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[HandAndBasePose, ...], ...]:
     """How the character stands for each step; nothing in homes without geometry."""
     from hearth.homes import library
-    from hearth.simulation.motion.base_pose import stances
+    from hearth.simulation.motion.base_pose import hand_and_base_poses
     from hearth.simulation.motion.navigation import Ways
 
     if place.name not in library.names(homes) or place.node(place.agents[0]).box is None:
         return ()
-    return stances(trial.execution, Ways(library.load_layout(place.name, place.knowledge, homes).floor))
+    return hand_and_base_poses(trial.execution, Ways(library.load_layout(place.name, place.knowledge, homes).floor))
 
 
-def _stance(stance: Stance) -> str:
+def _stance(stance: HandAndBasePose) -> str:
     x, z, yaw = stance.pose
     hand = f", {stance.hand} hand" if stance.hand else ""
     return f"character {stance.agent} at ({x:.2f}, {z:.2f}) m, facing {yaw:.0f} degrees{hand}"

@@ -13,6 +13,7 @@ from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
 from hearth.schemas.rows import ProgramRow, RepairedRow, SketchRow, StoredRunRow
 from hearth.schemas.structs import ConditionRow
@@ -247,8 +248,9 @@ class Run:
 
     @property
     def conditions(self) -> list[ConditionRow]:
-        """What had to hold at the start."""
-        return self.row["environment"]["conditions"]
+        """What had to hold at the start, under the names of this version."""
+        stored = self.row["environment"]["conditions"]
+        return [{**row, "name": RENAMED.get(row["name"], row["name"])} for row in stored]
 
     def bindings(self) -> dict[tuple[str, int], int]:
         """Which node each object of the program is."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading.load import digest, files_of, laid_over
+from hearth.kb.loading.load import digest, files_of, overlaid
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import write_bytes
@@ -47,7 +47,7 @@ def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
     """
     said = manifest.get(FIELD)
     if said is None:
-        return laid_over(None)
+        return overlaid(None)
     try:
         overlay = said["overlay"]
         path, wanted = (folder / overlay["path"], overlay["sha256"]) if overlay else (None, "")
@@ -56,7 +56,7 @@ def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
         raise HearthError.of(Code.BAD_JSON, message, file=str(folder)) from error
     if path is not None:
         _check(path, wanted, folder)
-    return laid_over(path)
+    return overlaid(path)
 
 
 def _check(path: Path, wanted: str, folder: Path) -> None:

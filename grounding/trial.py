@@ -34,7 +34,7 @@ class Trial:
 
 
 def attempt(
-    program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT, at_rest: bool = True, add: bool = True
+    program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT, default_state: bool = True, add: bool = True
 ) -> Trial | Failure:
     """Ground and run a program.
 
@@ -43,7 +43,7 @@ def attempt(
         home: where.
         seed: of the sampling.
         rules: how actions are read.
-        at_rest: begin with the home in its default state; else as it is given.
+        default_state: begin with the home in its default state; else as it is given.
         add: sample an environment when the home alone has no binding that runs.
 
     Returns:
@@ -51,7 +51,7 @@ def attempt(
         the home, the others stand in random rooms.
     """
     wanted = _characters(program)
-    world = with_agents(World.start(prepared(home).home if at_rest else home), wanted, seed)
+    world = with_agents(World.start(prepared(home).home if default_state else home), wanted, seed)
     found = bind(program, world, rules)
     if isinstance(found, Binding):
         return Trial(run(world, found.apply(program), rules))

@@ -50,10 +50,10 @@ def write_release(graph: EnvironmentGraph, path: Path) -> int:
 def write_ids(layout: Layout, path: Path) -> int:
     """Write the ids of a plan's nodes, sorted; ids that were fixed before stay. Returns how many there are."""
     ids = node_ids((thing.name for thing in every_thing(layout)), layout.plan.ids, layout.plan.file)
-    gone = {name: number for name, number in layout.plan.ids.items() if name not in ids}
+    removed = {name: number for name, number in layout.plan.ids.items() if name not in ids}
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(("id", "name"))
-    writer.writerows(sorted((number, name) for name, number in (ids | gone).items()))
+    writer.writerows(sorted((number, name) for name, number in (ids | removed).items()))
     path.write_text(text.getvalue(), encoding="utf-8")
     return len(ids)

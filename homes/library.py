@@ -9,7 +9,7 @@ from functools import lru_cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from hearth.homes.from_graph.graph_layout import LaidOut, lay_out
+from hearth.homes.from_graph.graph_layout import GraphLayout, lay_out
 from hearth.homes.from_graph.measured import has_geometry, measured
 from hearth.homes.plans.layout import Layout, read
 from hearth.homes.scene_graph import scene
@@ -57,18 +57,18 @@ def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
     if found.suffix != ".json":
         return _layout(found, knowledge)
     graph = _graph(found)
-    return measured(graph, found.stem, knowledge) if has_geometry(graph) else laid_out(found, knowledge).layout
+    return measured(graph, found.stem, knowledge) if has_geometry(graph) else graph_layout(found, knowledge).layout
 
 
-def laid_out(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> LaidOut:
+def graph_layout(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> GraphLayout:
     """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and what of them that
     does not show; errors as of `load_graph`.
     """
-    return _laid_out(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
+    return _graph_layout(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
 
 
 @lru_cache(maxsize=16)
-def _laid_out(path: Path, knowledge: Knowledge) -> LaidOut:
+def _graph_layout(path: Path, knowledge: Knowledge) -> GraphLayout:
     return lay_out(graph_of(path, knowledge), path.stem, knowledge)
 
 

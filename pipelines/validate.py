@@ -8,7 +8,7 @@ from dataclasses import replace
 from hearth.datasets.format.codecs import binding_rows, named, step_rows, warning_row
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.plans import parse_spoken
+from hearth.kb.language.plans import parse_steps
 from hearth.pipelines.checks import programs, special
 from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_used, overlays
 from hearth.pipelines.engine.stage import Job, Plan, Stage
@@ -88,7 +88,7 @@ def checked_words(
     text: str, before: int, place: str, known: Knowledge
 ) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
     """`checked` for steps in words; what was only nearly understood is a warning with its similarity."""
-    heard = parse_spoken(text, before, place, known)
+    heard = parse_steps(text, before, place, known)
     faults = heard.faults or grammar.affordances(heard.program, known, place)
     # Words lose instances: what is switched on twice may be two things, so that this is only a warning here.
     twice = (programs.diagnostic(each, heard.program, place) for each in programs.contradictions(heard.program, known))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of
 from hearth.kb.knowledge import Knowledge
 from hearth.repair import trim
-from hearth.repair.handlers.common import Edit, Handler, Trouble
+from hearth.repair.handlers.common import Edit, Handler, RepairContext
 from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
@@ -91,7 +91,7 @@ class _Task(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Draft:
+class _Revision:
     """A program under repair; `sources` as in `Repaired`."""
 
     program: Program
@@ -124,46 +124,48 @@ def repair(
         The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
         repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
     """
-    draft = _Draft(program, tuple(range(len(program.steps))), run(world, program, rules))
+    revision = _Revision(program, tuple(range(len(program.steps))), run(world, program, rules))
     task = _Task(goal, nodes_of(program, world), knowledge, rules)
     attempts: list[Attempt] = []
     seen = {program.steps}
     while True:
-        trouble = _trouble(draft, task)
-        if trouble is None:
+        context = _context(revision, task)
+        if context is None:
             break
         if len(attempts) == tries:
-            return _given_up(draft, attempts, trouble, Code.TOO_MANY_TRIES, f"{tries} repairs were not enough")
-        name, edit, refusal = _consult(handlers, trouble)
+            return _given_up(revision, attempts, context, Code.TOO_MANY_TRIES, f"{tries} repairs were not enough")
+        name, edit, refusal = _consult(handlers, context)
         if edit is None:
-            attempts.append(_attempt(attempts, trouble, name, ()))
-            code = Code.GOAL_LOST if trouble.failure.code is Code.GOAL_LOST else Code.NO_HANDLER
-            return _given_up(draft, attempts, trouble, Code.HANDLER_ERROR if refusal else code, refusal)
-        draft = _edited(draft, edit, rules)
-        attempts.append(_attempt(attempts, trouble, edit.name, draft.program.steps))
+            attempts.append(_attempt(attempts, context, name, ()))
+            code = Code.GOAL_LOST if context.failure.code is Code.GOAL_LOST else Code.NO_HANDLER
+            return _given_up(revision, attempts, context, Code.HANDLER_ERROR if refusal else code, refusal)
+        revision = _edited(revision, edit, rules)
+        attempts.append(_attempt(attempts, context, edit.name, revision.program.steps))
         tried = len(seen)
-        seen.add(draft.program.steps)
+        seen.add(revision.program.steps)
         if len(seen) == tried:
-            return _given_up(draft, attempts, trouble, Code.LOOP, f"{edit.name} leads back to an earlier program")
+            return _given_up(revision, attempts, context, Code.LOOP, f"{edit.name} leads back to an earlier program")
     if not attempts or not canonical_only:
-        return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources)
-    trimmed, sources = trim.trim(program, draft.execution, draft.sources, goal, rules)
+        return Repaired(revision.program, revision.execution, tuple(attempts), revision.sources)
+    trimmed, sources = trim.trim(program, revision.execution, revision.sources, goal, rules)
     return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
 
 
-def _trouble(draft: _Draft, task: _Task) -> Trouble | None:
+def _context(revision: _Revision, task: _Task) -> RepairContext | None:
     """The first thing wrong with a program: a step that fails, or a goal that is missed."""
-    execution = draft.execution
-    failure, at = execution.failure, len(draft.program.steps)
+    execution = revision.execution
+    failure, at = execution.failure, len(revision.program.steps)
     lost = () if failure else missing(task.goal, task.nodes, execution.final)
     if failure is not None:
-        at = _failing(draft.program, failure)
+        at = _failing(revision.program, failure)
     elif not lost:
         return None
     else:
         wanted = "; ".join(map(str, lost))
         failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
-    return Trouble(draft.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes, lost)
+    return RepairContext(
+        revision.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes, lost
+    )
 
 
 def _failing(program: Program, failure: Failure) -> int:
@@ -177,21 +179,21 @@ def _failing(program: Program, failure: Failure) -> int:
     return number
 
 
-def _consult(handlers: Mapping[Code, Handler], trouble: Trouble) -> tuple[str, Edit | None, str]:
+def _consult(handlers: Mapping[Code, Handler], context: RepairContext) -> tuple[str, Edit | None, str]:
     """(name, edit, what the handler raised): a handler that raises costs only this program."""
-    handler = handlers.get(trouble.failure.code)
+    handler = handlers.get(context.failure.code)
     if handler is None:
         return "", None, ""
     name = getattr(handler, "__name__", str(handler))
     try:
-        return name, handler(trouble), ""
+        return name, handler(context), ""
     except Exception as error:  # whatever a handler does wrong is data too
         return name, None, f"{name} raised {type(error).__name__}: {error}"
 
 
-def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
+def _edited(revision: _Revision, edit: Edit, rules: Rules) -> _Revision:
     """The program after an edit, run on from the last world that the edit does not touch."""
-    steps, sources = list(draft.program.steps), list(draft.sources)
+    steps, sources = list(revision.program.steps), list(revision.sources)
     known = {id(step): source for step, source in zip(steps, sources, strict=True)}
     for splice in reversed(edit.splices):
         end = splice.at + splice.removed
@@ -200,19 +202,19 @@ def _edited(draft: _Draft, edit: Edit, rules: Rules) -> _Draft:
         new[: len(replaced)] = replaced[: len(new)]
         steps[splice.at : end] = splice.inserted
         sources[splice.at : end] = new
-    program = draft.program.with_steps(steps)
+    program = revision.program.with_steps(steps)
     first = min(splice.at for splice in edit.splices)
-    return _Draft(program, tuple(sources), trim.resume(draft.execution, program, first, rules))
+    return _Revision(program, tuple(sources), trim.resume(revision.execution, program, first, rules))
 
 
-def _attempt(attempts: Sequence[Attempt], trouble: Trouble, name: str, after: tuple[Step, ...]) -> Attempt:
-    return Attempt(len(attempts), trouble.at, trouble.failure, name, trouble.program.steps, after, trouble.missed)
+def _attempt(attempts: Sequence[Attempt], context: RepairContext, name: str, after: tuple[Step, ...]) -> Attempt:
+    return Attempt(len(attempts), context.at, context.failure, name, context.program.steps, after, context.missed)
 
 
-def _given_up(draft: _Draft, attempts: list[Attempt], trouble: Trouble, code: Code, why: str) -> Repaired:
+def _given_up(revision: _Revision, attempts: list[Attempt], context: RepairContext, code: Code, why: str) -> Repaired:
     """The failure keeps saying what could not be repaired."""
-    last = trouble.failure
+    last = context.failure
     reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
     told = f"{last.code}: {last.expected}" if last.expected else str(last.code)
     failure = replace(last, code=code, expected=told, actual=f"{last.actual}; {reason}" if last.actual else reason)
-    return Repaired(draft.program, draft.execution, tuple(attempts), draft.sources, failure)
+    return Repaired(revision.program, revision.execution, tuple(attempts), revision.sources, failure)

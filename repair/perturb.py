@@ -23,7 +23,7 @@ from hearth.simulation.world.bits import indices
 MOST = 6
 """Perturbations of one draw, where nothing else is said."""
 
-PATIENCE = 8
+MAX_STALE = 8
 """Draws in a row that bring nothing new before no more are made."""
 
 
@@ -112,15 +112,15 @@ def distinct(case: Case, chances: Chances, rng: Random, count: int) -> Iterator[
 
 def _drawn(case: Case, every: Sequence[Perturbation], chances: Chances, rng: Random) -> Iterator[Perturbed]:
     seen: set[frozenset[object]] = {frozenset(c.literal for c in case.conditions)}
-    patience = PATIENCE
-    while patience and every:
+    left = MAX_STALE
+    while left and every:
         chosen = _chosen(every, chances, rng)
         conditions = applied(case.conditions, chosen)
         facts = frozenset(c.literal for c in conditions)
         if not chosen or facts in seen:
-            patience -= 1
+            left -= 1
             continue
-        patience = PATIENCE
+        left = MAX_STALE
         seen.add(facts)
         yield Perturbed(conditions, chosen)
 
@@ -193,17 +193,17 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
         if condition.name == "nearby":
             yield Perturbation("at_reach", (condition,))
         elif condition.name == "atreach" and condition.objects[0] != condition.objects[1]:
-            yield _replaced(case, "at_reach", condition, condition.instead("apart"))
+            yield _replaced(case, "at_reach", condition, condition.instead("not_near"))
 
 
 def _container(case: Case) -> Iterator[Perturbation]:
     """What was on or in something is in something else, which is closed."""
     for condition in case.conditions:
-        if condition.name in ("in", "inside") and _can_be_stowed(case, *condition.objects):
-            yield _replaced(case, "container", condition, condition.instead("stowed"))
+        if condition.name in ("in", "inside") and _fits_closed_container(case, *condition.objects):
+            yield _replaced(case, "container", condition, condition.instead("in_closed_container"))
 
 
-def _can_be_stowed(case: Case, key: Key, now: Key) -> bool:
+def _fits_closed_container(case: Case, key: Key, now: Key) -> bool:
     """Whether something other than where it is now could be closed around it."""
     same = case.knowledge.same_class(now[0])
     classes = case.base.home.classes
@@ -217,7 +217,7 @@ def _location(case: Case) -> Iterator[Perturbation]:
     """What was in one room is in another."""
     for condition in case.conditions:
         if condition.name == "location" and _is_portable(case, condition.objects[0]):
-            yield _replaced(case, "location", condition, condition.instead("elsewhere"))
+            yield _replaced(case, "location", condition, condition.instead("other_room"))
 
 
 def _replaced(case: Case, kind: str, old: Condition, new: Condition) -> Perturbation:
@@ -251,7 +251,7 @@ def _door(case: Case) -> Iterator[Perturbation]:
     number, first = next(((n, s) for n, s in enumerate(case.program.steps) if s.objects), (0, None))
     walks = case.knowledge.group("walks")
     if first is not None and not resting and first.action in walks and _has_door(case, first.objects[0].name):
-        yield Perturbation("door", (), (Condition(Literal("shut_in", (first.objects[0].key,)), number),))
+        yield Perturbation("door", (), (Condition(Literal("doors_closed", (first.objects[0].key,)), number),))
 
 
 def _has_door(case: Case, room: str) -> bool:
@@ -297,7 +297,7 @@ PERTURBATIONS: dict[str, Perturber] = {
     "on": _swap("on", {"is_on": "is_off", "is_off": "is_on"}),
     "open": _swap("open", {"open": "closed", "closed": "open"}),
     "free": _swap("free", {"free": "occupied", "occupied": "free"}),
-    "facing": _swap("facing", {"facing": "averted"}),
+    "facing": _swap("facing", {"facing": "facing_away"}),
     "holding": _drop("holding", "holds"),
     "container": _container,
     "location": _location,
@@ -319,7 +319,7 @@ _MATTER: dict[str, str] = {
     }.items() for name in names},
     **dict.fromkeys(("sitting", "lying"), "posture"),
     **dict.fromkeys(("free", "occupied", "pet"), "seat"),
-    "full_hands": "hands", "holds": "hands", "shut_in": "way", "facing": "view", "averted": "view",
+    "full_hands": "hands", "holds": "hands", "doors_closed": "way", "facing": "view", "facing_away": "view",
 }  # fmt: skip
 """What each condition is about; the rest is about where its first object is."""
 

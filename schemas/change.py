@@ -82,12 +82,12 @@ def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
 
 def difference(before: Parts, after: Parts) -> Change:
     """What must be done to `before` to get `after`."""
-    gone = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
-    new = sorted(i for i in after.nodes if i in gone or i not in before.nodes)
+    removed = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
+    new = sorted(i for i in after.nodes if i in removed or i not in before.nodes)
     edges, past, now = before.edges, before.states, after.states
-    if gone:
-        edges = {edge for edge in edges if edge.source not in gone and edge.target not in gone}
-        past = {state for state in past if state[0] not in gone}
+    if removed:
+        edges = {edge for edge in edges if edge.source not in removed and edge.target not in removed}
+        past = {state for state in past if state[0] not in removed}
     if new:
         fresh = set(new)
         now = {state for state in now if state[0] not in fresh}
@@ -97,7 +97,7 @@ def difference(before: Parts, after: Parts) -> Change:
         tuple(sorted(now - past)),
         tuple(sorted(past - now)),
         tuple(after.nodes[i] for i in new),
-        tuple(sorted(gone)),
+        tuple(sorted(removed)),
     )
 
 
@@ -161,9 +161,9 @@ class WorkingGraph:
     def _apply(self, change: Change) -> None:
         nodes = self.nodes
         if change.removed_nodes:
-            gone = set(change.removed_nodes)
-            self.edges = {edge for edge in self.edges if edge.source not in gone and edge.target not in gone}
-            for node_id in gone:
+            removed = set(change.removed_nodes)
+            self.edges = {edge for edge in self.edges if edge.source not in removed and edge.target not in removed}
+            for node_id in removed:
                 nodes.pop(node_id, None)
         nodes.update((node.id, node) for node in change.added_nodes)
         self.edges.difference_update(change.removed)

@@ -45,7 +45,8 @@ class Code(StrEnum):
     SPECIAL_BLOCK = "SPECIAL_BLOCK", 17
     NOT_UNDERSTOOD = "NOT_UNDERSTOOD", 18
     AMBIGUOUS = "AMBIGUOUS", 19
-    HEARD_NEARLY = "HEARD_NEARLY", 20
+    FUZZY_MATCH = "FUZZY_MATCH", 20
+    HEARD_NEARLY = "FUZZY_MATCH", 20  # its name in datasets of version 0.1.0
     # What an action is done to
     NOT_AFFORDED = "NOT_AFFORDED", 21
     NOT_SIMULATED = "NOT_SIMULATED", 22

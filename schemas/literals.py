@@ -47,6 +47,15 @@ RELATION_OF: dict[str, str] = {
 }
 """Conditions about two objects. `in` is ON, `location` is INSIDE a room, `nearby` is the character's own CLOSE."""
 
+RENAMED: dict[str, str] = {
+    "stowed": "in_closed_container",
+    "averted": "facing_away",
+    "apart": "not_near",
+    "elsewhere": "other_room",
+    "shut_in": "doors_closed",
+}
+"""Conditions whose name in datasets of version 0.1.0 differs, by that name."""
+
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 

@@ -15,7 +15,7 @@ from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
-from hearth.simulation.observation.views import Deed, View, view
+from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit, free_id
@@ -58,7 +58,7 @@ class Env:
         self.rules = rules
         self.partial = partial
         self.ticks: list[Tick] = []
-        self._deeds: dict[int, Deed] = {}
+        self._last_actions: dict[int, LastAction] = {}
 
     def reset(self, home: Home | World, agents: int = 1, seed: int = 0) -> dict[int, View]:
         """Begin anew.
@@ -78,14 +78,14 @@ class Env:
         """Go on from a world, as if nothing had happened before."""
         self.world = world
         self.ticks = []
-        self._deeds = {}
+        self._last_actions = {}
 
     def step(self, instructions: Mapping[int, Step | None]) -> Tick:
-        """Let each agent do one instruction; who can't does nothing, and is told why (see `engine.tick`)."""
+        """Let each agent do one instruction; one that can't does nothing; `Tick.failures` says why."""
         before = self.world
         self.world, failures = engine.tick(before, instructions, self.rules)
         tried = {number: step for number, step in sorted(instructions.items()) if step is not None}
-        self._deeds |= {number: Deed(step, failures.get(number)) for number, step in tried.items()}
+        self._last_actions |= {number: LastAction(step, failures.get(number)) for number, step in tried.items()}
         tick = Tick(tried, failures, self.world, self.world.changes(before))
         self.ticks.append(tick)
         return tick
@@ -107,7 +107,7 @@ class Env:
                 remedy = "env.camera_sensor = hearth.rendering.cameras.sensor.CameraSensor(graph, knowledge)"
                 raise HearthError.of(Code.NOT_RENDERED, "the environment has no camera sensor", suggestion=remedy)
             return self.camera_sensor(self, agent, modalities)
-        return view(self.world, agent, partial=self.partial, deeds=self._deeds, tick=len(self.ticks))
+        return view(self.world, agent, partial=self.partial, last_actions=self._last_actions, tick=len(self.ticks))
 
     def legal(self, agent: int = 0, *, only_visible: bool | None = None, only_reachable: bool = False) -> Legal:
         """What an agent could do now; by default only with what it sees, when it does not see everything.

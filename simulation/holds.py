@@ -196,7 +196,7 @@ def _full_hands(world: World, i: int) -> bool:
     return any(agent.right and agent.left for agent in world.agents if agent.index == i)
 
 
-def _shut_in(world: World, i: int) -> bool:
+def _doors_closed(world: World, i: int) -> bool:
     """A way into its room leads through a closed door."""
     room = rows.room_of(world, i)
     closed = world.home.doors & world.states[STATE_ID["CLOSED"]]
@@ -214,7 +214,7 @@ def _in_room(world: World, i: int, targets: int) -> int:
     return targets & 1 << room if room >= 0 else 0
 
 
-def _elsewhere(world: World, i: int, targets: int) -> int:
+def _other_room(world: World, i: int, targets: int) -> int:
     """It is in another room than the target, which is a room."""
     return targets & ~_in_room(world, i, targets)
 
@@ -230,19 +230,19 @@ def _is_held(world: World, i: int, targets: int) -> int:
     return mask_of(agent.index for agent in world.agents if agent.held >> i & 1) & targets
 
 
-def _apart(world: World, i: int, targets: int) -> int:
+def _not_near(world: World, i: int, targets: int) -> int:
     """Who has walked to the target is not close to it."""
     home = world.home
     mine = (1 << i | rows.close(world, i) | rows.on(world, i)) & ~home.properties["BODY_PART"]
     return mask_of(j for j in indices(targets) if not mine & home.reach[j])
 
 
-def _stowed(world: World, i: int, targets: int) -> int:
+def _in_closed_container(world: World, i: int, targets: int) -> int:
     """It is in something closed, whatever the target, in or on which it belongs."""
     return targets if rows.closed_container(world, i) >= 0 else 0
 
 
-def _averted(world: World, i: int, targets: int) -> int:
+def _facing_away(world: World, i: int, targets: int) -> int:
     """It does not face the target."""
     return targets & ~BINARY["FACING"](world, i, targets)
 
@@ -255,7 +255,7 @@ UNARY: dict[str, Unary] = {
     "free": _free,
     "occupied": _occupied,
     "full_hands": _full_hands,
-    "shut_in": _shut_in,
+    "doors_closed": _doors_closed,
     "pet": _pet,
 }
 """The predicates of one term: states, and conditions."""
@@ -277,10 +277,10 @@ BINARY: dict[str, Binary] = {
     **{name: RELATED[relation] for name, relation in RELATION_OF.items()},
     "location": _in_room,
     "together": _together,
-    "elsewhere": _elsewhere,
-    "apart": _apart,
-    "averted": _averted,
+    "other_room": _other_room,
+    "not_near": _not_near,
+    "facing_away": _facing_away,
     "holds": _is_held,
-    "stowed": _stowed,
+    "in_closed_container": _in_closed_container,
 }
 """The predicates of two terms: relations, and conditions."""

@@ -48,7 +48,7 @@ def environment_of(environment: Environment, edges: frozenset[Edge]) -> Differen
     removed = set(_both_ways(environment.removed)) - added
     came, went = _restated(home, states)
     moved = (tuple(sorted(added - edges)), tuple(sorted(removed & edges)))
-    return environment_row(Change(*moved, came, went, tuple(nodes), tuple(environment.gone)))
+    return environment_row(Change(*moved, came, went, tuple(nodes), tuple(environment.left_out)))
 
 
 def _both_ways(edges: Iterable[Edge]) -> Iterable[Edge]:

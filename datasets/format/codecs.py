@@ -12,7 +12,7 @@ from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
-from hearth.schemas.literals import Literal
+from hearth.schemas.literals import RENAMED, Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rows import NamedRow, ScriptRow, columns_of
 from hearth.schemas.structs import (
@@ -239,7 +239,10 @@ def conditions_of(rows: Iterable[ConditionRow]) -> Preconditions:
     return Preconditions(
         tuple(
             Condition(
-                Literal(row["name"], tuple((ref["name"], ref["instance"]) for ref in row["objects"])),
+                Literal(
+                    RENAMED.get(row["name"], row["name"]),
+                    tuple((ref["name"], ref["instance"]) for ref in row["objects"]),
+                ),
                 row["step"] or 0,
                 bool(row["hard"]),
             )

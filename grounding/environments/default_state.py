@@ -54,14 +54,14 @@ class Base:
         character: id of the character's node.
         room: index of each node's room, or -1.
         whole: the home that this is a thinned version of; else the home itself.
-        gone: ids of the nodes that it lacks for that.
+        removed: ids of the nodes that it lacks for that.
     """
 
-    def __init__(self, home: Home, whole: Home | None = None, gone: tuple[int, ...] = ()) -> None:
+    def __init__(self, home: Home, whole: Home | None = None, removed: tuple[int, ...] = ()) -> None:
         self.knowledge: Knowledge = home.knowledge
-        self.home = _at_rest(home)
+        self.home = _in_default_state(home)
         self.whole = whole or self.home
-        self.gone = gone
+        self.removed = removed
         self.start = World.start(self.home)
         self.character = self.home.ids[self.home.agents[0]]
         self.room = [self.home.direct_room[i] for i in range(len(self.home))]
@@ -70,12 +70,12 @@ class Base:
         self._thinned = cache(self._without_many)
 
     def thinned(self, most: int) -> Base:
-        """The home with at most so many nodes, if that can be: without small loose things that it has many of."""
+        """The home with at most so many nodes, if that can be: without small movable things that it has many of."""
         return self if len(self.home) <= most else self._thinned(most)
 
     def _without_many(self, most: int) -> Base:
-        gone = superfluous(self.home, most)
-        return Base(without(self.home, gone), self.home, gone)
+        removed = superfluous(self.home, most)
+        return Base(without(self.home, removed), self.home, removed)
 
     @cached_property
     def seats(self) -> int:
@@ -128,9 +128,9 @@ class Base:
 
     @cached_property
     def fillers(self) -> Spots:
-        """Every loose thing at every place it belongs: what makes one environment differ from another."""
-        loose = (c.name for c in self.knowledge.objects.values() if "GRABBABLE" in c.properties and not c.same_as)
-        return _weighted(spot for name in loose for spot in self._places(name))
+        """Every movable thing at every place it belongs: what makes one environment differ from another."""
+        movable = (c.name for c in self.knowledge.objects.values() if "GRABBABLE" in c.properties and not c.same_as)
+        return _weighted(spot for name in movable for spot in self._places(name))
 
     def _places(self, name: str) -> Iterable[tuple[tuple[str, int, str], int]]:
         for placement in self.knowledge.placements(name):
@@ -159,7 +159,7 @@ def _weighted(spots: Iterable[tuple[tuple[str, int, str], int]]) -> Spots:
     return Spots(tuple(spot for spot, _ in pairs), tuple(accumulate(each)), each)
 
 
-def _at_rest(home: Home) -> Home:
+def _in_default_state(home: Home) -> Home:
     """The home with default states, its (first) character standing in the room it is in."""
     states: dict[int, tuple[str, ...]] = {}
     for i, node_id in enumerate(home.ids):
@@ -168,9 +168,9 @@ def _at_rest(home: Home) -> Home:
             states[node_id] = wanted
     agent = World.start(home).agents[0]
     me = home.ids[agent.index]
-    gone = [edge for edge in World.start(home).edges() if me in (edge.source, edge.target)]
+    removed = [edge for edge in World.start(home).edges() if me in (edge.source, edge.target)]
     room = next(indices(agent.inside & home.rooms), next(indices(home.rooms)))
-    return extended(home, (), [Edge(me, "INSIDE", home.ids[room])], gone, states)
+    return extended(home, (), [Edge(me, "INSIDE", home.ids[room])], removed, states)
 
 
 _BY_PROPERTY = (("CAN_OPEN", "CLOSED"), ("HAS_SWITCH", "OFF"), ("HAS_PLUG", "PLUGGED_IN"))

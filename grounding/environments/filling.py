@@ -4,48 +4,48 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from hearth.grounding.environments.partial import Draft
+from hearth.grounding.environments.partial import PartialEnvironment
 from hearth.schemas.graph import Node
 from hearth.schemas.vocabulary import FIRST_FILLED_ID, OPPOSITE
-from hearth.simulation.world.edit import Loose
+from hearth.simulation.world.edit import Movable
 
 TURNED = 0.25
 """How likely each of a thing's pairs of states is turned over."""
 
 
-def fill(draft: Draft, least: int, most: int, some: int) -> None:
-    """Add random loose things where they belong.
+def fill(partial: PartialEnvironment, least: int, most: int, some: int) -> None:
+    """Add random movable things where they belong.
 
     Args:
-        draft: to add to; nothing else may be drafted after.
+        partial: to add to; nothing else may be added after.
         least, most: nodes the environment should have; the number is drawn from between.
         some: things added all the same to a home that has as many already.
     """
-    base = draft.base
+    base = partial.base
     choices, weights, _ = base.fillers
     if not weights:
         return
-    random = draft.rng.random
-    present = len(base.home) + len(draft.nodes)
-    wanted = max(draft.rng.randint(least, most) - present, draft.rng.randint(1, some) if some else 0)
+    random = partial.rng.random
+    present = len(base.home) + len(partial.nodes)
+    wanted = max(partial.rng.randint(least, most) - present, partial.rng.randint(1, some) if some else 0)
     total = weights[-1]
     home = base.home
     ids, rooms, bears, contents, kinds = home.ids, base.room, home.bears, home.contents, base.kind
-    taken, seats = draft.taken, base.seats
-    node_id = FIRST_FILLED_ID + len(draft.nodes)
+    taken, seats = partial.taken, base.seats
+    node_id = FIRST_FILLED_ID + len(partial.nodes)
     for _ in range(wanted):
         name, i, relation = choices[bisect_right(weights, random() * total)]
-        if ids[i] in taken or (seats >> i & 1 and _is_full(draft, i, ids[i])):
+        if ids[i] in taken or (seats >> i & 1 and _is_full(partial, i, ids[i])):
             continue
         category, properties, states = kinds(name)
         for state in states:
             if random() < TURNED:
                 states = _turned(states, state)
         near = 1 << i | (bears[i] if relation == "ON" else contents[i])
-        draft.loose.append(Loose(Node(node_id, name, category, properties, states), relation, i, rooms[i], near))
+        partial.movable.append(Movable(Node(node_id, name, category, properties, states), relation, i, rooms[i], near))
         node_id += 1
         if seats >> i & 1:
-            draft.load[ids[i]] = draft.load.get(ids[i], 0) + 1
+            partial.load[ids[i]] = partial.load.get(ids[i], 0) + 1
 
 
 def _turned(states: tuple[str, ...], state: str) -> tuple[str, ...]:
@@ -54,6 +54,6 @@ def _turned(states: tuple[str, ...], state: str) -> tuple[str, ...]:
     return (*(name for name in states if name not in (state, other)), other)
 
 
-def _is_full(draft: Draft, i: int, place: int) -> bool:
+def _is_full(partial: PartialEnvironment, i: int, place: int) -> bool:
     """Whether a seat or bed has but one place left, which is for who sits there."""
-    return draft.crowd(place) + 1 >= draft.base.home.limit(i)
+    return partial.crowd(place) + 1 >= partial.base.home.limit(i)

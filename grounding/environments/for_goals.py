@@ -8,9 +8,9 @@ from operator import or_
 
 from hearth.grounding.environments.default_state import Base
 from hearth.grounding.environments.filling import fill
-from hearth.grounding.environments.partial import Draft
+from hearth.grounding.environments.partial import PartialEnvironment
 from hearth.grounding.environments.placing import put_where_it_belongs
-from hearth.grounding.environments.sampling import TRIES, USUAL, Environment, Size, of_draft, settle_character
+from hearth.grounding.environments.sampling import TRIES, USUAL, Environment, Size, of_partial, settle_character
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.schemas.failures import Code, Failure
@@ -92,7 +92,7 @@ def _candidates(literal: Literal[Name], world: World) -> int:
 
 
 def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size: Size) -> Environment | Failure:
-    draft = Draft(base, rng(seed, "goal", base.home.name, record_id, attempt))
+    partial = PartialEnvironment(base, rng(seed, "goal", base.home.name, record_id, attempt))
     wanted: Counter[str] = Counter()
     for literal, number in goal:
         if name := _class(literal):
@@ -102,17 +102,17 @@ def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size
             wanted[holder] = max(wanted[holder], 1)
     for name, number in sorted(wanted.items()):
         if not base.knowledge.is_room(name):
-            provide(draft, name, number)
+            provide(partial, name, number)
     for literal, number in goal:
-        _undo(draft, literal, number)
-    settle_character(draft, _NO_PROGRAM, _NOTHING)
-    fill(draft, size.least, size.most, size.some)
-    return of_draft(draft, seed, _NO_PROGRAM, _NOTHING)
+        _undo(partial, literal, number)
+    settle_character(partial, _NO_PROGRAM, _NOTHING)
+    fill(partial, size.least, size.most, size.some)
+    return of_partial(partial, seed, _NO_PROGRAM, _NOTHING)
 
 
-def provide(draft: Draft, name: str, number: int) -> None:
+def provide(partial: PartialEnvironment, name: str, number: int) -> None:
     """As many of a class as are wanted, the missing ones where they belong."""
-    base = draft.base
+    base = partial.base
     here = len(base.instances(name))
     # A home that calls them by another of their names gets more of those.
     called = base.home.classes[base.instances(name)[0]] if here else name
@@ -120,13 +120,13 @@ def provide(draft: Draft, name: str, number: int) -> None:
     rooms = [base.home.ids[i] for room in (usual.rooms if usual else ()) for i in base.rooms(room)]
     every = [base.home.ids[i] for i in indices(base.home.rooms)]
     for _ in range(number - here):
-        node_id = draft.add(called, draft.rng.choice(rooms or every))
-        put_where_it_belongs(draft, called, node_id, -1, must=False)
+        node_id = partial.add(called, partial.rng.choice(rooms or every))
+        put_where_it_belongs(partial, called, node_id, -1, must=False)
 
 
-def _undo(draft: Draft, literal: Literal[Name], number: int) -> None:
+def _undo(partial: PartialEnvironment, literal: Literal[Name], number: int) -> None:
     """Where the home meets a predicate already, spoil it: states turned over, things laid on the floor."""
-    home = draft.base.home
+    home = partial.base.home
     try:
         watch = Progress.start(Goal(((literal, number),)), World.start(home)).watches[0]
     except IndexError:
@@ -134,8 +134,8 @@ def _undo(draft: Draft, literal: Literal[Name], number: int) -> None:
     for i in list(indices(reduce(or_, watch.met, 0)))[: max(0, watch.count - number + 1)]:
         node_id = home.ids[i]
         if literal.target is None:
-            draft.set_state(node_id, OPPOSITE[literal.name])
+            partial.set_state(node_id, OPPOSITE[literal.name])
         elif literal.name in ("ON", "INSIDE", "CLOSE") and home.properties["GRABBABLE"] >> i & 1:
-            room = draft.room_of(node_id)
-            draft.lift(node_id)
-            draft.settle(node_id, room)
+            room = partial.room_of(node_id)
+            partial.lift(node_id)
+            partial.settle(node_id, room)

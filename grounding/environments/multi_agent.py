@@ -8,8 +8,8 @@ from dataclasses import replace
 from hearth.grounding.binding import Binding, bind
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.for_goals import provide
-from hearth.grounding.environments.partial import Draft
-from hearth.grounding.environments.sampling import TRIES, Environment, of_draft, unplaceable
+from hearth.grounding.environments.partial import PartialEnvironment
+from hearth.grounding.environments.sampling import TRIES, Environment, of_partial, unplaceable
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.schemas.failures import Failure
@@ -44,16 +44,16 @@ def sample_together(
         return failure
     named = Counter(name for name, _ in {ref.key for ref in program.objects()})
     for attempt in range(TRIES):
-        draft = Draft(base, rng(seed, "together", home.name, program.title, attempt))
+        partial = PartialEnvironment(base, rng(seed, "together", home.name, program.title, attempt))
         for name, number in sorted(named.items()):
             if name != CHARACTER_CLASS and not base.knowledge.is_room(name):
-                provide(draft, name, number)
-        world = with_agents(World.start(draft.home()), agents, seed + attempt)
+                provide(partial, name, number)
+        world = with_agents(World.start(partial.home()), agents, seed + attempt)
         found = bind(program, world, rules)
         failure = found if isinstance(found, Failure) else unsound(world)
         if isinstance(found, Binding) and failure is None:
             bound = found.apply(program)
-            drawn = of_draft(draft, seed, bound, Preconditions())
+            drawn = of_partial(partial, seed, bound, Preconditions())
             return replace(drawn, world=world, program=bound), run(world, bound, rules)
     assert failure is not None
     return failure

@@ -9,12 +9,12 @@ from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import Key
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.edit import Loose, extended
+from hearth.simulation.world.edit import Movable, extended
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
 
 
-class Draft:
+class PartialEnvironment:
     """Grows while one environment is sampled, then becomes a home; the only mutable thing here.
 
     Attributes:
@@ -26,7 +26,7 @@ class Draft:
         binding: the program's objects.
         room: room's node id by node id, for what is not where the base has it.
         where: (relation, node id) a node stands ON or INSIDE, for what was placed here.
-        loose: the random things, which come last.
+        movable: the random things, which come last.
     """
 
     def __init__(self, base: Base, rng: Random) -> None:
@@ -42,11 +42,11 @@ class Draft:
         self.new: dict[int, Node] = {}
         self.taken: set[int] = set()
         self.load: dict[int, int] = {}
-        self.loose: list[Loose] = []
+        self.movable: list[Movable] = []
 
     def home(self) -> Home:
-        """The home with everything that was drafted."""
-        return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.loose)
+        """The home with everything that was added."""
+        return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
 
     def room_of(self, node_id: int) -> int:
         """Id of the room a node is in, or -1."""
@@ -105,7 +105,7 @@ class Draft:
         self.states[node_id] = (*(name for name in now if name not in (state, OPPOSITE[state])), state)
 
     def states_now(self, node_id: int) -> tuple[str, ...]:
-        """The states of a node as drafted so far."""
+        """The states of a node as added so far."""
         known = self.states.get(node_id)
         if known is not None:
             return known

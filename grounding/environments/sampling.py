@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from hearth.grounding.environments.default_state import Base, prepared
 from hearth.grounding.environments.filling import fill
-from hearth.grounding.environments.partial import Draft
-from hearth.grounding.environments.placing import bind, wishes_of
+from hearth.grounding.environments.partial import PartialEnvironment
+from hearth.grounding.environments.placing import bind, requirements_of
 from hearth.grounding.environments.satisfying import fulfil
 from hearth.grounding.environments.soundness import unsound
-from hearth.grounding.preconditions.abduction import Moment, conditions_for
+from hearth.grounding.preconditions.abduction import StartContext, conditions_for
 from hearth.grounding.preconditions.checking import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.infer import infer
@@ -22,7 +22,7 @@ from hearth.schemas.rng import rng
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.edit import Loose
+from hearth.simulation.world.edit import Movable
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -36,13 +36,13 @@ class Environment:
 
     Attributes:
         base: the home in its default state, which the differences are from.
-        gone: ids of the nodes of it that were left out, for a smaller environment.
+        left_out: ids of the nodes of it that were left out, for a smaller environment.
         seed: the run's seed.
         world: the start.
         program: the program, bound to the world's nodes.
         conditions: what was asked for, the conditions found while sampling included.
-        nodes, drafted, removed, states: what differs from the base; states are those of the nodes named, all of them.
-        loose: the random things among the nodes, and where they are.
+        nodes, placed, removed, states: what differs from the base; states are those of the nodes named, all of them.
+        movable: the random things among the nodes, and where they are.
     """
 
     base: Home
@@ -51,33 +51,33 @@ class Environment:
     program: Program
     conditions: Preconditions
     nodes: tuple[Node, ...]
-    drafted: tuple[Edge, ...]
+    placed: tuple[Edge, ...]
     removed: tuple[Edge, ...]
     states: tuple[tuple[int, tuple[str, ...]], ...]
-    loose: tuple[Loose, ...] = ()
-    gone: tuple[int, ...] = ()
+    movable: tuple[Movable, ...] = ()
+    left_out: tuple[int, ...] = ()
 
     @property
     def added(self) -> tuple[Edge, ...]:
         """The edges that the base does not have."""
         ids = self.world.home.ids
-        return (*self.drafted, *(edge for one in self.loose for edge in one.edges(ids)))
+        return (*self.placed, *(edge for one in self.movable for edge in one.edges(ids)))
 
 
-def of_draft(draft: Draft, seed: int, program: Program, conditions: Preconditions) -> Environment:
-    """What a draft has become."""
+def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditions: Preconditions) -> Environment:
+    """What a partial has become."""
     return Environment(
-        draft.base.whole,
+        partial.base.whole,
         seed,
-        World.start(draft.home()),
+        World.start(partial.home()),
         program,
         conditions,
-        (*draft.nodes, *[one.node for one in draft.loose]),
-        tuple(draft.added),
-        tuple(draft.removed),
-        tuple(sorted(draft.states.items())),
-        tuple(draft.loose),
-        draft.base.gone,
+        (*partial.nodes, *[one.node for one in partial.movable]),
+        tuple(partial.added),
+        tuple(partial.removed),
+        tuple(sorted(partial.states.items())),
+        tuple(partial.movable),
+        partial.base.removed,
     )
 
 
@@ -151,7 +151,7 @@ def sample(
             return environment, execution
         failure = _unmet(missing[0]) if missing else fault or execution.failure
         if attempt % 2 and execution.failure is not None and not missing:
-            found = _with_demand(found, environment, execution, base)
+            found = _with_abduced(found, environment, execution, base)
     assert failure is not None
     return failure
 
@@ -184,53 +184,53 @@ def draw(
 ) -> Environment:
     """One environment in which the conditions hold; whether the program runs in it remains to be seen."""
     generator = rng(seed, "sample", base.home.name, record_id, attempt)
-    draft = Draft(base, generator)
-    bind(draft, wishes_of(program, conditions, base.knowledge))
-    fulfil(draft, conditions)
-    settle_character(draft, program, conditions)
-    fill(draft, size.least, size.most, size.some)
-    return of_draft(draft, seed, program.bound(draft.binding), conditions)
+    partial = PartialEnvironment(base, generator)
+    bind(partial, requirements_of(program, conditions, base.knowledge))
+    fulfil(partial, conditions)
+    settle_character(partial, program, conditions)
+    fill(partial, size.least, size.most, size.some)
+    return of_partial(partial, seed, program.bound(partial.binding), conditions)
 
 
-def settle_character(draft: Draft, program: Program, conditions: Preconditions) -> None:
+def settle_character(partial: PartialEnvironment, program: Program, conditions: Preconditions) -> None:
     """Where its conditions want the character, else in another room than the program starts in."""
-    base = draft.base
+    base = partial.base
     home = base.home
     me = base.character
     rooms = [home.ids[i] for i in indices(home.rooms)]
     near = [c.objects[0] for c in conditions if c.name in ("nearby", "holds") and c.objects[-1] == CHARACTER]
-    if me in draft.room:
-        room = draft.room[me]
+    if me in partial.room:
+        room = partial.room[me]
     elif near:
-        room = draft.room_of(draft.binding[near[0]])
+        room = partial.room_of(partial.binding[near[0]])
     else:
         first = next((ref.key for step in program.steps for ref in step.objects), None)
-        begin = draft.binding.get(first, -1) if first else -1
-        begin = begin if begin in rooms else draft.room_of(begin)
-        room = draft.rng.choice([r for r in rooms if r != begin] or rooms)
-    draft.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(base.start.agents[0].inside))
-    draft.added.append(Edge(me, "INSIDE", room))
-    _bring(draft, me, room)
+        begin = partial.binding.get(first, -1) if first else -1
+        begin = begin if begin in rooms else partial.room_of(begin)
+        room = partial.rng.choice([r for r in rooms if r != begin] or rooms)
+    partial.removed.extend(Edge(me, "INSIDE", home.ids[i]) for i in indices(base.start.agents[0].inside))
+    partial.added.append(Edge(me, "INSIDE", room))
+    _bring(partial, me, room)
 
 
-def _bring(draft: Draft, me: int, room: int) -> None:
+def _bring(partial: PartialEnvironment, me: int, room: int) -> None:
     """What the character holds is where it is, unless it is said to be elsewhere."""
-    held = [edge.target for edge in draft.added if edge.source == me and edge.relation in HANDS]
+    held = [edge.target for edge in partial.added if edge.source == me and edge.relation in HANDS]
     for node_id in held:
-        if draft.room_of(node_id) < 0:
-            draft.settle(node_id, room)
+        if partial.room_of(node_id) < 0:
+            partial.settle(node_id, room)
 
 
-def _with_demand(
+def _with_abduced(
     conditions: Preconditions, environment: Environment, execution: Execution, base: Base
 ) -> Preconditions:
     """The conditions with what the failed run lacked."""
     failure = execution.failure
     assert failure is not None
     keys = {node: key for key, node in _nodes(environment.program).items()}
-    moment = Moment(
-        environment.program, failure.tick, failure, execution.final, environment.world, keys, base.knowledge
+    context = StartContext(
+        environment.program, failure.tick, failure, execution.final, base.knowledge, environment.world, keys
     )
     known = {c.literal for c in conditions}
-    new = next((c for c in conditions_for(moment) if c.literal not in known), None)
+    new = next((c for c in conditions_for(context) if c.literal not in known), None)
     return conditions if new is None else conditions.plus(new)

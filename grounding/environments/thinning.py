@@ -13,34 +13,34 @@ from hearth.simulation.world.world import World
 
 
 def superfluous(home: Home, most: int) -> tuple[int, ...]:
-    """Ids of small loose things to go without, so that at most so many nodes are left, if that can be; sorted.
+    """Ids of small movable things to go without, so that at most so many nodes are left, if that can be; sorted.
 
     The first to go is what its room has most of: a household's twelfth plate is missed less than its only kettle.
     Furniture, and what something stands on or in, stays.
     """
     chooser = rng(0, "thinned", home.name, most)
-    gone = 0
-    while len(home) - gone.bit_count() > most:
-        going = _loose(home, gone)
+    removed = 0
+    while len(home) - removed.bit_count() > most:
+        going = _movable(home, removed)
         if not going:
             break
-        gone |= _chosen(home, going, len(home) - gone.bit_count() - most, chooser)
-    return tuple(home.ids[i] for i in indices(gone))
+        removed |= _chosen(home, going, len(home) - removed.bit_count() - most, chooser)
+    return tuple(home.ids[i] for i in indices(removed))
 
 
-def without(home: Home, gone: tuple[int, ...]) -> Home:
+def without(home: Home, removed: tuple[int, ...]) -> Home:
     """A home without those nodes, and without their edges."""
-    missing = frozenset(gone)
+    missing = frozenset(removed)
     graph = World.start(home).graph()
     nodes = tuple(node for node in graph.nodes if node.id not in missing)
     edges = tuple(edge for edge in graph.edges if edge.source not in missing and edge.target not in missing)
     return Home.from_graph(EnvironmentGraph(nodes, edges), home.name, home.knowledge)
 
 
-def _loose(home: Home, gone: int) -> list[int]:
+def _movable(home: Home, removed: int) -> list[int]:
     """What can be grasped and bears and holds nothing that is left."""
-    graspable = home.properties["GRABBABLE"] & ~home.characters & ~gone
-    return [i for i in indices(graspable) if not (home.bears[i] | home.contents[i]) & ~gone]
+    graspable = home.properties["GRABBABLE"] & ~home.characters & ~removed
+    return [i for i in indices(graspable) if not (home.bears[i] | home.contents[i]) & ~removed]
 
 
 def _chosen(home: Home, going: list[int], count: int, chooser: Random) -> int:

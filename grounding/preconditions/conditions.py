@@ -70,7 +70,7 @@ class Preconditions:
             merged[condition.literal] = replace(known, hard=known.hard or condition.hard)
         return Preconditions(tuple(merged.values()))
 
-    def without(self, *gone: Condition) -> Preconditions:
+    def without(self, *removed: Condition) -> Preconditions:
         """Without some conditions."""
-        literals = {c.literal for c in gone}
+        literals = {c.literal for c in removed}
         return Preconditions(tuple(c for c in self.conditions if c.literal not in literals))

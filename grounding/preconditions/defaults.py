@@ -14,7 +14,7 @@ from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 
 
-def habits(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
+def default_conditions(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     """The soft conditions of a program, in step order."""
     yield from _locations(program, knowledge)
     yield from _contents(program, knowledge)
@@ -70,10 +70,10 @@ def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         for ref in step.objects:
             new = ref.key not in seen
             seen.add(ref.key)
-            loose = new and has(knowledge, ref.name, "GRABBABLE")
-            if loose and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
+            movable = new and has(knowledge, ref.name, "GRABBABLE")
+            if movable and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
                 yield Condition(Literal("in", (ref.key, last)), number, hard=False)
-            elif loose and last is not None and last[0] == "chair":
+            elif movable and last is not None and last[0] == "chair":
                 yield Condition(Literal("atreach", (ref.key, last)), number, hard=False)
         if step.objects and (step.action in knowledge.group("goes") or step.action == "LookAt"):
             last = None if knowledge.is_room(step.objects[0].name) else step.objects[0].key

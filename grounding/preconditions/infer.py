@@ -7,9 +7,9 @@ that shows and the step that spoilt it (thesis 5.5.2: the function Phi).
 
 from __future__ import annotations
 
-from hearth.grounding.preconditions.abduction import Moment, conditions_for
+from hearth.grounding.preconditions.abduction import StartContext, conditions_for
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
-from hearth.grounding.preconditions.defaults import habits
+from hearth.grounding.preconditions.defaults import default_conditions
 from hearth.grounding.preconditions.minimal_home import SketchHome, sketch
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
@@ -49,7 +49,7 @@ def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> t
 
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
     """The conditions found, the last try with them, and the step it failed at, if it did."""
-    conditions = Preconditions(tuple(habits(program, knowledge)))
+    conditions = Preconditions(tuple(default_conditions(program, knowledge)))
     tried: dict[int, set[Literal[Key]]] = {}
     for _ in range(MAX_CONDITIONS):
         place = sketch(program, conditions, knowledge)
@@ -77,12 +77,12 @@ def _next(
     assert failure is not None
     if failure.code in CAUSED_BY_START:
         return None
-    moment = Moment(place.program, step, failure, execution.final, execution.worlds[0], place.keys, knowledge)
-    for condition in conditions_for(moment):
+    context = StartContext(place.program, step, failure, execution.final, knowledge, execution.worlds[0], place.keys)
+    for condition in conditions_for(context):
         if condition.literal not in tried and not _against(condition, conditions):
             tried.add(condition.literal)
             return _settled(conditions, condition)
-    key = moment.key() if failure.objects else None
+    key = context.key() if failure.objects else None
     soft = [c for c in conditions if not c.hard and (key is None or key in c.objects)]
     return conditions.without(soft[-1]) if soft else None
 

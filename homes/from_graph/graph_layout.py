@@ -38,7 +38,7 @@ ENLARGED = (1.0, 1.2, 1.45, 1.75, 2.1)
 
 
 @dataclass(frozen=True, slots=True)
-class LaidOut:
+class GraphLayout:
     """A graph with geometry.
 
     Attributes:
@@ -52,7 +52,7 @@ class LaidOut:
     unmet: tuple[Diagnostic, ...]
 
 
-def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> LaidOut:
+def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> GraphLayout:
     """Give a graph plausible geometry; the same graph always gets the same.
 
     Raises:
@@ -71,7 +71,7 @@ def lay_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> LaidOut
         layout = replace(layout, plan=replace(plan, character=room))
         things[person] = layout.character
     new = EnvironmentGraph(tuple(_placed(node, things.get(node.id)) for node in graph.nodes), graph.edges, graph.extra)
-    return LaidOut(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
+    return GraphLayout(new, layout, tuple(unmet(new, things, parts, crowd.squeezed)))
 
 
 def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:

@@ -36,7 +36,7 @@ class UnfurnishableError(Exception):
     """A room has no place for what it needs."""
 
 
-def furnish_by_lot(room: Room, height: float, shell: Shell, knowledge: Knowledge, rng: Random) -> tuple[Piece, ...]:
+def furnish(room: Room, height: float, shell: Shell, knowledge: Knowledge, rng: Random) -> tuple[Piece, ...]:
     """A room's furniture with what stands on and in it, as entries of a plan.
 
     Raises:

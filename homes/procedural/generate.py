@@ -10,7 +10,7 @@ from hearth.homes.plans.layout import Layout, arrange
 from hearth.homes.plans.plan import Faults, Piece, Plan, Room
 from hearth.homes.plans.shell import Shell, Thing
 from hearth.homes.procedural.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_plan
-from hearth.homes.procedural.furnishing import UnfurnishableError, furnish_by_lot
+from hearth.homes.procedural.furnishing import UnfurnishableError, furnish
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -65,7 +65,7 @@ def _furniture(room: Room, plan: Plan, built: Shell, knowledge: Knowledge, rng: 
     """A room's furniture: what it needs may find its place at a second try, and a new floor plan costs more."""
     for _ in range(ROOM_TRIES):
         try:
-            return furnish_by_lot(room, plan.height, built, knowledge, rng)
+            return furnish(room, plan.height, built, knowledge, rng)
         except UnfurnishableError:
             continue
     return None

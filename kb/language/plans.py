@@ -50,7 +50,7 @@ class Spoken(NamedTuple):
     warnings: tuple[Diagnostic, ...]
 
 
-def parse_spoken(text: str, before: int, place: str, known: Knowledge) -> Spoken:
+def parse_steps(text: str, before: int, place: str, known: Knowledge) -> Spoken:
     """Read steps in words; instances are not said, so that every name is its instance 1.
 
     A line may ask for several things ("open the fridge and take the milk out"), where each of them is understood; `it`
@@ -128,7 +128,7 @@ class _Listener:
 
     def _nearly(self, meant: Candidate, line: str, start: int, words: str, number: int) -> Diagnostic:
         message = f"taken for `{said(meant)}`, similarity {meant.score:.2f}"
-        return Diagnostic(Code.HEARD_NEARLY, message, self.place, number, start + 1, len(words), words[:200], "", line)
+        return Diagnostic(Code.FUZZY_MATCH, message, self.place, number, start + 1, len(words), words[:200], "", line)
 
     def _fault(
         self, near: tuple[Candidate, ...], ambiguous: bool, line: str, start: int, words: str, number: int

@@ -74,13 +74,13 @@ def default() -> Knowledge:
     return load()
 
 
-def laid_over(overlay: Path | None) -> Knowledge:
+def overlaid(overlay: Path | None) -> Knowledge:
     """Ours with a user's files laid over it, read once a process while these stay as they are; errors as of `load`."""
-    return _laid_over(overlay, digest(overlay)) if overlay else default()
+    return _overlaid(overlay, digest(overlay)) if overlay else default()
 
 
 @lru_cache(maxsize=8)
-def _laid_over(overlay: Path, _: str) -> Knowledge:
+def _overlaid(overlay: Path, _: str) -> Knowledge:
     return load(overlay=overlay)
 
 

@@ -74,7 +74,7 @@ def compare(knowledge: Knowledge, other: Path) -> Comparison:
             fact for fact in ours[table] - facts if fact[subject] in known and (actions is None or fact[0] in actions)
         )
         differences += [
-            Difference(table, fact, "missing", reasons.gone(table, fact)) for fact in sorted(facts - ours[table])
+            Difference(table, fact, "missing", reasons.removed(table, fact)) for fact in sorted(facts - ours[table])
         ]
         differences += [Difference(table, fact, "added", reasons.added(table, fact)) for fact in sorted(added)]
     return Comparison(

@@ -60,7 +60,7 @@ class Reasons:
         self.knowledge = knowledge
         self.renamed: Mapping[str, str] = entries["renamed"].value["states"]
         self._rules: dict[tuple[str, str], list[Rule]] = {}
-        for kind in ("gone", "added"):
+        for kind in ("removed", "added"):
             for rule in (Rule(knowledge, entry) for entry in entries[kind].value):
                 self._rules.setdefault((kind, rule.table), []).append(rule)
         self._given = {
@@ -72,9 +72,9 @@ class Reasons:
             for name in knowledge.objects
         }
 
-    def gone(self, table: str, fact: Fact) -> str:
+    def removed(self, table: str, fact: Fact) -> str:
         """Why we do not hold the other's fact, or ''."""
-        return next((rule.why for rule in self._of("gone", table) if rule.covers(fact)), "")
+        return next((rule.why for rule in self._of("removed", table) if rule.covers(fact)), "")
 
     def added(self, table: str, fact: Fact) -> str:
         """Why we hold a fact that the other does not, or ''."""

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.datasets.dataset_knowledge import FOLDER, copy_overlay, made_with
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import digest as knowledge_digest
-from hearth.kb.loading.load import laid_over
+from hearth.kb.loading.load import overlaid
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
 from hearth.storage.files import tree_digest
@@ -17,7 +17,7 @@ from hearth.storage.files import tree_digest
 
 def knowledge(settings: Settings) -> Knowledge:
     """Our knowledge, with the user's laid over it."""
-    return laid_over(Path(settings.kb_folder) if settings.kb_folder else None)
+    return overlaid(Path(settings.kb_folder) if settings.kb_folder else None)
 
 
 def knowledge_used(job: Job) -> dict[str, Any]:

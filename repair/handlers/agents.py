@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hearth.repair.handlers.common import Edit, Splice, Trouble, before
+from hearth.repair.handlers.common import Edit, RepairContext, Splice, before
 from hearth.schemas.program import Step
 
 
-def held_by_other(trouble: Trouble) -> Edit | None:
+def held_by_other(context: RepairContext) -> Edit | None:
     """Let who holds it put it down first."""
-    holder = next((n for n, agent in enumerate(trouble.world.agents) if agent.index == trouble.index(1)), None)
+    holder = next((n for n, agent in enumerate(context.world.agents) if agent.index == context.index(1)), None)
     if holder is None:
         return None
-    return before(trouble, "held_by_other", Step("Release", (trouble.object(),), holder))
+    return before(context, "held_by_other", Step("Release", (context.object(),), holder))
 
 
-def conflict(trouble: Trouble) -> Edit | None:
+def conflict(context: RepairContext) -> Edit | None:
     """Do one after the other what can't be done in one tick."""
-    if not trouble.step.joins:
-        following = trouble.at + 1
-        if following >= len(trouble.program.steps) or not trouble.program.steps[following].joins:
+    if not context.step.joins:
+        following = context.at + 1
+        if following >= len(context.program.steps) or not context.program.steps[following].joins:
             return None
-        return Edit("conflict", (Splice(following, 1, (replace(trouble.program.steps[following], joins=False),)),))
-    return Edit("conflict", (Splice(trouble.at, 1, (replace(trouble.step, joins=False),)),))
+        return Edit("conflict", (Splice(following, 1, (replace(context.program.steps[following], joins=False),)),))
+    return Edit("conflict", (Splice(context.at, 1, (replace(context.step, joins=False),)),))

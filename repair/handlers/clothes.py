@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hearth.repair.handlers.common import Edit, Trouble, removed
+from hearth.repair.handlers.common import Edit, RepairContext, removed
 
 
-def not_worn(trouble: Trouble) -> Edit | None:
+def not_worn(context: RepairContext) -> Edit | None:
     """Leave the PutOff out."""
-    return removed(trouble, "not_worn")
+    return removed(context, "not_worn")

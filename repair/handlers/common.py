@@ -1,4 +1,4 @@
-"""What the handlers share: the trouble they are given, and the edits they answer with."""
+"""What the handlers share: the context they are given, and the edits they answer with."""
 
 from __future__ import annotations
 
@@ -6,38 +6,26 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from hearth.grounding.failure_context import FailureContext
 from hearth.grounding.preconditions.postconditions import Postconditions
-from hearth.kb.knowledge import Knowledge
-from hearth.schemas.failures import Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
-from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.states import LYING, SITTING
-from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)
-class Trouble:
-    """A step that can't be done, and everything there is to know about it.
+class RepairContext(FailureContext):
+    """A failure to repair.
 
     Attributes:
-        program: bound to nodes.
-        at: number of the failing step, from 0; one past the last when the program ran but missed its goal.
-        failure: why it fails.
-        world: the world as the step is tried.
-        knowledge, rules: what the world goes by.
+        rules: what the execution goes by.
         goal: what the program has to reach (thesis eq. A.1).
-        nodes: the nodes of the objects that the goal speaks of.
+        nodes: the nodes of the objects that the goal names.
         missed: the facts of the goal that do not hold, where the program ran to its end.
     """
 
-    program: Program
-    at: int
-    failure: Failure
-    world: World
-    knowledge: Knowledge
     rules: Rules
     goal: Postconditions = ()
     nodes: Mapping[Key, int] = field(default_factory=dict)
@@ -49,19 +37,10 @@ class Trouble:
         return self.program.steps[self.at]
 
     @property
-    def agent(self) -> Agent:
-        """The character whose step it is."""
-        return self.world.agents[self.failure.agent]
-
-    @property
     def resting(self) -> bool:
         """Whether that character sits or lies."""
         states = self.world.states
         return bool((states[SITTING] | states[LYING]) & self.agent.bit)
-
-    def index(self, position: int = 0) -> int:
-        """Index of a node that the failure names."""
-        return self.world.home.index[self.failure.objects[position]]
 
     def object(self, position: int = 0) -> ObjectRef:
         """A node that the failure names, as an object of the program."""
@@ -90,10 +69,6 @@ class Trouble:
     def ref(self, index: int) -> ObjectRef:
         """One node as an object of the program."""
         return self.refs((index,))[0]
-
-    def group(self, name: str) -> frozenset[str]:
-        """The actions of a group (see `kb.groups`)."""
-        return self.knowledge.group(name)
 
     def is_close(self, index: int) -> bool:
         """Whether the character is close to a node."""
@@ -139,14 +114,14 @@ class Edit(NamedTuple):
     splices: tuple[Splice, ...]
 
 
-Handler = Callable[[Trouble], Edit | None]
+Handler = Callable[[RepairContext], Edit | None]
 """From a failure to its repair; None when nothing can be done about it."""
 
 
-def removed(trouble: Trouble, name: str) -> Edit:
+def removed(context: RepairContext, name: str) -> Edit:
     """Leave the failing step out; what was to happen together with it happens all the same."""
-    steps = trouble.program.steps
-    at = trouble.at
+    steps = context.program.steps
+    at = context.at
     if not steps[at].joins and at + 1 < len(steps) and steps[at + 1].joins:
         rest = steps[at + 1]
         alone = Step(rest.action, rest.objects, rest.agent, False, rest.modifiers)
@@ -154,21 +129,21 @@ def removed(trouble: Trouble, name: str) -> Edit:
     return Edit(name, (Splice(at, 1),))
 
 
-def before(trouble: Trouble, name: str, *steps: Step) -> Edit:
+def before(context: RepairContext, name: str, *steps: Step) -> Edit:
     """Do something first."""
-    return Edit(name, (Splice(tick_start(trouble.program, trouble.at), 0, steps),))
+    return Edit(name, (Splice(tick_start(context.program, context.at), 0, steps),))
 
 
-def around(trouble: Trouble, name: str, first: Iterable[Step], after: int, then: Iterable[Step]) -> Edit:
+def around(context: RepairContext, name: str, first: Iterable[Step], after: int, then: Iterable[Step]) -> Edit:
     """Do something before the failing step, and something else right after step number `after`."""
-    start = tick_start(trouble.program, trouble.at)
-    end = tick_end(trouble.program, after)
+    start = tick_start(context.program, context.at)
+    end = tick_end(context.program, after)
     return Edit(name, (Splice(start, 0, tuple(first)), Splice(end, 0, tuple(then))))
 
 
-def replaced(trouble: Trouble, name: str, *steps: Step) -> Edit:
+def replaced(context: RepairContext, name: str, *steps: Step) -> Edit:
     """Do something instead."""
-    return Edit(name, (Splice(trouble.at, 1, steps),))
+    return Edit(name, (Splice(context.at, 1, steps),))
 
 
 def tick_start(program: Program, at: int) -> int:

@@ -2,80 +2,80 @@
 
 from __future__ import annotations
 
-from hearth.repair.handlers.common import Edit, Splice, Trouble, around, before
+from hearth.repair.handlers.common import Edit, RepairContext, Splice, around, before
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.world import rows
 
 
-def not_close(trouble: Trouble) -> Edit | None:
+def not_close(context: RepairContext) -> Edit | None:
     """Walk to what is not close."""
-    return gone_to(trouble, "not_close", trouble.object())
+    return walked_to(context, "not_close", context.object())
 
 
-def not_in_room(trouble: Trouble) -> Edit | None:
+def not_in_room(context: RepairContext) -> Edit | None:
     """Walk to what is to be watched and is in another room."""
-    return gone_to(trouble, "not_in_room", trouble.object())
+    return walked_to(context, "not_in_room", context.object())
 
 
-def door_closed(trouble: Trouble) -> Edit | None:
+def door_closed(context: RepairContext) -> Edit | None:
     """Walk to the closed door that is on the way, and open it."""
-    door = trouble.object()
-    opened = trouble.does("Open", door)
-    if trouble.is_close(trouble.index()):
-        return before(trouble, "door_closed", opened)
-    return before(trouble, "door_closed", trouble.does("Walk", door), opened)
+    door = context.object()
+    opened = context.does("Open", door)
+    if context.is_close(context.index()):
+        return before(context, "door_closed", opened)
+    return before(context, "door_closed", context.does("Walk", door), opened)
 
 
-def gone_to(trouble: Trouble, name: str, target: ObjectRef, *there: Step) -> Edit:
+def walked_to(context: RepairContext, name: str, target: ObjectRef, *there: Step) -> Edit:
     """Walk to something first, and do more there.
 
     Who sits or lies gets up for it. If the program had the character take that seat, it returns to it when what has to
     be done beside the target is done; where the seat is too small to be taken twice (who has sat on it stays ON it, as
     in the release), it is only taken then.
     """
-    walk = trouble.does("Walk", target)
-    if not trouble.resting:
-        return before(trouble, name, walk, *there)
-    going = (trouble.does("StandUp"), walk, *there)
-    seat = trouble.seat_taken()
-    last = _end_of_errand(trouble, target)
-    if seat is None or trouble.step.action in _posture(trouble) or _leaves_anyway(trouble, last):
-        return before(trouble, name, *going)
+    walk = context.does("Walk", target)
+    if not context.resting:
+        return before(context, name, walk, *there)
+    going = (context.does("StandUp"), walk, *there)
+    seat = context.seat_taken()
+    last = _end_of_errand(context, target)
+    if seat is None or context.step.action in _posture(context) or _leaves_anyway(context, last):
+        return before(context, name, *going)
     number, action, place = seat
-    back = trouble.does("Walk", place)
-    index = trouble.world.home.index[place.node] if place.node is not None else -1
-    if rows.bearing(trouble.world, index).bit_count() < trouble.world.home.limit(index, action == "Lie"):
-        return around(trouble, name, going, last, (back, trouble.does(action, place)))
-    later = around(trouble, name, (walk, *there), last, (back, trouble.program.steps[number]))
+    back = context.does("Walk", place)
+    index = context.world.home.index[place.node] if place.node is not None else -1
+    if rows.bearing(context.world, index).bit_count() < context.world.home.limit(index, action == "Lie"):
+        return around(context, name, going, last, (back, context.does(action, place)))
+    later = around(context, name, (walk, *there), last, (back, context.program.steps[number]))
     return Edit(name, (Splice(number, 1), *later.splices))
 
 
-def _end_of_errand(trouble: Trouble, target: ObjectRef) -> int:
+def _end_of_errand(context: RepairContext, target: ObjectRef) -> int:
     """Number of the last step that is done beside the target: the failing one, and those after it that need to be."""
-    last = trouble.at
-    for number in range(trouble.at + 1, len(trouble.program.steps)):
-        step = trouble.program.steps[number]
-        if step.agent != trouble.failure.agent:
+    last = context.at
+    for number in range(context.at + 1, len(context.program.steps)):
+        step = context.program.steps[number]
+        if step.agent != context.failure.agent:
             continue
-        if step.action in _posture(trouble) or target not in step.objects or not _needs_to_be_close(trouble, step):
+        if step.action in _posture(context) or target not in step.objects or not _needs_to_be_close(context, step):
             break
         last = number
     return last
 
 
-def _posture(trouble: Trouble) -> frozenset[str]:
+def _posture(context: RepairContext) -> frozenset[str]:
     """Actions that leave a seat or a place, or take a seat."""
-    return trouble.group("rests") | trouble.group("rises") | trouble.group("walks")
+    return context.group("rests") | context.group("rises") | context.group("walks")
 
 
-def _needs_to_be_close(trouble: Trouble, step: Step) -> bool:
-    action = trouble.knowledge.actions.get(step.action)
+def _needs_to_be_close(context: RepairContext, step: Step) -> bool:
+    action = context.knowledge.actions.get(step.action)
     return action is not None and any(check.code is Code.NOT_CLOSE for check in action.preconditions)
 
 
-def _leaves_anyway(trouble: Trouble, last: int) -> bool:
+def _leaves_anyway(context: RepairContext, last: int) -> bool:
     """Whether the character's next step gets up or walks away."""
-    later = (s for s in trouble.program.steps[last + 1 :] if s.agent == trouble.failure.agent)
+    later = (s for s in context.program.steps[last + 1 :] if s.agent == context.failure.agent)
     following = next(later, None)
-    return following is not None and following.action in _posture(trouble)
+    return following is not None and following.action in _posture(context)

@@ -45,7 +45,7 @@ UNREPAIRABLE: dict[Code, str] = {
 }
 """Failures of running a program for which there is no repair, and why."""
 
-ELSEWHERE: frozenset[Code] = frozenset(
+BEFORE_REPAIR: frozenset[Code] = frozenset(
     {
         Code.EMPTY, Code.NOT_TEXT, Code.LINE_TOO_LONG, Code.BAD_ARCHIVE, Code.BAD_JSON, Code.BAD_TABLE, Code.BAD_GRAPH,
         Code.MISSING_FILE, Code.UNSUPPORTED_FILE, Code.DUPLICATE, Code.REJECTED_ANSWER, Code.SYNTAX, Code.BAD_INSTANCE,
@@ -53,7 +53,7 @@ ELSEWHERE: frozenset[Code] = frozenset(
         Code.CONDITION_UNMET, Code.NO_HANDLER, Code.HANDLER_ERROR, Code.TOO_MANY_TRIES, Code.LOOP, Code.UNPERTURBED,
         Code.UNKNOWN_ID, Code.MISSING_PREDICTION, Code.REPLAY_DIFFERS, Code.NOT_RENDERED,
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
-        Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.HEARD_NEARLY, Code.DAMAGED_FILE,
+        Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
     }
 )  # fmt: skip
@@ -62,7 +62,7 @@ ELSEWHERE: frozenset[Code] = frozenset(
 
 def unclassified() -> tuple[Code, ...]:
     """Codes that stand in none of the three tables, or in two of them."""
-    tables = (HANDLERS, UNREPAIRABLE, ELSEWHERE)
+    tables = (HANDLERS, UNREPAIRABLE, BEFORE_REPAIR)
     return tuple(code for code in Code if sum(code in table for table in tables) != 1)
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hearth.repair.handlers.common import Edit, Trouble, before
+from hearth.repair.handlers.common import Edit, RepairContext, before
 
 
-def not_facing(trouble: Trouble) -> Edit | None:
+def not_facing(context: RepairContext) -> Edit | None:
     """Turn to it first."""
-    return before(trouble, "not_facing", trouble.does("TurnTo", trouble.object()))
+    return before(context, "not_facing", context.does("TurnTo", context.object()))

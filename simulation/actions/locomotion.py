@@ -103,16 +103,16 @@ def _characters_near(world: World, o: int) -> int:
 
 def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held: int) -> tuple[Agent, ...]:
     """Keep the other characters' rows in step with one who has walked: the edges between two stand in both."""
-    gone = ~(arrived.bit | held)
+    removed = ~(arrived.bit | held)
     return tuple(
         arrived
         if i == number
         else other._replace(
-            close=other.close & gone | (arrived.bit if arrived.close & other.bit else 0),
-            facing=other.facing & gone,
-            faced=other.faced & gone,
-            inside=other.inside & gone,
-            contents=other.contents & gone,
+            close=other.close & removed | (arrived.bit if arrived.close & other.bit else 0),
+            facing=other.facing & removed,
+            faced=other.faced & removed,
+            inside=other.inside & removed,
+            contents=other.contents & removed,
         )
         for i, other in enumerate(agents)
     )

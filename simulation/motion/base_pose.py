@@ -17,7 +17,7 @@ RIGHT, LEFT = "right", "left"
 
 
 @dataclass(frozen=True, slots=True)
-class Stance:
+class HandAndBasePose:
     """How a character does a step.
 
     Attributes:
@@ -31,7 +31,9 @@ class Stance:
     hand: str | None
 
 
-def stances(execution: Execution, ways: Ways, rules: Rules = DEFAULT) -> tuple[tuple[Stance, ...], ...]:
+def hand_and_base_poses(
+    execution: Execution, ways: Ways, rules: Rules = DEFAULT
+) -> tuple[tuple[HandAndBasePose, ...], ...]:
     """For each tick done, how each of its characters stands for its step, once it has arrived and turned.
 
     Args:
@@ -47,12 +49,12 @@ def stances(execution: Execution, ways: Ways, rules: Rules = DEFAULT) -> tuple[t
     for steps, after in zip(execution.program.ticks(), execution.worlds[1:], strict=False):
         tick = tuple(_each(here, steps, ways, rules))
         found.append(tick)
-        poses = {stance.agent: stance.pose for stance in tick}
+        poses = {how.agent: how.pose for how in tick}
         here = Located(after, tuple(poses.get(number, pose) for number, pose in enumerate(here.poses)))
     return tuple(found)
 
 
-def _each(here: Located, steps: tuple[Step, ...], ways: Ways, rules: Rules) -> Iterator[Stance]:
+def _each(here: Located, steps: tuple[Step, ...], ways: Ways, rules: Rules) -> Iterator[HandAndBasePose]:
     for step in steps:
         there = do(here, step, ways, rules=rules)
         if isinstance(there, Failure):
@@ -61,7 +63,7 @@ def _each(here: Located, steps: tuple[Step, ...], ways: Ways, rules: Rules) -> I
         pose = there.poses[step.agent]
         if hand is not None:
             pose = _turned(pose, here, step)
-        yield Stance(step.agent, pose, hand)
+        yield HandAndBasePose(step.agent, pose, hand)
 
 
 def _turned(pose: Pose, here: Located, step: Step) -> Pose:

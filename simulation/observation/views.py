@@ -18,7 +18,7 @@ from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)
-class Deed:
+class LastAction:
     """What an agent last tried: the instruction, and why it failed if it did."""
 
     instruction: Step
@@ -49,7 +49,7 @@ class Pose:
     facing: tuple[int, ...] = ()
     holding: tuple[int, ...] = ()
     wearing: tuple[int, ...] = ()
-    last: Deed | None = None
+    last: LastAction | None = None
 
 
 @dataclass(frozen=True)
@@ -89,11 +89,16 @@ class View:
         return index is not None and bool(self.mask >> index & 1)
 
 
-_NOTHING: Mapping[int, Deed] = MappingProxyType({})
+_NOTHING: Mapping[int, LastAction] = MappingProxyType({})
 
 
 def view(
-    world: World, agent: int = 0, *, partial: bool = True, deeds: Mapping[int, Deed] = _NOTHING, tick: int = 0
+    world: World,
+    agent: int = 0,
+    *,
+    partial: bool = True,
+    last_actions: Mapping[int, LastAction] = _NOTHING,
+    tick: int = 0,
 ) -> View:
     """What an agent sees.
 
@@ -102,19 +107,19 @@ def view(
         agent: its number.
         partial: only what is in its room and not inside something closed, and what it holds or wears (see
             `reach.visible`); otherwise everything.
-        deeds: what each agent last tried.
+        last_actions: what each agent last tried.
         tick: how many ticks have passed.
     """
     mask = reach.visible(world, world.agents[agent]) if partial else world.home.everything
     others = tuple(
-        pose(world, number, deeds.get(number))
+        pose(world, number, last_actions.get(number))
         for number, other in enumerate(world.agents)
         if number != agent and mask & other.bit
     )
-    return View(world, agent, mask, pose(world, agent, deeds.get(agent)), others, tick)
+    return View(world, agent, mask, pose(world, agent, last_actions.get(agent)), others, tick)
 
 
-def pose(world: World, number: int, last: Deed | None = None) -> Pose:
+def pose(world: World, number: int, last: LastAction | None = None) -> Pose:
     """How a character stands."""
     agent = world.agents[number]
     ids = world.home.ids

@@ -131,7 +131,7 @@ _KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
 """How each kind of row (see `moved`) is read, and whether its edges go out from the row's node."""
 
 _ONE_WAY = ((ON, BEARS), (INSIDE, CONTENTS), (CLOSE,), (FACING, FACED))
-"""The kinds of rows of each relation that `Moved` knows gone nodes of, in its order."""
+"""The kinds of rows of each relation that `Moved` knows removed nodes of, in its order."""
 
 
 def _touched(before: WorldState, after: WorldState) -> set[int]:

@@ -23,7 +23,7 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
 
 
-class Loose(NamedTuple):
+class Movable(NamedTuple):
     """A new thing put somewhere, in short: what many things are added by.
 
     Attributes:
@@ -58,7 +58,7 @@ def extended(
     edges: Sequence[Edge] = (),
     removed_edges: Sequence[Edge] = (),
     states: Mapping[int, Iterable[str]] = _NO_STATES,
-    loose: Sequence[Loose] = (),
+    movable: Sequence[Movable] = (),
 ) -> Home:
     """A home with more nodes, more and fewer edges, and other states; the given home stays as it is.
 
@@ -70,7 +70,7 @@ def extended(
         edges: new ones; either end may be a new node. CLOSE is symmetric: one direction is enough.
         removed_edges: taken away before `edges` are added; one that is not there is no error.
         states: node id -> the simulated states it is in, instead of those it had; new nodes bring their own.
-        loose: more new nodes, their ids above all others; fast where there are many.
+        movable: more new nodes, their ids above all others; fast where there are many.
 
     Raises:
         HearthError: BAD_GRAPH, when an id is used twice or an edge or state names a node that there is not.
@@ -79,16 +79,16 @@ def extended(
         if len(nodes) > 1:
             nodes = sorted(nodes, key=attrgetter("id"))
         if home.ids and nodes[0].id <= home.ids[-1]:
-            more = [edge for one in loose for edge in one.edges(home.ids)]
+            more = [edge for one in movable for edge in one.edges(home.ids)]
             whole = _rebuilt(home, nodes, edges, removed_edges, states)
-            return extended(whole, [one.node for one in loose], more) if loose else whole
+            return extended(whole, [one.node for one in movable], more) if movable else whole
     new = home.copy()
     try:
-        _append(new, [*nodes, *[one.node for one in loose]] if loose else nodes)
+        _append(new, [*nodes, *[one.node for one in movable]] if movable else nodes)
         touched = -1 << len(home)
         touched |= _each(new, removed_edges, put=False) | _each(new, edges, put=True)
-        if loose:
-            touched |= _lay(new, len(home) + len(nodes), loose)
+        if movable:
+            touched |= _lay(new, len(home) + len(nodes), movable)
         if states:
             _restate(new, states)
     except KeyError as error:
@@ -207,12 +207,12 @@ def _enter(states: list[int], bit: int, names: Iterable[str]) -> None:
             states[number] |= bit
 
 
-def _lay(home: Home, first: int, loose: Sequence[Loose]) -> int:
+def _lay(home: Home, first: int, movable: Sequence[Movable]) -> int:
     """Enter the rows of things that are appended from index `first`; the nodes whose rows changed."""
     close, on, bears, inside, contents = home.close, home.on, home.bears, home.inside, home.contents
     touched = 0
     bit = 1 << first
-    for i, (_, relation, place, room, near) in enumerate(loose, first):
+    for i, (_, relation, place, room, near) in enumerate(movable, first):
         if relation == "ON":
             on[i] = 1 << place
             bears[place] |= bit

@@ -16,11 +16,11 @@ from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
 from hearth.simulation.world import fitting, overlay, rows
 from hearth.simulation.world import moved as kinds
 from hearth.simulation.world.agent import Agent
-from hearth.simulation.world.derived import Loose, added_nodes, extended, without
+from hearth.simulation.world.derived import Movable, added_nodes, extended, without
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
-__all__ = ["Loose", "added_nodes", "apply", "edit", "extended", "free_id"]
+__all__ = ["Movable", "added_nodes", "apply", "edit", "extended", "free_id"]
 
 _NO_PLACES: Mapping[int, tuple[str, int]] = MappingProxyType({})
 

@@ -1,7 +1,7 @@
 """What has moved since the start: edges of the home that no longer count, and new ones, shared between worlds.
 
-Nothing is deleted row by row: a thing that was grabbed is *gone* from a relation, which voids all its old edges of that
-relation in both directions at once; what it stands in now is *extra*.
+Nothing is deleted row by row: a thing that was grabbed is *removed* from a relation, which voids all its old edges of
+that relation in both directions at once; what it stands in now is *extra*.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _INVERSE = (BEARS, ON, CONTENTS, INSIDE, CLOSE, FACED, FACING)
 
 
 class Moved(NamedTuple):
-    """Gone nodes by relation, and extra rows by key. Values: never changed after they are made."""
+    """Removed nodes by relation, and extra rows by key. Values: never changed after they are made."""
 
     on: int = 0
     inside: int = 0
@@ -77,8 +77,8 @@ def carry(moved: Moved, i: int, room: int) -> Moved:
     bit = 1 << i
     extra = moved.extra
     settled = moved.inside & moved.close & moved.facing & bit
-    loose = (8 * i + CONTENTS, 8 * i + CLOSE, 8 * i + FACING, 8 * i + FACED)
-    if settled and extra.get(8 * i + INSIDE) == 1 << room and not any(key in extra for key in loose):
+    movable = (8 * i + CONTENTS, 8 * i + CLOSE, 8 * i + FACING, 8 * i + FACED)
+    if settled and extra.get(8 * i + INSIDE) == 1 << room and not any(key in extra for key in movable):
         return moved
     extra = dict(extra)
     unlink_all(extra, i, (INSIDE, CONTENTS, CLOSE, FACING, FACED))

@@ -38,7 +38,7 @@ def unlinked(world: World, edges: Iterable[Numbered]) -> World:
     """With fewer edges; one that is not there is no error.
 
     A home's own edge can't be taken out of its shared row: the end of it that has fewer edges of the relation is made
-    gone from the relation, and what it keeps becomes extra.
+    removed from the relation, and what it keeps becomes extra.
     """
     for i, relation, j in edges:
         agents = list(world.agents)
@@ -58,15 +58,15 @@ def _without(world: World, i: int, relation: str, j: int) -> Moved:
     moved = world.moved
     extra = dict(moved.extra)
     field = relation.lower()
-    gone = getattr(moved, field)
-    if not (gone >> i | gone >> j) & 1:
+    removed = getattr(moved, field)
+    if not (removed >> i | removed >> j) & 1:
         out = {k: (forward(world, k), backward(world, k)) for k in (i, j)}
         k = min(out, key=lambda end: (out[end][0] | out[end][1]).bit_count())
         for other in indices(out[k][0]):
             link(extra, k, kind, other)
         for other in indices(out[k][1]):
             link(extra, other, kind, k)
-        moved = moved._replace(**{field: gone | 1 << k})
+        moved = moved._replace(**{field: removed | 1 << k})
     unlink(extra, i, kind, j)
     return moved._replace(extra=extra)
 

@@ -1,4 +1,4 @@
-"""Reading rows of a world: the home's, less what is gone, plus what is extra.
+"""Reading rows of a world: the home's, less what is removed, plus what is extra.
 
 All take and give indices and bit sets. Edges between a character and anything stand in the character's `Agent`.
 """
@@ -52,9 +52,9 @@ def faced(world: WorldState, i: int) -> int:
     return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
 
 
-def _row(row: int, gone: int, extra: dict[int, int], i: int, kind: int) -> int:
-    if gone:
-        row = 0 if gone >> i & 1 else row & ~gone
+def _row(row: int, removed: int, extra: dict[int, int], i: int, kind: int) -> int:
+    if removed:
+        row = 0 if removed >> i & 1 else row & ~removed
     return row | extra.get(8 * i + kind, 0)
 
 

@@ -15,7 +15,7 @@ GOLDEN = Path(__file__).resolve().parents[1] / "golden/repair"
 REFRESH = "if the new text is right: HEARTH_REFRESH=1 python -m pytest tests/commands/test_repair_command.py"
 PAGES = {
     "watch_tv": ["watch_tv.txt", "--seed", "3", "--variants", "2"],
-    "watch_tv_shut_in": ["watch_tv.txt", "--perturb", "door", "--perturb", "pet", "--perturb", "plugged"],
+    "watch_tv_doors_closed": ["watch_tv.txt", "--perturb", "door", "--perturb", "pet", "--perturb", "plugged"],
     "drink_water": ["drink_water.txt", "--perturb", "container", "--perturb", "open", "--perturb", "full_hands"],
     "drink_water_seated": ["drink_water.txt", "--perturb", "seated", "--perturb", "free", "--perturb", "on"],
 }
@@ -38,10 +38,10 @@ def test_golden_dialogues(page, monkeypatch):
 
 def test_json_says_the_same(monkeypatch):
     monkeypatch.chdir(GOLDEN)
-    result = repair(*PAGES["watch_tv_shut_in"], "--json")
+    result = repair(*PAGES["watch_tv_doors_closed"], "--json")
     report = json.loads(result.stdout)
     (pair,) = report["pairs"]
-    page = (GOLDEN / "watch_tv_shut_in.expected").read_text()
+    page = (GOLDEN / "watch_tv_doors_closed.expected").read_text()
     assert (report["home"], report["seed"], pair["failure"]) == ("maple", 0, None)
     assert [one["kind"] for one in pair["perturbations"]] == ["plugged", "door", "pet"]
     assert pair["attempts"][0]["before"] == pair["original"]

@@ -9,6 +9,8 @@ import pytest
 
 from hearth.datasets.format.cases import difference_of, difference_on_replay, environment_of, home_of, run_row
 from hearth.datasets.format.codecs import (
+    condition_rows,
+    conditions_of,
     environment_change,
     environment_row,
     failure_row,
@@ -184,3 +186,10 @@ def test_values_come_back_from_their_rows():
     assert (row["code"], row["objects"], row["names"], row["actual"]) == ("NOT_CLOSE", [7], ["cup"], "far")
     program, _ = parse_program("T\n\n<char1> [PutBack] <cup> (2) <table> (1) {hand=left} | <char0> [StandUp]\n")
     assert steps_of(step_rows(program)) == program.steps
+
+
+def test_conditions_of_version_0_1_0_are_read_by_their_new_names():
+    row = {"name": "stowed", "objects": [{"name": "cup", "instance": 1}], "step": 2, "hard": True}
+    (found,) = conditions_of([row])
+    assert str(found) == "in_closed_container(cup (1))"
+    assert condition_rows([found]) == [{**row, "name": "in_closed_container"}]

@@ -22,13 +22,13 @@ from hearth.homes import library as catalog
 maple = Home.from_graph(catalog.load_graph("maple", default()), "maple", default())
 found = [sample(parse_program(text)[0], maple, 3, "x", size=size)[0]
          for text in TEXTS for size in (Size(), Size.about(290))]
-print(hashlib.sha256(repr([(e.nodes, e.added, e.removed, e.states, e.gone) for e in found]).encode()).hexdigest())
+print(hashlib.sha256(repr([(e.nodes, e.added, e.removed, e.states, e.left_out) for e in found]).encode()).hexdigest())
 """
 
 
 def drawn(text, home, size):
     found, _ = sample(parse_program(text)[0], home, 3, "x", size=size)
-    return found.nodes, found.added, found.removed, found.states, found.gone
+    return found.nodes, found.added, found.removed, found.states, found.left_out
 
 
 def test_whatever_the_order(maple):

@@ -47,10 +47,10 @@ def test_furniture_stays_and_what_there_is_most_of_goes_first(maple):
     base = prepared(maple)
     thin = base.thinned(330)
     assert len(thin.home) == 330 and thin.whole is base.home
-    gone = [base.home.node(base.home.index[node]) for node in thin.gone]
-    assert all("GRABBABLE" in node.properties for node in gone)
+    removed = [base.home.node(base.home.index[node]) for node in thin.removed]
+    assert all("GRABBABLE" in node.properties for node in removed)
     classes = {thin.home.classes[i] for i in range(len(thin.home))}
-    assert {node.class_name for node in gone} <= classes, "a class is gone while others were there twice"
+    assert {node.class_name for node in removed} <= classes, "a class is removed while others were there twice"
     assert base.thinned(330) is thin and base.thinned(len(base.home)) is base
     assert lint(World.start(thin.home).graph(), default()) == ()
 

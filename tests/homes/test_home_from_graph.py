@@ -129,7 +129,7 @@ QUICK = (1, 4)
 
 @pytest.mark.parametrize("number", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in range(1, 8)])
 def test_the_releases_homes_can_be_walked_in(real_data, number):
-    found = library.laid_out(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
+    found = library.graph_layout(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
     assert min(reached(found.layout)) > 50
     assert [n for n in found.graph.nodes if n.box is None] == []
     said = {r: sum(e.relation == r for e in found.graph.edges) for r in ("ON", "INSIDE", "CLOSE", "FACING")}

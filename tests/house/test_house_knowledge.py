@@ -63,7 +63,7 @@ def test_there_is_something_to_look_at():
 def test_knowledge_is_passed_in():
     wrong = {}
     for path, name in zip(FILES, NAMES, strict=True):
-        allowed = {"FILES", "digest", "files_of"} | ({"laid_over", "load"} if name in READS else set())
+        allowed = {"FILES", "digest", "files_of"} | ({"overlaid", "load"} if name in READS else set())
         tree = ast.parse(path.read_text())
         found = [*(set(loaded(tree)) - allowed), *optional(tree), *made(tree)]
         if found and name != "kb/loading/load.py":

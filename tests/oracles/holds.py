@@ -82,7 +82,7 @@ class Plain:
             return (len(above) < limit) == (name == "free")
         if name == "full_hands":
             return x in self.characters() and all(now.targets(hand, x) for hand in HANDS)
-        if name == "shut_in":
+        if name == "doors_closed":
             doors = now.sources(DOORS, now.room(x)) if now.room(x) is not None else ()
             return any(now.has_state(door, "CLOSED") for door in doors)
         if name == "pet":
@@ -98,16 +98,16 @@ class Plain:
             return any(y in now.targets(hand, x) for hand in HANDS)
         if name == "holds":
             return y in self.characters() and any(x in now.targets(hand, y) for hand in HANDS)
-        if name in ("location", "elsewhere"):
+        if name in ("location", "other_room"):
             return (now.room(x) == y) == (name == "location")
         if name == "together":
             return now.room(x) == now.room(y)
-        if name == "averted":
+        if name == "facing_away":
             return y not in now.targets("FACING", x)
-        if name == "stowed":
+        if name == "in_closed_container":
             around = now.targets("INSIDE", x)
             return any(now.has_state(place, "CLOSED") and not now.is_room(place) for place in around)
-        return name == "apart" and not self.beside(x) & self.around(y)
+        return name == "not_near" and not self.beside(x) & self.around(y)
 
     def beside(self, x: int) -> set[int]:
         """A thing, what it is close to, and what it is on."""

@@ -4,13 +4,13 @@ import json
 
 import pytest
 
-from hearth.kb.language.plans import parse_spoken
+from hearth.kb.language.plans import parse_steps
 from hearth.schemas.syntax import print_lines
 
 
 def heard(knowledge, *steps):
     text = "Task: T\n" + "".join(f"Step {number}: {step}\n" for number, step in enumerate(steps, 1))
-    found = parse_spoken(text, 0, "a.txt", knowledge)
+    found = parse_steps(text, 0, "a.txt", knowledge)
     return list(print_lines(found.program)), found
 
 
@@ -25,7 +25,7 @@ def test_what_is_nearly_understood_is_a_warning_with_its_score(knowledge):
     lines, found = heard(knowledge, "Wlak to kitchen")
     assert lines == ["[Walk] <kitchen> (1)"]
     (warning,) = found.warnings
-    assert (warning.code, warning.line, warning.column) == ("HEARD_NEARLY", 2, 9)
+    assert (warning.code, warning.line, warning.column) == ("FUZZY_MATCH", 2, 9)
     assert "0.85" in warning.message
 
 
@@ -37,14 +37,14 @@ def test_what_is_not_understood_names_candidates_and_costs_no_neighbour(knowledg
 
 
 def test_no_steps_is_a_fault(knowledge):
-    assert [fault.code for fault in parse_spoken("Task: T\n", 0, "a", knowledge).faults] == ["EMPTY"]
+    assert [fault.code for fault in parse_steps("Task: T\n", 0, "a", knowledge).faults] == ["EMPTY"]
 
 
 def test_all_examples_of_planning_papers_parse(real_data, knowledge):
     texts = set(json.loads((real_data / "language_planner_examples.json").read_text()))
     assert len(texts) == 574
     for text in sorted(texts):
-        found = parse_spoken(text, 0, "a", knowledge)
+        found = parse_steps(text, 0, "a", knowledge)
         assert not found.faults and not found.warnings
         assert len(found.program.steps) == text.count("\nStep ")
 

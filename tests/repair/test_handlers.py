@@ -347,16 +347,16 @@ def test_what_is_hopeless_is_given_up_at_once(code):
     assert [a.after for a in result.attempts] == [()]
 
 
-def _broken(trouble):
+def _broken(context):
     raise ValueError("no idea")
 
 
-def _useless(trouble):
+def _useless(context):
     return Edit("useless", (Splice(0, 0, ()),))
 
 
-def _growing(trouble):
-    return Edit("growing", (Splice(0, 0, (trouble.does("TurnTo", trouble.object()),)),))
+def _growing(context):
+    return Edit("growing", (Splice(0, 0, (context.does("TurnTo", context.object()),)),))
 
 
 @pytest.mark.parametrize(

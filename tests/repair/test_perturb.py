@@ -108,7 +108,7 @@ def test_a_thing_that_is_elsewhere_keeps_no_other_place(maple):
     case = case_of(TELEVISION, maple)
     (one,) = [p for p in candidates(case) if p.kind == "at_reach" and p.about.objects[0] == ("remote_control", 1)]
     names = {c.name for c in applied(case.conditions, [one]).about(("remote_control", 1))}
-    assert names == {"apart"}
+    assert names == {"not_near"}
 
 
 def test_no_two_draws_are_the_same_and_none_is_the_original(maple):

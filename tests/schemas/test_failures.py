@@ -23,3 +23,8 @@ def test_ids_are_those_published():
 def test_a_code_is_found_by_its_name_alone(code):
     assert code == code.value == code.name == str(code)
     assert Code[code.value] is pickle.loads(pickle.dumps(code)) is code
+
+
+def test_the_code_of_an_older_dataset_is_found_by_its_old_name():
+    assert Code["HEARD_NEARLY"] is Code.FUZZY_MATCH
+    assert "HEARD_NEARLY" not in set(map(str, Code))
