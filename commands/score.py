@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -25,28 +24,6 @@ app = typer.Typer(
 )
 
 
-class MatchName(StrEnum):
-    """How instances of a class may stand for each other."""
-
-    NONE = "none"
-    SWAP1 = "swap1"
-    BEST = "best"
-
-
-class ScopeName(StrEnum):
-    """Whose objects are compared."""
-
-    EITHER = "either"
-    OWN = "own"
-
-
-class RulesName(StrEnum):
-    """How actions are read."""
-
-    DEFAULT = "default"
-    REPLAY = "replay"
-
-
 File = Annotated[Path, typer.Argument(metavar="FILE", help="Predictions: JSON Lines or Parquet, one row an id.")]
 References = Annotated[
     Path | None, typer.Option("--references", metavar="FILE", help="Rows of id and reference, if FILE has none.")
@@ -54,8 +31,15 @@ References = Annotated[
 Instances = Annotated[bool, typer.Option("--instances", help="Tell the instances of a class apart.")]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of the 95% confidence intervals.")]
 By = Annotated[str | None, typer.Option("--by", metavar="FIELD", help="Also the means by a field of the rows.")]
-Match = Annotated[MatchName, typer.Option("--match", help="How instances of a class may stand for each other.")]
-Scope = Annotated[ScopeName, typer.Option("--scope", help="Tuples about the objects of either program, or its own.")]
+Rules = Annotated[
+    Literal["default", "replay"], typer.Option("--rules", help="`replay` reads actions as the release did.")
+]
+Match = Annotated[
+    Literal["none", "swap1", "best"], typer.Option("--match", help="How instances of a class may stand for each other.")
+]
+Scope = Annotated[
+    Literal["either", "own"], typer.Option("--scope", help="Tuples about the objects of either program, or its own.")
+]
 
 
 @app.command("lcs")
@@ -134,12 +118,10 @@ def program(
     graph: Annotated[
         Path | None, typer.Option("--graph", metavar="FILE", help="The environment of rows that name none.")
     ] = None,
-    homes: Annotated[Path | None, typer.Option("--homes", metavar="DIR", help="A folder of your own homes.")] = None,
-    rules: Annotated[RulesName, typer.Option("--rules", help="`replay` reads actions as the release did.")] = (
-        RulesName.DEFAULT
-    ),
-    match: Match = MatchName.BEST,
-    scope: Scope = ScopeName.EITHER,
+    homes: options.Homes = None,
+    rules: Rules = "default",
+    match: Match = "best",
+    scope: Scope = "either",
     instances: Instances = False,
     seed: Seed = 0,
     by: By = None,
@@ -160,10 +142,9 @@ def program(
     from hearth.scoring.dataset_scores import read_line
     from hearth.scoring.evaluate import Options, evaluate
     from hearth.scoring.predictions import read_pairs
-    from hearth.simulation.rules import DEFAULT, REPLAY
+    from hearth.simulation.rules import RULES
 
-    chosen = REPLAY if rules is RulesName.REPLAY else DEFAULT
-    how = Options(chosen, match.value, scope.value, instances, seed)
+    how = Options(RULES[rules], match, scope, instances, seed)
     known = inputs.read_knowledge(None)
     pairs = read_pairs(file, references, partial(read_line, known))
     scored = evaluate(pairs, known, environments.by_row(file, known, graph, homes), how)
@@ -242,8 +223,8 @@ def dataset(
     *,
     split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
     part: Annotated[str, typer.Option("--part", metavar="NAME", help="Of the split; `test` takes all tests.")] = "test",
-    match: Match = MatchName.BEST,
-    scope: Scope = ScopeName.EITHER,
+    match: Match = "best",
+    scope: Scope = "either",
     instances: Instances = False,
     seed: Seed = 0,
     by: By = None,
@@ -264,7 +245,7 @@ def dataset(
     from hearth.scoring.dataset_scores import judge
     from hearth.scoring.evaluate import Options
 
-    how = Options(match=match.value, scope=scope.value, instances=instances, seed=seed)
+    how = Options(match=match, scope=scope, instances=instances, seed=seed)
     with bar("shares scored") as seen:
         scored = judge(Dataset.open(folder), file, split, part if split else "", how, workers, seen)
     _show(scored, how, by, as_json)
@@ -309,8 +290,8 @@ def graphs(
     nodes: Annotated[
         str, typer.Option("--nodes", metavar="IDS", help="The nodes the programs name: 41,65 or 41,65/41.")
     ],
-    match: Match = MatchName.BEST,
-    scope: Scope = ScopeName.EITHER,
+    match: Match = "best",
+    scope: Scope = "either",
     as_json: options.Json = False,
 ) -> None:
     """Compare two final graphs, whoever made them: precision, recall and F1 over states, relations and both.
@@ -325,8 +306,8 @@ def graphs(
     from hearth.scoring.metrics.graph_f1 import f1_signature, score
 
     ours, theirs = node_ids(nodes)
-    found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match.value, scope=scope.value)
-    signature = f1_signature(match.value, scope.value)
+    found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match, scope=scope)
+    signature = f1_signature(match, scope)
     if as_json:
         parts = {name: getattr(found, name) for name in ("states", "relations", "both", "exact", "assigned")}
         output.emit({"signature": signature, **parts})

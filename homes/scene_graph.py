@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from operator import attrgetter
 
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.shell import Thing
@@ -24,7 +25,7 @@ def scene(layout: Layout, knowledge: Knowledge) -> EnvironmentGraph:
     ids = node_ids((thing.name for thing in things), layout.plan.ids, layout.plan.file)
     lookable = frozenset(name for name, known in knowledge.objects.items() if "LOOKABLE" in known.properties)
     kinds = {name: _kind(name, knowledge) for name in {thing.class_name for thing in things}}
-    nodes = sorted((_node(thing, ids[thing.name], kinds[thing.class_name]) for thing in things), key=_id)
+    nodes = sorted((_node(thing, ids[thing.name], kinds[thing.class_name]) for thing in things), key=attrgetter("id"))
     return EnvironmentGraph(tuple(nodes), edges(things, ids, lookable))
 
 
@@ -76,7 +77,3 @@ def _kind(class_name: str, knowledge: Knowledge) -> Kind:
 def _node(thing: Thing, node_id: int, kind: Kind) -> Node:
     category, properties, states = kind
     return Node(node_id, thing.class_name, category, properties, states, box=thing.box, yaw=thing.yaw)
-
-
-def _id(node: Node) -> int:
-    return node.id

@@ -21,8 +21,10 @@ A term is a variable (`a` the acting character, `o` and `s` the first and second
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -147,6 +149,8 @@ def _grouped(part: Formula) -> str:
     return str(part) if isinstance(part, Literal | Not) else f"({part})"
 
 
+T = TypeVar("T")
+
 _TOKEN = re.compile(r"\s*(?:(->|[()&|:,<])|([A-Za-z_][A-Za-z_0-9]*))")
 
 
@@ -157,10 +161,7 @@ def parse_formula(text: str) -> Formula:
     Raises:
         HearthError: SYNTAX, saying what was expected where.
     """
-    parser = _Parser(text)
-    result = parser.alternatives()
-    parser.end()
-    return result
+    return _read(text, _Parser.alternatives)
 
 
 @lru_cache(maxsize=4096)
@@ -170,10 +171,7 @@ def parse_effect(text: str) -> Effect:
     Raises:
         HearthError: SYNTAX, saying what was expected where.
     """
-    parser = _Parser(text)
-    result = parser.effect()
-    parser.end()
-    return result
+    return _read(text, _Parser.effect)
 
 
 @lru_cache(maxsize=512)
@@ -183,9 +181,15 @@ def parse_atom(text: str) -> Literal[Term]:
     Raises:
         HearthError: SYNTAX.
     """
+    return _read(text, _Parser.atom)
+
+
+def _read(text: str, rule: Callable[[_Parser], T]) -> T:
+    """What a rule makes of a whole text."""
     parser = _Parser(text)
-    result = parser.atom()
-    parser.end()
+    result = rule(parser)
+    if parser.peek():
+        raise parser.fault(f"`{parser.peek()}` is too much")
     return result
 
 
@@ -223,18 +227,11 @@ class _Parser:
             raise self.fault(f"expected a name but found `{token}`")
         return token
 
-    def end(self) -> None:
-        if self.peek():
-            raise self.fault(f"`{self.peek()}` is too much")
-
     def effect(self) -> Effect:
-        variables: list[str] = []
+        variables: tuple[str, ...] = ()
         if self.peek() == "for":
             self.take()
-            variables.append(self.name())
-            while self.peek() == ",":
-                self.take()
-                variables.append(self.name())
+            variables = self.several(self.name, ",")
             self.take(":")
         condition: Formula = TRUE
         if "->" in self.tokens[self.next :]:
@@ -246,21 +243,23 @@ class _Parser:
         negated = self.peek() == "not"
         if negated:
             self.take()
-        return Effect(self.atom()._replace(negated=negated), condition, tuple(variables))
+        return Effect(self.atom()._replace(negated=negated), condition, variables)
+
+    def several(self, rule: Callable[[], T], mark: str) -> tuple[T, ...]:
+        """What a rule makes of parts with a mark between them."""
+        parts = [rule()]
+        while self.peek() == mark:
+            self.take()
+            parts.append(rule())
+        return tuple(parts)
 
     def alternatives(self) -> Formula:
-        parts = [self.conjunction()]
-        while self.peek() == "|":
-            self.take()
-            parts.append(self.conjunction())
-        return parts[0] if len(parts) == 1 else Or(tuple(parts))
+        parts = self.several(self.conjunction, "|")
+        return parts[0] if len(parts) == 1 else Or(parts)
 
     def conjunction(self) -> Formula:
-        parts = [self.unit()]
-        while self.peek() == "&":
-            self.take()
-            parts.append(self.unit())
-        return parts[0] if len(parts) == 1 else And(tuple(parts))
+        parts = self.several(self.unit, "&")
+        return parts[0] if len(parts) == 1 else And(parts)
 
     def unit(self) -> Formula:
         token = self.peek()
@@ -292,12 +291,9 @@ class _Parser:
 
     def arguments(self) -> tuple[Term, ...]:
         self.take("(")
-        terms = [self.term()]
-        while self.peek() == ",":
-            self.take()
-            terms.append(self.term())
+        terms = self.several(self.term, ",")
         self.take(")")
-        return tuple(terms)
+        return terms
 
     def term(self) -> Term:
         name = self.name()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 from hearth.datasets.format.cases import environment_of, rerun, run_row
 from hearth.datasets.format.codecs import (
@@ -21,7 +21,7 @@ from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stage import Job, Output, Plan, Stage
+from hearth.pipelines.engine.stage import Output, Plan, Stage
 from hearth.repair.loop import Attempt, successes
 from hearth.repair.perturb import Chances, Perturbation
 from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
@@ -55,6 +55,8 @@ class Context:
 
     def __init__(self, settings: Settings, plan: Plan) -> None:
         self.homes = Homes(settings)
+        # The catalog's homes are given at rest, so that environments are told by what differs; derived ones are not.
+        self.is_at_rest = cache(self.homes.in_catalog)
         self.seed = settings.seed
         chances = scaled(default_chances(), settings.probability / THESIS)
         self.options = Options(settings.variants, settings.tries, chances)
@@ -69,17 +71,6 @@ class Context:
     def others(self, name: str) -> list[Home]:
         """The homes besides its own in which a program's sketch has to be enough."""
         return [home for home in self._others if home.name != name]
-
-    @cached_property
-    def at_rest(self) -> dict[str, bool]:
-        """Whether environments of a home are told by what differs from it at rest, by the home's name."""
-        return {}
-
-    def is_at_rest(self, name: str) -> bool:
-        """Whether a home is given at rest: the catalog's are, derived ones are as they were found."""
-        if name not in self.at_rest:
-            self.at_rest[name] = self.homes.in_catalog(name)
-        return self.at_rest[name]
 
     def options_for(self, record_id: str) -> Options:
         """How an execution is augmented: where a share of a pair falls to each, some get one more than others."""
@@ -230,11 +221,6 @@ def _text(step: Step) -> str:
     return ("| " if step.joins else "") + print_step(Step(step.action, objects, step.agent, False, step.modifiers))
 
 
-def open_context(job: Job) -> Context:
-    """Homes, built when first asked for, and how to augment."""
-    return Context(job.settings, job.plan)
-
-
 def prepare(settings: Settings) -> Plan:
     """What the user laid over our knowledge and homes, which homes are left out, and how many pairs fall to each."""
     plan = overlays(settings)
@@ -254,7 +240,7 @@ STAGE = Stage(
     process=process,
     reads=("sample",),
     settings=("seed", "probability", "variants", "target", "tries"),
-    open=open_context,
+    open=lambda job: Context(job.settings, job.plan),
     prepare=prepare,
     facts=knowledge_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),

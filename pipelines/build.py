@@ -132,12 +132,5 @@ def _check_something(ingested: Manifest) -> None:
 def _faults(rows: Iterable[RejectedRow]) -> Iterator[Diagnostic]:
     for row in rows:
         code = Code.__members__.get(row["code"], Code.INTERNAL_ERROR)
-        yield Diagnostic(
-            code,
-            row["message"],
-            row["file"],
-            row["line"],
-            row["column"],
-            found=row["found"],
-            suggestion=row["suggestion"],
-        )
+        at = row["file"], row["line"], row["column"], 0
+        yield Diagnostic(code, row["message"], *at, row["found"], row["suggestion"])

@@ -9,7 +9,7 @@ from hearth.datasets.format.ids import STAMP, activity_id, split_of
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.final_tables import finish
-from hearth.pipelines.engine.stage import Job, Stage
+from hearth.pipelines.engine.stage import Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row, columns_of
 from hearth.schemas.tables import TABLES
@@ -55,11 +55,6 @@ def program_row(case: CaseRow, seed: int) -> ProgramRow:
     return columns_of(ProgramRow, {**case, "activity_id": activity, "split": split_of(activity, seed)})
 
 
-def open_context(job: Job) -> Context:
-    """Homes, built when first asked for."""
-    return Context(Homes(job.settings), job.settings.seed)
-
-
 STAGE = Stage(
     name="publish",
     tables={name: TABLES[name] for name in PER_CASE},
@@ -67,7 +62,7 @@ STAGE = Stage(
     reads=("sample", "augment"),
     needs=("ingest", "validate", "render"),
     settings=("seed",),
-    open=open_context,
+    open=lambda job: Context(Homes(job.settings), job.settings.seed),
     prepare=overlays,
     gather=GATHER,
     identify=lambda case: str(case["execution_id"]),

@@ -11,7 +11,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.plans import parse_steps
 from hearth.pipelines.checks import programs, special
 from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_used, overlays
-from hearth.pipelines.engine.stage import Job, Plan, Stage
+from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -140,24 +140,15 @@ def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge) -> 
     }
 
 
-def open_knowledge(job: Job) -> Knowledge:
-    """The grammar."""
-    return knowledge(job.settings)
-
-
-def is_program(record: IngestedRow, plan: Plan) -> bool:
-    """Descriptions without a program go on to `publish` as they are."""
-    return record["kind"] == "program"
-
-
 STAGE = Stage(
     name="validate",
     tables={"": VALIDATED},
     process=process,
     reads=("ingest",),
-    open=open_knowledge,
+    open=lambda job: knowledge(job.settings),
     prepare=overlays,
     begin=keep_knowledge,
     facts=knowledge_used,
-    select=is_program,
+    # Descriptions without a program go on to `publish` as they are.
+    select=lambda record, plan: bool(record["kind"] == "program"),
 )

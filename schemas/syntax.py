@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from hearth.schemas.blocks import STEP, Splitter
@@ -175,10 +175,7 @@ def _parse_block(block: _Block, file: str) -> tuple[Program, list[Diagnostic]]:
 
 
 def _placed(fault: Diagnostic, file: str, number: int, line: str) -> Diagnostic:
-    source = line.rstrip("\n")[:200]
-    return Diagnostic(
-        fault.code, fault.message, file, number, fault.column, fault.length, fault.found, fault.suggestion, source
-    )
+    return replace(fault, file=file, line=number, source=line.rstrip("\n")[:200])
 
 
 @lru_cache(maxsize=65_536)

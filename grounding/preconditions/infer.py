@@ -7,6 +7,8 @@ that shows and the step that spoilt it (thesis 5.5.2: the function Phi).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.defaults import default_conditions
@@ -109,14 +111,9 @@ def _settled(conditions: Preconditions, new: Condition) -> Preconditions:
 _PLACES = frozenset({"in", "inside", "location", "together", "holds"})
 
 _OPPOSITES = {
-    "closed": "open",
-    "open": "closed",
-    "is_on": "is_off",
-    "is_off": "is_on",
-    "plugged": "unplugged",
-    "unplugged": "plugged",
-    "sitting": "lying",
-    "lying": "sitting",
+    name: opposite
+    for pair in (("closed", "open"), ("is_on", "is_off"), ("plugged", "unplugged"), ("sitting", "lying"))
+    for name, opposite in (pair, pair[::-1])
 }
 
 
@@ -138,21 +135,11 @@ def _contradiction(
     if failure.code in CAUSED_BY_START:
         return failure
     culprit = _culprit(program, conditions, step, knowledge)
-    spoilt = (
-        f"made impossible by step {culprit + 1}, [{program.steps[culprit].action}]"
-        if culprit is not None
-        else "by no step"
+    by = (
+        "by no step" if culprit is None else f"made impossible by step {culprit + 1}, [{program.steps[culprit].action}]"
     )
-    return Failure(
-        Code.CONTRADICTION,
-        failure.tick,
-        failure.agent,
-        failure.action,
-        failure.objects,
-        failure.names,
-        f"{failure.code}: {failure.expected} at step {step + 1}",
-        f"{failure.actual}; {spoilt}",
-    )
+    needed = f"{failure.code}: {failure.expected} at step {step + 1}"
+    return replace(failure, code=Code.CONTRADICTION, expected=needed, actual=f"{failure.actual}; {by}")
 
 
 def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: Knowledge) -> int | None:

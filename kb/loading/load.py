@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import lru_cache
 from hashlib import file_digest, sha256
 from pathlib import Path
-from typing import Any
 
 from hearth.kb.knowledge import Knowledge, key_of
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
@@ -194,8 +193,4 @@ def _grouped(placements: list[Placement], column: int) -> dict[str, tuple[Placem
 
 
 def _default_states(entry: Entry) -> dict[str, dict[str, tuple[str, ...]]]:
-    return {part: _state_lists(value) for part, value in entry.value.items()}
-
-
-def _state_lists(value: Any) -> dict[str, tuple[str, ...]]:
-    return {name: tuple(states) for name, states in value.items()}
+    return {part: {name: tuple(states) for name, states in value.items()} for part, value in entry.value.items()}

@@ -29,8 +29,8 @@ def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
         "default_states": list(knowledge.default_states(name)),
         "seats": knowledge.seat_limit(name) if knowledge.is_seat(name) else 0,
         "lies": knowledge.bed_limit(name) if knowledge.is_bed(name) else 0,
-        "placed": [_placed(p) for p in knowledge.placements(name)],
-        "holds": [_held(p) for p in knowledge.holds(name)],
+        "placed": [_placed(p, "relation", "destination") for p in knowledge.placements(name)],
+        "holds": [_placed(p, "object", "relation") for p in knowledge.holds(name)],
         "goes_with": _goes_with(knowledge, thing.same_as or name),
         "takes_it_first": taken[0],
         "takes_it_second": taken[1],
@@ -82,39 +82,18 @@ def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[di
     return [{"action": action, "evidence": evidence} for action, evidence in said if evidence != "release"]
 
 
-def _placed(placement: Placement) -> dict[str, Any]:
-    return {
-        "relation": placement.relation,
-        "place": placement.destination,
-        "room": placement.room,
-        "weight": placement.weight,
-        "evidence": placement.evidence,
-    }
-
-
-def _held(placement: Placement) -> dict[str, Any]:
-    return {
-        "object": placement.object,
-        "relation": placement.relation,
-        "room": placement.room,
-        "weight": placement.weight,
-        "evidence": placement.evidence,
-    }
+def _placed(placement: Placement, *ends: str) -> dict[str, Any]:
+    """A placement, of which only one end needs to be said."""
+    columns = (*ends, "room", "weight", "evidence")
+    return {("place" if name == "destination" else name): getattr(placement, name) for name in columns}
 
 
 def _goes_with(knowledge: Knowledge, name: str) -> list[dict[str, Any]]:
-    rows = [
-        {
-            "relation": a.relation
-            if a.name == name
-            else f"{a.relation} (of it)"
-            if a.relation == "serves"
-            else a.relation,
-            "other": a.other if a.name == name else a.name,
-            "weight": a.weight,
-            "evidence": a.evidence,
-        }
-        for a in knowledge.associations
-        if name in (a.name, a.other)
-    ]
+    rows = []
+    for a in knowledge.associations:
+        if name in (a.name, a.other):
+            served = a.relation == "serves" and a.name != name
+            relation = f"{a.relation} (of it)" if served else a.relation
+            other = a.other if a.name == name else a.name
+            rows.append({"relation": relation, "other": other, "weight": a.weight, "evidence": a.evidence})
     return sorted(rows, key=lambda row: (-int(str(row["weight"])), str(row["other"])))

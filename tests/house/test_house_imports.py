@@ -61,9 +61,7 @@ def test_stages_do_not_call_each_other(stage):
 
 
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)
-def test_files_and_functions_stay_short(path):
-    lines = path.read_text().count("\n")
-    assert lines < 400, f"{lines} lines: one idea a file"
+def test_functions_stay_short(path):
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.FunctionDef):
             length = node.end_lineno - node.lineno + 1
