@@ -126,7 +126,7 @@ wheel: $(READY)  ## dist/: the package to install elsewhere
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
 clean:  ## remove what was built; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/full $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## remove .venv, too

@@ -8,7 +8,8 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.datasets.format.catalog import attach
+from hearth.datasets.damage import reading
+from hearth.datasets.format.catalog import absent_tables, attach
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -17,6 +18,7 @@ from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
 from hearth.schemas.rows import ProgramRow, RepairedRow, SketchRow, StoredRunRow
 from hearth.schemas.structs import ConditionRow
+from hearth.storage.files import read_json
 from hearth.storage.manifest import FORMAT, NAME
 
 if TYPE_CHECKING:
@@ -38,6 +40,7 @@ class Dataset:
     def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
         self.folder = folder
         self.manifest = manifest
+        self._version = _version(folder)
 
     @classmethod
     def open(cls, path: str | Path) -> Dataset:
@@ -46,20 +49,26 @@ class Dataset:
         Raises:
             HearthError: the path is no dataset, one that is not complete, or one that a newer version wrote.
         """
-        from hearth.storage.files import read_json
+        from hearth.storage.exchange import present
         from hearth.storage.stores import fetched
 
         folder = fetched(path)
-        if not (folder / NAME).exists() and (folder / "publish" / NAME).exists():
-            folder = folder / "publish"
-        content = read_json(folder / NAME)
+        if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():
+            folder = present(folder / "publish")
+        version, content = _version(folder), read_json(folder / NAME)
         if not isinstance(content, dict) or content.get("stage") != "publish":
             suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
             raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
+        if not isinstance(content.get("format"), int) or not isinstance(content.get("files"), dict):
+            message = "its manifest does not name a format and its files"
+            remedy = "fetch or publish the dataset again"
+            raise HearthError.of(Code.BAD_JSON, message, file=str(folder / NAME), suggestion=remedy)
         if content["format"] > FORMAT:
             message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
             raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
-        return cls(folder, content)
+        dataset = cls(folder, content)
+        dataset._version = version
+        return dataset
 
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
@@ -75,14 +84,38 @@ class Dataset:
 
         return knowledge_of(self.folder, self.manifest)
 
-    @cached_property
+    @property
     def connection(self) -> Any:
         """A DuckDB connection with the views and macros. It can read this folder only, and change nothing in it.
 
+        Where a build has replaced the dataset since, it is a new one, to the dataset that is there now.
+
         Raises:
-            HearthError: MISSING_FILE, where a table is not there.
+            HearthError: MISSING_FILE, where a table is not there; DAMAGED_FILE, where one cannot be read.
         """
-        return attach(self.folder, _absent(self.folder, self.manifest))
+        now = _version(self.folder)
+        if now is not None and now != self._version:
+            self._reopen(now)
+        return self._attached
+
+    @cached_property
+    def _attached(self) -> Any:
+        for attempt in range(_TRIES):
+            version = _version(self.folder)
+            try:
+                with reading(self.folder):
+                    return attach(self.folder, absent_tables(self.folder, self.manifest))
+            except HearthError:
+                if _version(self.folder) == version or attempt == _TRIES - 1:
+                    raise
+                self.manifest = read_json(self.folder / NAME) or self.manifest  # it was replaced in the meantime
+        raise AssertionError
+
+    def _reopen(self, version: tuple[int, int]) -> None:
+        """Read the dataset that has taken the place of the one that was opened."""
+        self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, version
+        for name in ("_attached", "_built", "knowledge"):
+            self.__dict__.pop(name, None)
 
     def sql(self, query: str, **parameters: Any) -> Any:
         """A query as a DuckDB relation; `$name` in it is the parameter of that name.
@@ -125,12 +158,11 @@ class Dataset:
         return self.connection.table(name)
 
     def __len__(self) -> int:
-        return int(self.connection.sql("SELECT count(*) FROM programs").fetchall()[0][0])
+        return int(self.read("SELECT count(*) AS number FROM programs")[0]["number"])
 
     def __iter__(self) -> Iterator[str]:
         """The ids of all programs, sorted."""
-        for (program_id,) in self.connection.sql("SELECT program_id FROM programs ORDER BY program_id").fetchall():
-            yield program_id
+        yield from (row["program_id"] for row in self.read("SELECT program_id FROM programs ORDER BY program_id"))
 
     def __contains__(self, program_id: str) -> bool:
         return bool(self._rows("SELECT 1 FROM programs WHERE program_id = $id", program_id))
@@ -145,11 +177,12 @@ class Dataset:
         if not found:
             raise KeyError(program_id)
         rows = self._rows("SELECT * FROM executions WHERE program_id = $id ORDER BY execution_id", program_id)
-        # Asked for by literal ids, DuckDB reads only the row groups that have them; a join would read all of the table.
-        wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
-        runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
         sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
+        with reading(self.folder):
+            # Asked for by literal ids, DuckDB reads only the row groups that have them; a join would read all.
+            wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
+            runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
 
     def home(self, name: str) -> EnvironmentGraph:
@@ -187,12 +220,33 @@ class Dataset:
             return {}
         asked = {f"id{number}": name for number, name in enumerate(ids)}
         query = f"SELECT * FROM {table} WHERE {key} IN ({', '.join(f'${name}' for name in asked)})"
-        rows = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
-        return {row[key]: row for row in rows}
+        return {row[key]: row for row in self.read(query, asked)}
 
     def _rows(self, query: str, value: str) -> list[Any]:
-        rows: list[Any] = self.connection.sql(query, params={"id": value}).to_arrow_table().to_pylist()
-        return rows
+        return self.read(query, {"id": value})
+
+    def read(self, query: str, asked: dict[str, Any] | None = None) -> list[Any]:
+        """The rows of a query of ours, by name of column.
+
+        Raises:
+            HearthError: DAMAGED_FILE, where a table cannot be read.
+        """
+        with reading(self.folder):
+            rows: list[Any] = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
+            return rows
+
+
+_TRIES = 10
+"""Times that a dataset is opened, where each time a build replaces it while that is done."""
+
+
+def _version(folder: Path) -> tuple[int, int] | None:
+    """What differs once a build has replaced a dataset; None while it cannot be seen."""
+    try:
+        found = (folder / NAME).stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_mtime_ns
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +270,8 @@ class Entry:
         """The program, unbound."""
         from hearth.datasets.format.codecs import program_of
 
-        return program_of(self.row)
+        with reading(self.row.get("place") or self.row["program_id"]):
+            return program_of(self.row)
 
     @property
     def title(self) -> str:
@@ -269,7 +324,8 @@ class Run:
         ticks = self.row["ticks"]
         if not 0 <= tick <= len(ticks):
             raise IndexError(f"tick {tick} of a run of {len(ticks)}")
-        return self._start.copy().apply(*map(change_of, ticks[:tick])).graph()
+        with reading(self.dataset.folder):
+            return self._start.copy().apply(*map(change_of, ticks[:tick])).graph()
 
     @property
     def start(self) -> EnvironmentGraph:
@@ -324,25 +380,6 @@ class _Home(NamedTuple):
         edges = set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
         working = WorkingGraph((in_states(node, node.states) for node in nodes), edges)
         return cls(EnvironmentGraph(nodes, tuple(sorted(edges))), working)
-
-
-def _absent(folder: Path, content: dict[str, Any]) -> list[str]:
-    """The tables that a dataset never had, because an earlier version wrote it.
-
-    Raises:
-        HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
-            DuckDB's words.
-    """
-    from hearth.schemas.tables import TABLES
-
-    missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
-    published = {name.partition("/")[0] for name in content["files"]}
-    lost = [f"`{table}`" for table in missing if table in published]
-    if lost:
-        message = f"it has no table {', '.join(lost)}; it was written by {content['version']}"
-        remedy = "fetch the dataset again, or publish it again with this version"
-        raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
-    return missing
 
 
 def _refused(error: Exception) -> HearthError:

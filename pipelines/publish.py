@@ -65,6 +65,7 @@ STAGE = Stage(
     open=lambda job: Context(Homes(job.settings), job.settings.seed),
     prepare=overlays,
     gather=GATHER,
+    exchanged=True,
     identify=lambda case: str(case["execution_id"]),
     finish=finish,
     facts=knowledge_used,

@@ -26,6 +26,7 @@ import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.exchange import beside
 from hearth.storage.files import TEMPORARY, is_temporary, read_json, value_digest, write_bytes, write_json
 
 MANIFEST = "manifest.json"
@@ -138,26 +139,36 @@ class Store:
             if self._fs.exists(path):
                 self._fs.rm_file(path)
 
-    def end(self, stage: str) -> None:
-        """Make a stage's folder in the store the same as the local one, the manifest last."""
+    def end(self, stage: str, whole: bool = False) -> None:
+        """Make a stage's folder in the store the same as the local one, the manifest last.
+
+        Args:
+            stage: its name.
+            whole: its parts, too, are put there anew: those that are there are of another build.
+        """
+        if whole:
+            self.begin(stage)
         with _told(self.url):
-            self._sync(stage)
+            self._sync(stage, whole)
+            for name in self._names():
+                if whole and name.startswith(f"{beside(Path(stage))}/"):
+                    self._fs.rm_file(self._path(name))
 
     def _push_unfinished(self) -> None:
         """Push every stage that is complete here and not there: a build was stopped in between."""
         for manifest in sorted(self.work.glob(f"*/{MANIFEST}")):
             stage = manifest.parent.name
-            if self._read(f"{stage}/{MANIFEST}") != manifest.read_bytes():
-                self._sync(stage)
+            if not stage.startswith(".") and self._read(f"{stage}/{MANIFEST}") != manifest.read_bytes():
+                self._sync(stage, whole=True)
 
-    def _sync(self, stage: str) -> None:
+    def _sync(self, stage: str, whole: bool) -> None:
         self._fs.invalidate_cache()
         there = {name: info for name, info in self._found().items() if name.startswith(f"{stage}/")}
         here = {path.relative_to(self.work).as_posix(): path for path in _files(self.work / stage)}
         last = f"{stage}/{MANIFEST}"
         for name, path in here.items():
             known = there.get(name)
-            if name != last and (known is None or _is_plain(name) or known["size"] != path.stat().st_size):
+            if name != last and (whole or known is None or _is_plain(name) or known["size"] != path.stat().st_size):
                 self._put(name)
         for name in there.keys() - here.keys():
             self._fs.rm_file(self._path(name))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset, Run
 from hearth.schemas.rows import ProgramRow
 
@@ -54,7 +55,7 @@ def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[ProgramRow, Run]]:
 def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
     """The rows of a query."""
     # A cursor of its own: a connection has one open result, and homes are read meanwhile.
-    with dataset.connection.cursor() as cursor:
+    with reading(dataset.folder), dataset.connection.cursor() as cursor:
         for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):
             yield from batch.to_pylist()
 

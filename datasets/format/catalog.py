@@ -8,6 +8,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.storage.files import replacing, write_bytes
 
 CATALOG = "catalog.duckdb"
@@ -64,3 +66,22 @@ def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
     connection.execute("SET enable_external_access = false")
     connection.execute("SET lock_configuration = true")
     return connection
+
+
+def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
+    """The tables that a dataset never had, because an earlier version wrote it.
+
+    Raises:
+        HearthError: MISSING_FILE, where the manifest has a table and the folder has not: said before a query says so in
+            DuckDB's words.
+    """
+    from hearth.schemas.tables import TABLES
+
+    missing = [table for table in TABLES if not any((folder / table).glob("*.parquet"))]
+    published = {name.partition("/")[0] for name in content["files"]}
+    lost = [f"`{table}`" for table in missing if table in published]
+    if lost:
+        message = f"it has no table {', '.join(lost)}; it was written by {content['version']}"
+        remedy = "fetch the dataset again, or publish it again with this version"
+        raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
+    return missing

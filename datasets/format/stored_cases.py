@@ -52,8 +52,7 @@ def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = (
 
     def asked(query: str, ids: Sequence[str]) -> list[Any]:
         bounds = {"ids": list(ids), "low": min(ids), "high": max(ids)}
-        found: list[Any] = dataset.connection.sql(query, params=bounds).to_arrow_table().to_pylist()
-        return found
+        return dataset.read(query, bounds)
 
     runs = asked(_RUNS.format(more="".join(f", {column}" for column in more)), names)
     environments, programs = (

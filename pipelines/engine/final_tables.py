@@ -360,7 +360,8 @@ def _name(kind: str, number: int, name: str, arity: int | None = None, simulated
 
 def _rejects(job: Job) -> Iterator[RejectRow]:
     for stage in STAGES:
-        for row in read_rows(job.settings.folder(stage) / "rejects.parquet"):
+        folder = job.folder if stage == job.stage.name else job.settings.folder(stage)
+        for row in read_rows(folder / "rejects.parquet"):
             del row["partition"]
             yield row
 

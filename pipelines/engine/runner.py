@@ -21,6 +21,7 @@ from hearth.pipelines.engine.workers import Workers
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import REJECTED
+from hearth.storage.exchange import put_in_place, recover, start_from, tidy
 from hearth.storage.files import is_temporary, value_digest, write_json
 from hearth.storage.lock import locked
 from hearth.storage.manifest import NAME, TIMING, Manifest, describe, read_manifest
@@ -63,38 +64,33 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
     inputs = _inputs(stage, settings)
     job = Job(stage, settings, stage.prepare(settings))
     key = value_digest([job.key, inputs])
-    folder = job.folder
-    known = read_manifest(folder)
+    recover(settings.folder(stage.name))
+    known = read_manifest(settings.folder(stage.name))
     if known and known.key == key and known.intact() and not known.counts.codes[Code.TIMED_OUT]:
-        os.utime(folder / NAME)
-        _drop_gathered(folder)
+        _tidy(job)
+        os.utime(known.folder / NAME)
         progress.end(stage.name, known.counts, 0.0, fresh=False)
         return Result(known, fresh=False)
     began = time.monotonic()
-    _clear(folder)
-    elsewhere = store(settings.store) if settings.store else None
-    if elsewhere:
-        elsewhere.begin(stage.name)
+    _clear(job)
     progress.start(stage.name, _total(stage, settings))
     if stage.begin:
         stage.begin(job)
     numbers, counts = _partitions(job, workers, progress)
     _gather_rejects(job, numbers)
     _drop_stale(job, numbers)
-    _drop_leftovers(folder)
+    _drop_leftovers(job.folder)
     if stage.finish:
         stage.finish(job, counts)
     counts.check(stage.name)
     facts = {**stage.facts(job), "counts": counts.to_json(), "parts": list(_parts(job, numbers))}
-    manifest = describe(folder, job.asked(), inputs, key, **facts)
+    manifest = describe(job.folder, job.asked(), inputs, key, **facts)
     seconds = time.monotonic() - began
-    write_json(folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
+    write_json(job.folder / TIMING, {"seconds": round(seconds, 3), "workers": workers.count})
     manifest.write()
-    _drop_gathered(folder)
-    if elsewhere:
-        elsewhere.end(stage.name)
+    _put_in_place(job)
     progress.end(stage.name, counts, seconds, fresh=True)
-    return Result(manifest, fresh=True)
+    return Result(replace(manifest, folder=settings.folder(stage.name)), fresh=True)
 
 
 def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
@@ -120,11 +116,34 @@ def _total(stage: Stage, settings: Settings) -> int | None:
     return sum(int(part["rows"]) for manifest in manifests if manifest for part in manifest.parts)
 
 
-def _clear(folder: Path) -> None:
-    """Make the folder say that it is not complete, and drop what was half written."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / NAME).unlink(missing_ok=True)
-    _drop_leftovers(folder)
+def _clear(job: Job) -> None:
+    """Make the folder say that it is not complete, and drop what was half written; what people read stays."""
+    if job.stage.exchanged:
+        folder = job.settings.folder(job.stage.name)
+        start_from(folder, [*folder.rglob("part-*.parquet"), *folder.glob(REJECTS), *folder.glob(".rejects-*.parquet")])
+    elif job.settings.store:
+        store(job.settings.store).begin(job.stage.name)
+    job.folder.mkdir(parents=True, exist_ok=True)
+    (job.folder / NAME).unlink(missing_ok=True)
+    _drop_leftovers(job.folder)
+
+
+def _put_in_place(job: Job) -> None:
+    """Give what is complete its name, here and in the store."""
+    name = job.stage.name
+    if job.stage.exchanged:
+        put_in_place(job.settings.folder(name))
+    _drop_gathered(job.settings.folder(name))
+    if job.settings.store:
+        store(job.settings.store).end(name, whole=job.stage.exchanged)
+
+
+def _tidy(job: Job) -> None:
+    """Remove what a build that was stopped just after its end had still to remove."""
+    folder = job.settings.folder(job.stage.name)
+    _drop_gathered(folder)
+    if job.stage.exchanged:
+        tidy(folder)
 
 
 def _drop_gathered(folder: Path) -> None:

@@ -22,6 +22,7 @@ from hearth.pipelines.engine.dependencies import code_digest
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import Row
+from hearth.storage.exchange import beside
 from hearth.storage.files import value_digest
 from hearth.storage.partitions import Counts, PartWriter, read_rows
 from hearth.storage.rejects import Reject, as_text
@@ -81,6 +82,7 @@ class Stage:
         patience: how many times the usual limit a record may take.
         share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
         gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
+        exchanged: people read its folder while it is built: it is written beside, and takes its place in one step.
 
     A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
     """
@@ -106,6 +108,7 @@ class Stage:
     patience: int = 1
     share: int | None = None
     gather: int = 0
+    exchanged: bool = False
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
         """Workers get a stage by the module that defines it, as its `STAGE`."""
@@ -128,7 +131,8 @@ class Job:
     @property
     def folder(self) -> Path:
         """Where the stage writes."""
-        return self.settings.folder(self.stage.name)
+        folder = self.settings.folder(self.stage.name)
+        return beside(folder) if self.stage.exchanged else folder
 
     @cached_property
     def context(self) -> Any:

@@ -1,0 +1,28 @@
+"""What reading a damaged dataset raises, as ours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+
+@contextmanager
+def reading(place: Path | str) -> Iterator[None]:
+    """Name the dataset where its tables cannot be read, or hold what no build writes.
+
+    Raises:
+        HearthError: DAMAGED_FILE, in place of whatever DuckDB, Arrow or our own reading of the values raised.
+    """
+    try:
+        yield
+    except HearthError:
+        raise
+    except Exception as error:
+        said = str(error).split("\n", 1)[0]
+        message = f"its tables cannot be read: {type(error).__name__} {said}"
+        remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy) from error
