@@ -35,6 +35,14 @@ class Dataset:
 
     Each table is an attribute: `ds.programs` is a DuckDB relation, with `.df()` for pandas and `.to_arrow_table()`.
     `ds["release:..."]` is one program with its runs.
+
+    Examples:
+        >>> dataset = hearth.load(folder)
+        >>> entry = dataset["text:milk.txt"]
+        >>> entry.program.steps[0].action, len(entry.program.steps)
+        ('Walk', 3)
+        >>> [run.executable for run in entry.runs]
+        [True]
     """
 
     def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
@@ -122,6 +130,11 @@ class Dataset:
 
         Raises:
             HearthError: SYNTAX, with DuckDB's own words, or when the query would change something.
+
+        Examples:
+            >>> query = "SELECT action FROM steps WHERE program_id = $id ORDER BY number"
+            >>> hearth.load(folder).sql(query, id="text:milk.txt").fetchall()
+            [('Walk',), ('Open',), ('Grab',)]
         """
         import duckdb
 
@@ -204,6 +217,11 @@ class Dataset:
 
         Raises:
             KeyError: there is no program of that id.
+
+        Examples:
+            >>> tensors = hearth.load(folder).to_tensors(["text:milk.txt"])
+            >>> tensors.node_class.shape, tensors.edge_index.shape[0], tensors.actions.shape
+            ((376,), 2, (1, 3))
         """
         from hearth.datasets.tensors import Moment, to_tensors
 
@@ -318,6 +336,12 @@ class Run:
 
         Raises:
             IndexError: the run has fewer ticks.
+
+        Examples:
+            >>> run = hearth.load(folder)["text:milk.txt"].runs[0]
+            >>> fridge = run.bindings()["fridge", 1]
+            >>> [node.states for tick in (0, 3) for node in run.graph(tick).nodes if node.id == fridge]
+            [('CLEAN', 'CLOSED', 'OFF', 'PLUGGED_IN'), ('CLEAN', 'OFF', 'OPEN', 'PLUGGED_IN')]
         """
         from hearth.datasets.format.codecs import change_of
 

@@ -94,6 +94,11 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
 
     Raises:
         HearthError: the path is no dataset, or one that a newer version wrote.
+
+    Examples:
+        >>> verdict = hearth.verify(folder)
+        >>> verdict.executions, verdict.faults
+        (4, ())
     """
     opened.cache_clear()
     dataset = Dataset.open(path)

@@ -44,6 +44,10 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
 
     Returns:
         The binding, or the failure that pruned the last candidate of the furthest step reached.
+
+    Examples:
+        >>> hearth.bind(program, world).nodes
+        {('fridge', 1): 137, ('milk', 1): 142}
     """
     search = _Search(program, rules)
     fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}

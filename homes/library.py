@@ -37,6 +37,11 @@ def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = N
 
     Raises:
         HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
+
+    Examples:
+        >>> graph = hearth.load_graph("maple", known)
+        >>> len(graph.nodes), [node.class_name for node in graph.nodes if node.category == "Rooms"]
+        (367, ['living_room', 'kitchen', 'bedroom', 'bathroom'])
     """
     path = _file(name, directory)
     return _graph(path) if path.suffix == ".json" else _scene(path, knowledge)

@@ -71,7 +71,13 @@ class View:
 
 
 def lint(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> tuple[Diagnostic, ...]:
-    """Every fault of a graph, in the order of `CHECKS`; empty when it is sound. Node ids stand in `found`."""
+    """Every fault of a graph, in the order of `CHECKS`; empty when it is sound. Node ids stand in `found`.
+
+    Examples:
+        >>> from hearth.homes.lint import lint
+        >>> lint(graph, known)
+        ()
+    """
     view = View(graph, knowledge)
     return tuple(fault.at(file) for check in CHECKS.values() for fault in check(view))
 

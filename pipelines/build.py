@@ -92,6 +92,11 @@ def build(
 
     Raises:
         HearthError: a source can't be read, or nothing in any could be used.
+
+    Examples:
+        >>> made = hearth.build(["milk.txt"], "small", homes=("maple",), variants=0, pictures=0)
+        >>> made.rejected, made.stages["sample"].through, made.dataset.name
+        (0, 1, 'publish')
     """
     paths = tuple(str(fetched(source)) for source in sources) or corpus()
     fresh: list[str] = []

@@ -51,6 +51,14 @@ def render(
 
     Raises:
         HearthError: an unknown modality or quality, or open3d is missing.
+
+    Examples:
+        >>> from hearth.rendering.cameras.camera import top_view
+        >>> kitchen = next(node for node in graph.nodes if node.class_name == "kitchen")
+        >>> scene, camera = hearth.scene_of(graph, known), top_view(kitchen.box, width=32, height=24)
+        >>> found = hearth.render(scene, camera, ["rgb", "depth"])
+        >>> found["rgb"].shape, found["depth"].dtype.name
+        ((24, 32, 3), 'uint16')
     """
     wanted = check_modalities(list(modalities), quality)
     return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)

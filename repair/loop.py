@@ -123,6 +123,14 @@ def repair(
     Returns:
         The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
         repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
+
+    Examples:
+        >>> from hearth.grounding.preconditions.postconditions import achieved
+        >>> from hearth.repair.loop import repair
+        >>> broken = execution.program.with_steps(execution.program.steps[1:])
+        >>> found = repair(broken, world, achieved(execution), known)
+        >>> found.failure, [attempt.handler for attempt in found.attempts], found.program == execution.program
+        (None, ['not_close'], True)
     """
     revision = _Revision(program, tuple(range(len(program.steps))), run(world, program, rules))
     task = _Task(goal, nodes_of(program, world), knowledge, rules)

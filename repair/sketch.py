@@ -63,6 +63,10 @@ def sketch(
         knowledge: what homes and program go by.
         seed, record_id: all the randomness there is.
         original: what the program needs, and how it runs in an environment of its own, which then is the first tried.
+
+    Examples:
+        >>> hearth.sketch(program, [home], known)
+        (False, False, True)
     """
     conditions = infer(program, knowledge) if original is None else original[0]
     if isinstance(conditions, Failure):

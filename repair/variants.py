@@ -105,6 +105,13 @@ def augment(
     Returns:
         Every pair, successful or not. A pair that needed no repair fails as UNPERTURBED, one whose program came up
         before as DUPLICATE. A failure when the original itself can't be sampled.
+
+    Examples:
+        >>> first = hearth.augment(program, home, seed=0).pairs[0]
+        >>> print(first.perturbations[0])
+        container: inside(milk (1), fridge (1)) -> in_closed_container(milk (1), fridge (1))
+        >>> [attempt.handler for attempt in first.attempts], first.failure
+        (['not_close', 'inside_closed'], None)
     """
     base = prepared(home)
     if original is None:

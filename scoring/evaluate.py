@@ -167,6 +167,13 @@ def evaluate(
         knowledge: the grammar.
         environments: where programs run; without it only LCS and parsability are scored.
         options: how.
+
+    Examples:
+        >>> row = '{"id": 1, "predicted": "[Sit] <sofa> (1)", "reference": "[Lie] <sofa> (1)"}'
+        >>> _ = Path("predictions.jsonl").write_text(row)
+        >>> (scored,) = hearth.evaluate(hearth.read_pairs(Path("predictions.jsonl")), known)
+        >>> scored.lcs.step, scored.lcs.object, scored.parse.parsable
+        (0.0, 1.0, True)
     """
     return [
         scored(pair, lcs, knowledge, environments(pair) if environments else None, options)

@@ -43,7 +43,13 @@ class Execution:
 
 
 def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
-    """Run a bound program from a world, stopping at the first tick that can't be done."""
+    """Run a bound program from a world, stopping at the first tick that can't be done.
+
+    Examples:
+        >>> execution = hearth.run(world, hearth.bind(program, world).apply(program))
+        >>> execution.executable, len(execution.worlds), execution.final.holding()
+        (True, 4, {0: (142,)})
+    """
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, overload
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -15,6 +16,7 @@ from hearth.schemas.rng import rng
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
+from hearth.simulation.instructions import instruction_of
 from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
@@ -46,47 +48,91 @@ class Env:
     Attributes:
         rules: how actions are read.
         partial: whether agents see only what is around them.
-        world: as it is now.
+        knowledge: what homes that `reset` names are read with. `hearth.Env()` has our own.
         ticks: what happened since `reset`.
         camera_sensor: takes the pictures of `observe` (`hearth.rendering.cameras.sensor.CameraSensor`); None at first.
+
+    Examples:
+        >>> env = hearth.Env()
+        >>> sorted(env.reset("maple", agents=2, seed=1))
+        [0, 1]
     """
 
-    world: World
     camera_sensor: Callable[[Env, int, tuple[str, ...]], Mapping[str, Any]] | None = None
 
-    def __init__(self, rules: Rules = DEFAULT, partial: bool = True) -> None:
+    def __init__(self, rules: Rules = DEFAULT, partial: bool = True, knowledge: Knowledge | None = None) -> None:
         self.rules = rules
         self.partial = partial
+        self.knowledge = knowledge
+        self._world: World | None = None
         self.ticks: list[Tick] = []
         self._last_actions: dict[int, LastAction] = {}
 
-    def reset(self, home: Home | World, agents: int = 1, seed: int = 0) -> dict[int, View]:
+    @property
+    def world(self) -> World:
+        """The world as it is now.
+
+        Raises:
+            HearthError: UNKNOWN_HOME before the first `reset`.
+        """
+        if self._world is None:
+            raise HearthError.of(Code.UNKNOWN_HOME, "no episode has begun", suggestion='env.reset("maple")')
+        return self._world
+
+    def reset(self, home: Home | World | str, agents: int = 1, seed: int = 0) -> dict[int, View]:
         """Begin anew.
 
         Args:
-            home: where; a world is taken up as it stands.
+            home: where, or its name; a world is taken up as it stands.
             agents: how many are wanted at least. Those the home lacks are added, each in a random room.
             seed: decides the rooms.
 
         Returns:
-            What each agent sees.
+            What each agent sees, by number.
+
+        Raises:
+            HearthError: UNKNOWN_HOME; NO_ROOM, where agents are to be added and the home has no room.
         """
+        if isinstance(home, str):
+            home = self._home(home)
         self.restore(with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed))
         return {number: self.observe(number) for number in range(len(self.world.agents))}
 
     def restore(self, world: World) -> None:
         """Go on from a world, as if nothing had happened before."""
-        self.world = world
+        self._world = world
         self.ticks = []
         self._last_actions = {}
 
-    def step(self, instructions: Mapping[int, Step | None]) -> Tick:
-        """Let each agent do one instruction; one that can't does nothing; `Tick.failures` says why."""
+    def step(self, instructions: Mapping[int, Step | str | None] | Step | str) -> Tick:
+        """Let each agent do one instruction; one that fails does nothing, and `failures` says why (see `engine.tick`).
+
+        Args:
+            instructions: agent number -> its instruction, as a step or as text (see `instruction_of`); or one alone,
+                of the agent that it names, else of agent 0.
+
+        Raises:
+            HearthError: every fault of an instruction's text.
+
+        Examples:
+            >>> env = hearth.Env()
+            >>> _ = env.reset("maple")
+            >>> env.step("[Walk] <fridge> (1)").failures
+            {}
+            >>> tick = env.step({0: "[Close] <fridge> (1)"})
+            >>> str(tick.failures[0].code), tick.failures[0].names
+            ('IS_CLOSED', ('fridge',))
+        """
         before = self.world
-        self.world, failures = engine.tick(before, instructions, self.rules)
-        tried = {number: step for number, step in sorted(instructions.items()) if step is not None}
+        if not isinstance(instructions, Mapping):
+            alone = self._read(instructions)
+            instructions = {alone.agent: alone}
+        items = sorted(instructions.items())
+        tried = {number: self._read(given) for number, given in items if given is not None}
+        after, failures = engine.tick(before, tried, self.rules)
+        self._world = after
         self._last_actions |= {number: LastAction(step, failures.get(number)) for number, step in tried.items()}
-        tick = Tick(tried, failures, self.world, self.world.changes(before))
+        tick = Tick(tried, failures, after, after.changes(before))
         self.ticks.append(tick)
         return tick
 
@@ -100,6 +146,12 @@ class Env:
 
         Raises:
             HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and there is no camera sensor.
+
+        Examples:
+            >>> env = hearth.Env()
+            >>> _ = env.reset("maple")
+            >>> env.observe().me.holding, len(env.observe().ids) < len(env.world.home)
+            ((), True)
         """
         self._check(agent)
         if modalities:
@@ -114,10 +166,28 @@ class Env:
 
         Raises:
             HearthError: UNKNOWN_AGENT.
+
+        Examples:
+            >>> env = hearth.Env()
+            >>> _ = env.reset("maple")
+            >>> _ = env.step("[Walk] <fridge> (1)")
+            >>> [step.objects[0].name for step in env.legal() if step.action == "Open"]
+            ['fridge', 'coffe_maker', 'pot', 'cupboard']
         """
         self._check(agent)
         seen = self.partial if only_visible is None else only_visible
         return legal(self.world, agent, self.rules, only_visible=seen, only_reachable=only_reachable)
+
+    def _read(self, given: Step | str) -> Step:
+        return given if isinstance(given, Step) else instruction_of(given, self.world.home)
+
+    def _home(self, name: str) -> Home:
+        from hearth.homes.library import load_graph
+
+        if self.knowledge is None:
+            message, remedy = f"no knowledge to read the home `{name}` with", "hearth.Env(), or Env(knowledge=...)"
+            raise HearthError.of(Code.UNKNOWN_HOME, message, suggestion=remedy)
+        return Home.from_graph(load_graph(name, self.knowledge), name, self.knowledge)
 
     def _check(self, agent: int) -> None:
         if not 0 <= agent < len(self.world.agents):

@@ -49,7 +49,15 @@ class _Cast:
 
 
 def checks(world: World, step: Step, rules: Rules) -> Iterator[Check]:
-    """The checks of a step that can be done in this world, in the order they are made."""
+    """The checks of a step that can be done in this world, in the order they are made.
+
+    Examples:
+        >>> from hearth.simulation.explain import checks
+        >>> for check in list(checks(execution.worlds[1], execution.program.steps[1], hearth.Env().rules))[:2]:
+        ...     print(check.literal, "|", check.by)
+        affords(o) | fridge (137) is CAN_OPEN CONTAINERS HAS_PLUG HAS_SWITCH
+        close(a, o) | character CLOSE fridge (137)
+    """
     home = world.home
     index = [home.index[ref.node] for ref in step.objects if ref.node is not None]
     cast = _Cast(world, world.agents[step.agent], *([*index, -1, -1][:2]))

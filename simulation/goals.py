@@ -36,7 +36,14 @@ class Watch:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """A goal in a world: how often each of its literals holds. A value; `after` gives the next one."""
+    """A goal in a world: how often each of its literals holds. A value; `after` gives the next one.
+
+    Examples:
+        >>> goal = hearth.Goal.of(hearth.Literal.of("HOLDS", "agent", "milk"), hearth.Literal.of("CLOSED", "fridge"))
+        >>> progress = hearth.Progress.start(goal, world).after(execution.final, execution.final.changes(world))
+        >>> progress.counts, progress.satisfied
+        ((1, 0), False)
+    """
 
     goal: Goal
     watches: tuple[Watch, ...]

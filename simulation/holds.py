@@ -33,7 +33,13 @@ Binary = Callable[[World, int, int], int]
 
 
 def holds(literal: Literal[T], world: World, binding: Mapping[T, int] = UNBOUND) -> bool:
-    """Whether a literal holds; without its negation, one about a term that stands for nothing does not."""
+    """Whether a literal holds; without its negation, one about a term that stands for nothing does not.
+
+    Examples:
+        >>> literal = hearth.Literal.of("HOLDS", "agent", "milk")
+        >>> hearth.holds(literal, world), hearth.holds(literal, execution.final)
+        (False, True)
+    """
     name, terms, negated = literal
     home = world.home
     subjects = nodes(terms[0], home, binding)

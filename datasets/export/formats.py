@@ -44,6 +44,12 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
 
     Raises:
         HearthError: the form is unknown, a program asked for is not there, or the folder is not empty.
+
+    Examples:
+        >>> hearth.export(hearth.load(folder), "nl", Path("words"))
+        4
+        >>> sorted(path.name for path in Path("words").iterdir())
+        ['chat.jsonl', 'examples.json', 'steps.jsonl']
     """
     if form not in FORMATS:
         raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is no form", suggestion=f"one of {', '.join(FORMATS)}")

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from pkgutil import resolve_name
+from textwrap import dedent
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -11,6 +16,82 @@ PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
     "pipelines", "analysis",
 )  # fmt: skip
+
+ENTRY_POINTS = {
+    "A dataset": (
+        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors",
+        "hearth.datasets.dataset:Run.graph", "hearth:verify", "hearth:export",
+    ),
+    "What is known": ("hearth:knowledge", "hearth:find", "hearth:understand"),
+    "Homes": (
+        "hearth:home", "hearth:load_graph", "hearth:Home.from_graph", "hearth:generate", "hearth.homes.lint:lint",
+    ),
+    "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
+    "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
+    "Goals and reasons": ("hearth:holds", "hearth:Progress", "hearth.simulation.explain:checks"),
+    "Environments and variants": (
+        "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.loop:repair", "hearth:sketch",
+    ),
+    "Pictures": ("hearth:render", "hearth:record"),
+    "Scores": (
+        "hearth.scoring.metrics.lcs:score", "hearth:executability", "hearth.scoring.metrics.graph_f1:score",
+        "hearth:evaluate",
+    ),
+    "A dataset of one's own": ("hearth:build", "hearth.analysis.corpus_statistics:gather"),
+}  # fmt: skip
+"""What most programs need, as `module:name`, in the order in which they need it."""
+
+PREPARED = """\
+import hearth
+from pathlib import Path
+
+known = hearth.knowledge()
+graph = hearth.load_graph("maple", known)
+(fridge,) = [node.id for node in graph.nodes if node.class_name == "fridge"]
+home = hearth.home("maple")
+world = hearth.World.start(home)
+
+text = "Fetch milk\\n\\n[Walk] <fridge> (1)\\n[Open] <fridge> (1)\\n[Grab] <milk> (1)\\n"
+program = hearth.parse_program(text)
+execution = hearth.run(world, hearth.bind(program, world).apply(program))
+
+Path("milk.txt").write_text(text)
+folder = hearth.build(["milk.txt"], "milk", homes=("maple",), pictures=0).dataset
+"""
+"""What the examples of the entry points have at hand."""
+
+
+def python_api() -> str:
+    """The entry points, each with its signature, its meaning and its example."""
+    lines = ["# Python API", "", "What most programs need. Every example stands after this one, and is tested:"]
+    lines += ["", "```python", PREPARED.rstrip(), "```"]
+    for group, places in ENTRY_POINTS.items():
+        lines += ["", f"## {group}"]
+        for place in places:
+            about, example = documented(place)
+            module = resolve_name(place).__module__.removeprefix("hearth.")
+            more = "" if module == "hearth" else f" [More](library/{module}.md)"
+            lines += ["", f"### {place.replace(':', '.')}", "", "```python", signature(place), "```", ""]
+            lines += [f"{' '.join(about.split())}{more}", "", "```pycon", example, "```"]
+    return "\n".join(lines) + "\n"
+
+
+def documented(place: str) -> tuple[str, str]:
+    """The first paragraph of an entry point's docstring, and its example; "" where it has none."""
+    text = inspect.getdoc(resolve_name(place)) or ""
+    return text.split("\n\n")[0], inspect.cleandoc(text.partition("\nExamples:\n")[2])
+
+
+def signature(place: str) -> str:
+    """How an entry point is called, with defaults as the code names them; of a class that others make, its name."""
+    found, name = resolve_name(place), place.partition(":")[2]
+    made = inspect.isclass(found)
+    if made and found.__module__ != "hearth":
+        return f"class {name}"
+    node = ast.parse(dedent(inspect.getsource(found.__init__ if made else found))).body[0]
+    assert isinstance(node, ast.FunctionDef) and node.returns
+    taken = re.sub(r"^(self|cls)(, )?", "", ast.unparse(node.args))
+    return f"class {name}({taken})" if made else f"{name}({taken}) -> {ast.unparse(node.returns)}"
 
 
 def commands() -> str:
@@ -101,8 +182,6 @@ def failures() -> str:
 
 def library() -> str:
     """The modules, each with what its docstring says first."""
-    import ast
-
     lines = ["# Library", "", "Imports go one way, down this list. Pages are made from the docstrings."]
     for package in PACKAGES:
         lines += ["", f"## hearth.{package}", ""]
@@ -132,6 +211,7 @@ def index() -> str:
 
 PAGES: dict[str, Callable[[], str]] = {
     "index.md": index,
+    "python-api.md": python_api,
     "reference/commands.md": commands,
     "reference/actions.md": actions,
     "reference/objects.md": objects,

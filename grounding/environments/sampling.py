@@ -134,6 +134,11 @@ def sample(
 
     Returns:
         The environment and the program's execution in it, or the failure of the last one drawn.
+
+    Examples:
+        >>> environment, execution = hearth.sample(program, home, seed=0)
+        >>> execution.executable, len(environment.world.graph().nodes)
+        (True, 370)
     """
     base = size.base(home)
     found = infer(program, base.knowledge, rules) if conditions is None else conditions

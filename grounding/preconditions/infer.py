@@ -35,6 +35,10 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
 
     A failure of a program that contradicts itself has code CONTRADICTION; its `expected` says what step needed, its
     `actual` which step made that impossible.
+
+    Examples:
+        >>> list(map(str, hearth.infer(program, known)))
+        ['inside(milk (1), fridge (1))', 'closed(fridge (1))']
     """
     conditions, execution, step = _inferred(program, knowledge, rules)
     return conditions if execution.failure is None else _contradiction(program, conditions, execution, step, knowledge)

@@ -31,6 +31,11 @@ def generate(rooms: int, seed: int, knowledge: Knowledge) -> Layout:
 
     Raises:
         HearthError: NO_PLACE: another number of rooms, or no plan could be furnished.
+
+    Examples:
+        >>> layout = hearth.generate(rooms=3, seed=0, knowledge=known)
+        >>> [room.class_name for room in layout.plan.rooms]
+        ['home_office', 'bedroom', 'bathroom']
     """
     if not LEAST_ROOMS <= rooms <= MOST_ROOMS:
         raise HearthError.of(

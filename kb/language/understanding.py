@@ -51,6 +51,11 @@ def understand(knowledge: Knowledge, sentence: str) -> Understood:
 
     Templates and synonyms are tried first and score 1. For what remains, the valid instructions whose beginning and
     objects are spelt most like the sentence are compared with it by edit distance, spaces and articles left out.
+
+    Examples:
+        >>> meant = hearth.understand(known, "Then turn on the TV").meant
+        >>> meant.action.name, meant.names, meant.score
+        ('SwitchOn', ('television',), 1.0)
     """
     cleaned = _cleaned(sentence)
     exact = _exact(knowledge, cleaned)

@@ -40,6 +40,10 @@ def find(knowledge: Knowledge, query: Query) -> tuple[ObjectClass, ...]:
 
     Raises:
         HearthError: every name of the query that is unknown, with the nearest known ones.
+
+    Examples:
+        >>> [thing.name for thing in hearth.find(known, hearth.Query(can=("Drink",), inside="fridge"))][:3]
+        ['juice', 'milk', 'beer']
     """
     faults = _faults(knowledge, query)
     if faults:

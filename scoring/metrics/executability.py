@@ -119,6 +119,12 @@ def executability(
         world: the environment at its start.
         reference: the bound program it is compared with, by which its objects are bound (see `binding`).
         rules: how actions are read.
+
+    Examples:
+        >>> from hearth.scoring.lines import read
+        >>> found = hearth.executability(read(["[Walk] <fridge> (1)", "[Close] <fridge> (1)"]), world)
+        >>> found.executable, found.failed_line, str(found.code)
+        (False, 1, 'IS_CLOSED')
     """
     knowledge = world.home.knowledge
     faults = {fault.line: fault.code for fault in parsability(lines, knowledge).faults}

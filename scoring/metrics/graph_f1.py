@@ -91,6 +91,12 @@ def score(
         named_reference: likewise.
         match: how instances may stand for each other.
         scope: whose objects are looked at.
+
+    Examples:
+        >>> from hearth.scoring.metrics import graph_f1
+        >>> found = graph_f1.score(world, execution.final, [fridge], [fridge])
+        >>> round(found.states.f1, 2), round(found.relations.f1, 2)
+        (0.75, 0.89)
     """
     a, b = views_of(predicted, reference)
     ours, theirs = a.nodes.scored(named_predicted), b.nodes.scored(named_reference)

@@ -61,7 +61,14 @@ def similarity(predicted: Lines, reference: Lines, level: Level = "step", instan
 
 
 def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsScore:
-    """The scores of one pair at every level."""
+    """The scores of one pair at every level.
+
+    Examples:
+        >>> from hearth.scoring.lines import read
+        >>> from hearth.scoring.metrics import lcs
+        >>> lcs.score(read(["[Walk] <sofa> (1)", "[Sit] <sofa> (1)"]), read(["[Walk] <sofa> (1)", "[Lie] <sofa> (1)"]))
+        LcsScore(step=0.5, action=0.5, object=1.0)
+    """
     return LcsScore(*(similarity(predicted, reference, level, instances) for level in LEVELS))
 
 

@@ -56,6 +56,13 @@ def edit(
 
     Raises:
         HearthError: BAD_GRAPH, when an id is used twice or names a node that there is not.
+
+    Examples:
+        >>> opened = hearth.edit(world, set=[(fridge, "OPEN")])
+        >>> world.has_state(fridge, "OPEN"), opened.has_state(fridge, "OPEN")
+        (False, True)
+        >>> str(hearth.edit(world, set=[(fridge, "SITTING")]).code)
+        'NOT_AFFORDED'
     """
     try:
         if add:

@@ -94,6 +94,10 @@ class Home:
 
         Raises:
             HearthError: BAD_GRAPH (see `building`).
+
+        Examples:
+            >>> hearth.Home.from_graph(graph, "mine", known)
+            Home('mine', 367 nodes)
         """
         return cls(graph.nodes, graph.edges, name, knowledge)
 

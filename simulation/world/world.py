@@ -21,6 +21,12 @@ class World(WorldState):
     """The state of everything at one moment.
 
     Two worlds are equal when they show the same graph with the same memories, however they came about.
+
+    Examples:
+        >>> world = hearth.World.start(home)
+        >>> (fridge,) = [node.id for node in world.graph().nodes if node.class_name == "fridge"]
+        >>> world.has_state(fridge, "OPEN"), execution.final.has_state(fridge, "OPEN")
+        (False, True)
     """
 
     __slots__ = ("_key",)

@@ -12,6 +12,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.simulation.engine import act, run, tick
 from hearth.simulation.env import Env, with_agents
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -255,3 +256,51 @@ def test_legal_follows_what_the_agent_sees_unless_told_otherwise():
     assert BEDROOM in env.legal(0).objects("Walk")
     assert SHELF in env.legal(0, only_visible=False).objects("Walk")
     assert SHELF not in env.legal(0, only_visible=False, only_reachable=True).objects("Walk")
+
+
+def test_a_home_is_named_and_instructions_are_text():
+    env = Env(knowledge=default())
+    assert env.reset("maple")[0].me.posture == "standing"
+    done = env.step("[WALK] <Fridge> (1)")
+    assert (done.instructions[0].action, done.instructions[0].objects[0].name) == ("Walk", "fridge")
+    node = done.instructions[0].objects[0].node
+    assert not env.step({0: f"[Open] <fridge> (1.{node})"}).failures
+    assert codes(env.step({0: "[Open] <fridge> (1)"}).failures) == {0: Code.IS_OPEN}
+    env.reset("maple", agents=2)
+    assert set(env.step("<char1> [Walk] <fridge> (1)").instructions) == {1}
+    second = env.step("[Walk] <chair> (2)").instructions[0].objects[0].node
+    assert second == env.world.home.ids[sorted(indices(env.world.home.instances("chair")))[1]]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("walk to the kitchen", "SYNTAX"),
+        ("", "SYNTAX"),
+        ("[Fly]", "UNKNOWN_ACTION"),
+        ("[Walk] <kichen> (1)", "UNKNOWN_OBJECT"),
+        ("[Walk]", "WRONG_ARITY"),
+        ("[Walk] <fridge> (99)", "UNBOUND"),
+        ("[Walk] <fridge> (1) | <char1> [Walk] <fridge> (1)", "SYNTAX"),
+        (7, "SYNTAX"),
+    ],
+)
+def test_a_text_that_is_not_an_instruction_is_refused(text, code):
+    env = Env(knowledge=default())
+    env.reset("maple")
+    before = env.world
+    with pytest.raises(HearthError, match=code):
+        env.step({0: text})
+    with pytest.raises(HearthError, match=code):
+        env.step(text)
+    assert env.world is before and env.ticks == []
+
+
+def test_a_home_that_can_not_be_found_and_an_episode_that_has_not_begun_are_refused():
+    for call in (lambda env: env.reset("mapel"), lambda env: env.step("[StandUp]"), lambda env: env.world):
+        with pytest.raises(HearthError, match="UNKNOWN_HOME"):
+            call(Env(knowledge=default()))
+    for call in (lambda env: env.reset("maple"), lambda env: env.observe(), lambda env: env.legal()):
+        with pytest.raises(HearthError, match="UNKNOWN_HOME"):
+            call(Env())
+    assert not hasattr(Env(), "worlds")

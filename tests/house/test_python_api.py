@@ -1,0 +1,134 @@
+"""The entry points of the page "Python API": each has an example, and the example is true."""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import importlib.util
+import inspect
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from pkgutil import resolve_name
+
+import pytest
+
+import hearth
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def page():
+    """The hook that makes the page, without the fixture: tests are named for what it lists."""
+    spec = importlib.util.spec_from_file_location("pages", ROOT / "docs/hooks/pages.py")
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+PAGE = page()
+PLACES = [place for places in PAGE.ENTRY_POINTS.values() for place in places]
+
+
+@pytest.fixture(scope="module")
+def prepared(tmp_path_factory):
+    """The folder that examples run in, and what they have at hand."""
+    folder, names = tmp_path_factory.mktemp("api"), {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        exec(PAGE.PREPARED, names)
+        names["folder"] = names["folder"].resolve()
+    return folder, names
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_the_example_is_true(place, prepared, monkeypatch):
+    if place in ("hearth:render", "hearth:record"):
+        pytest.importorskip("open3d", reason="rendering needs open3d")
+    folder, names = prepared
+    monkeypatch.chdir(folder)
+    example = doctest.DocTestParser().get_doctest(PAGE.documented(place)[1], dict(names), place, None, None)
+    assert example.examples, "no example in the docstring"
+    said = []
+    doctest.DocTestRunner().run(example, out=said.append)
+    assert not said, "".join(said)
+
+
+def test_thirty_and_more_have_examples_and_stand_on_the_page_once():
+    assert len(PLACES) == len(set(PLACES)) >= 30
+    text = PAGE.python_api()
+    for place in PLACES:
+        about, example = PAGE.documented(place)
+        name = place.rpartition(":")[2].rpartition(".")[2]
+        assert text.count(f"\n### {place.replace(':', '.')}\n") == 1
+        assert about and 1 < example.count(">>>") + example.count("\n") + 1 <= 12, place
+        assert name.lower() in example, "the example does not use it"
+
+
+def test_signatures_name_what_the_code_names():
+    assert PAGE.signature("hearth:Env").endswith("partial: bool=True, knowledge: Knowledge | None=None)")
+    assert PAGE.signature("hearth:run") == "run(world: World, program: Program, rules: Rules=DEFAULT) -> Execution"
+    assert PAGE.signature("hearth:Dataset.sql") == "Dataset.sql(query: str, **parameters: Any) -> Any"
+    assert PAGE.signature("hearth:World") == "class World"
+    assert not any(" at 0x" in PAGE.signature(place) for place in PLACES)
+
+
+def test_every_example_of_the_code_is_tested():
+    """A docstring with an example that no test runs would go stale."""
+    shown = {inspect.getsourcefile(inspect.unwrap(found)) for found in map(resolve_name, PLACES) if callable(found)}
+    rooms = {path.parent for path in ROOT.glob("*/__init__.py")}
+    files = (path for room in rooms for path in room.rglob("*.py"))
+    assert {str(path) for path in files if "    >>> " in path.read_text()} <= shown
+
+
+def test_what_hearth_has_is_what_type_checkers_see():
+    tree = ast.parse((ROOT / "__init__.py").read_text())
+    seen = {
+        alias.asname: node.module
+        for block in tree.body
+        if isinstance(block, ast.If)
+        for node in block.body
+        for alias in node.names
+        if alias.asname
+    }
+    assert seen == {
+        **{name: f"hearth.{module}" for name, module in hearth._MODULES.items()},
+        "Env": "hearth.simulation.env",
+    }
+    rooms = {path.name for path in ROOT.iterdir() if path.is_dir()}
+    assert not rooms & (seen.keys() | {"load", "knowledge", "home", "parse_program"}) - {"build"}
+    for name, module in seen.items():
+        assert getattr(hearth, name).__name__ == name and module
+    with pytest.raises(AttributeError, match="has no attribute `runs`"):
+        _ = hearth.runs
+
+
+def test_import_hearth_stays_light():
+    code = "import sys, hearth; hearth.__version__; print([m for m in sys.modules if m.startswith('hearth.')])"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert shown.split() == ["['hearth.version']"]
+
+
+def test_an_environment_has_our_knowledge_or_another():
+    from hearth.simulation.env import Env
+
+    assert hearth.Env().knowledge is hearth.knowledge()
+    assert issubclass(hearth.Env, Env) and pickle.loads(pickle.dumps(hearth.Env)) is hearth.Env
+    other = hearth.knowledge().__class__
+    assert hearth.Env(knowledge=other).knowledge is other
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        (lambda: hearth.home("mapel"), "UNKNOWN_HOME"),
+        (lambda: hearth.parse_program(""), "EMPTY"),
+        (lambda: hearth.parse_program("[Fly]\n[Walk] <fridge>"), "2:8: SYNTAX"),
+        (lambda: hearth.Env().reset("mapel"), "UNKNOWN_HOME"),
+        (lambda: hearth.load("nowhere"), "MISSING_FILE"),
+    ],
+)
+def test_bad_input_is_one_kind_of_error(call, code):
+    with pytest.raises(hearth.schemas.diagnostics.HearthError, match=code):
+        call()
