@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 from hearth.analysis.coverage import Script
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import sketches as reader
-from hearth.pipelines.readers.item import Place
 from hearth.repair.sketch import Keep, sketch
 from hearth.schemas.program import Program
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import print_step
 from hearth.simulation.world.home import Home
+from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 THESIS_LENGTH = 2.4

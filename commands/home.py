@@ -13,6 +13,7 @@ from hearth.commands import options, output
 
 if TYPE_CHECKING:
     from hearth.homes.from_graph.graph_layout import GraphLayout
+    from hearth.kb.knowledge import Knowledge
     from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.graph import EnvironmentGraph
 
@@ -100,11 +101,10 @@ def lint(
     """
     from hearth.homes import library
     from hearth.homes.lint import lint as check
-    from hearth.kb.loading.load import default
 
     graph = _graph(home, homes)
-    faults = check(graph, default(), file=home if Path(home).suffix else "")
-    laid = library.graph_layout(home, default(), homes) if layout else None
+    faults = check(graph, _known(), file=home if Path(home).suffix else "")
+    laid = library.graph_layout(home, _known(), homes) if layout else None
     if as_json:
         told = {"home": home, "faults": faults, "by_code": _codes(faults)}
         output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
@@ -157,13 +157,12 @@ def convert(
       python cli.py home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
     from hearth.homes import exporting, library
-    from hearth.kb.loading.load import default
 
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
         graph = _graph(home, homes)
-        written = exporting.write_release(library.graph_layout(home, default(), homes).graph if layout else graph, out)
+        written = exporting.write_release(library.graph_layout(home, _known(), homes).graph if layout else graph, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -186,12 +185,11 @@ def generate(
     from hearth.homes import exporting
     from hearth.homes.procedural.generate import generate as draw_up
     from hearth.homes.scene_graph import scene
-    from hearth.kb.loading.load import default
 
-    layout = draw_up(rooms, seed, default())
+    layout = draw_up(rooms, seed, _known())
     if out is not None:
-        exporting.write(layout, out, default())
-    figures = _figures(scene(layout, default()))
+        exporting.write(layout, out, _known())
+    figures = _figures(scene(layout, _known()))
     names = ", ".join(room.name for room in layout.plan.rooms)
     text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
     output.say(text, {"home": layout.plan.name, "seed": seed, **figures, "file": out}, as_json)
@@ -218,10 +216,9 @@ def edit(
     """
     from hearth.commands.home_edits import edited
     from hearth.homes import exporting
-    from hearth.kb.loading.load import default
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
-                        knowledge=default(), name=home)  # fmt: skip
+                        knowledge=_known(), name=home)  # fmt: skip
     exporting.write_release(graph, out)
     ids = f", new ids {', '.join(map(str, new))}" if new else ""
     text = f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}"
@@ -248,9 +245,8 @@ def stats(
     from hearth.homes.procedural.generate import generate as draw_up
     from hearth.homes.scene_graph import scene
     from hearth.homes.statistics import beside, of_homes
-    from hearth.kb.loading.load import default
 
-    known, ours = default(), library.names()
+    known, ours = _known(), library.names()
     theirs = [name for name in library.names(homes) if name not in ours] if homes else []
     groups = {
         "ours": of_homes((_graph(name, None) for name in ours), known),
@@ -271,18 +267,22 @@ def stats(
         for figure in found["ours"]])  # fmt: skip
 
 
-def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
-    from hearth.homes import library
+def _known() -> Knowledge:
     from hearth.kb.loading.load import default
 
-    return library.graph_of(home, default()) if Path(home).suffix else library.load_graph(home, default(), homes)
+    return default()
+
+
+def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
+    from hearth.homes import library
+
+    return library.graph_of(home, _known()) if Path(home).suffix else library.load_graph(home, _known(), homes)
 
 
 def _layout(home: str, homes: Path | None) -> Any:
     from hearth.homes import library
-    from hearth.kb.loading.load import default
 
-    return library.layout_of(home, default()) if Path(home).suffix else library.load_layout(home, default(), homes)
+    return library.layout_of(home, _known()) if Path(home).suffix else library.load_layout(home, _known(), homes)
 
 
 def _figures(graph: EnvironmentGraph) -> dict[str, Any]:

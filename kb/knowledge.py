@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
 from hearth.kb.groups import groups, state_of
@@ -13,12 +14,23 @@ from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import STATES
 
+K = TypeVar("K")
+V = TypeVar("V")
+
 _DROPPED = {ord(letter): None for letter in " _-"}
 
 
 def key_of(name: str) -> str:
     """A name for comparison: case, spaces, hyphens and underscores left out."""
     return name.lower().translate(_DROPPED)
+
+
+def grouped(pairs: Iterable[tuple[K, V]]) -> dict[K, tuple[V, ...]]:
+    """The values of each key, in the order given."""
+    found: dict[K, list[V]] = {}
+    for key, value in pairs:
+        found.setdefault(key, []).append(value)
+    return {key: tuple(values) for key, values in found.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +92,12 @@ class Knowledge:
 
     @cached_property
     def _achievers(self) -> Mapping[str, tuple[tuple[Action, Effect], ...]]:
-        found: dict[str, list[tuple[Action, Effect]]] = {}
-        for action in self.actions.values():
-            for effect in action.effects:
-                if not effect.literal.negated:
-                    name, terms, _ = effect.literal
-                    name = terms[1].name if name == "state" else name
-                    found.setdefault(name, []).append((action, effect))
-        return {name: tuple(pairs) for name, pairs in found.items()}
+        return grouped(
+            (literal.terms[1].name if literal.name == "state" else literal.name, (action, effect))
+            for action in self.actions.values()
+            for effect in action.effects
+            if not (literal := effect.literal).negated
+        )
 
     def achieving(self, *states: str) -> frozenset[str]:
         """The names of the actions that bring their object, or the character, into one of these states."""
@@ -132,10 +142,7 @@ class Knowledge:
 
     @cached_property
     def _repairs(self) -> Mapping[Code, tuple[Repair, ...]]:
-        found: dict[Code, list[Repair]] = {}
-        for repair in self.repairs.values():
-            found.setdefault(repair.code, []).append(repair)
-        return {code: tuple(repairs) for code, repairs in found.items()}
+        return grouped((repair.code, repair) for repair in self.repairs.values())
 
     # Objects
 
@@ -156,11 +163,7 @@ class Knowledge:
     @cached_property
     def _twins(self) -> Mapping[str, tuple[str, ...]]:
         """Original -> the classes that are other names of it."""
-        found: dict[str, list[str]] = {}
-        for thing in self.objects.values():
-            if thing.same_as:
-                found.setdefault(thing.same_as, []).append(thing.name)
-        return {name: tuple(twins) for name, twins in found.items()}
+        return grouped((thing.same_as, thing.name) for thing in self.objects.values() if thing.same_as)
 
     @cached_property
     def _same_classes(self) -> dict[str, tuple[str, ...]]:
@@ -213,12 +216,14 @@ class Knowledge:
 
     def seat_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer sit down."""
-        limits = self._limits["sit"]
-        return limits.get(name) or limits["default"]
+        return self._limit("sit", name)
 
     def bed_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer lie down."""
-        limits = self._limits["lie"]
+        return self._limit("lie", name)
+
+    def _limit(self, posture: str, name: str) -> int:
+        limits = self._limits[posture]
         return limits.get(name) or limits["default"]
 
     def default_states(self, name: str) -> tuple[str, ...]:

@@ -12,12 +12,13 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
-from hearth.pipelines.readers.item import DamagedError, Item, Source, read_refused, refused
+from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.tables import INGESTED
+from hearth.storage.archives import DamagedError
 from hearth.storage.files import value_digest
 from hearth.storage.rejects import Reject, as_text
 

@@ -65,7 +65,7 @@ def state(wanted: str) -> Abduction:
 
 
 def _at_reach(context: StartContext) -> Iterator[Condition]:
-    """Near what the character has gone to, or near the character if it has not removed anywhere."""
+    """Near what the character has gone to, or near the character if it has not gone anywhere."""
     key = context.key()
     if key is None:
         return
@@ -73,9 +73,7 @@ def _at_reach(context: StartContext) -> Iterator[Condition]:
     if agent == context.start.agents[context.failure.agent]:
         yield context.needs("nearby", key, CHARACTER)
     yield from _had_not_left(context)
-    for anchor in anchors(context):
-        if anchor != key:
-            yield context.needs("atreach", key, anchor)
+    yield from _beside_anchors(context, "atreach", key)
     if not any(step.action in context.group("goes") for step in context.program.steps[: context.at]):
         yield context.needs("nearby", key, CHARACTER)
 
@@ -116,6 +114,11 @@ def anchors(context: StartContext) -> Iterator[Key]:
     yield from sorted(seen, key=lambda key: seen[key])
 
 
+def _beside_anchors(context: StartContext, name: str, key: Key) -> Iterator[Condition]:
+    """An object stands in a relation to each of the anchors but itself."""
+    yield from (context.needs(name, key, anchor) for anchor in anchors(context) if anchor != key)
+
+
 def _rank(context: StartContext, node: int) -> int:
     home = context.world.home
     if home.rooms >> node & 1:
@@ -132,10 +135,7 @@ def _put_back_place(context: StartContext) -> Iterator[Condition]:
     step = context.program.steps[context.at]
     if step.action != "PutObjBack" or context.key() is not None:
         return
-    key = step.objects[0].key
-    for anchor in anchors(context):
-        if anchor != key:
-            yield context.needs("in", key, anchor)
+    yield from _beside_anchors(context, "in", step.objects[0].key)
 
 
 def _not_close(context: StartContext) -> Iterator[Condition]:
@@ -167,9 +167,7 @@ def _same_room(context: StartContext) -> Iterator[Condition]:
         return
     if named is not None:
         yield context.needs("location", key, named)
-    for anchor in anchors(context):
-        if anchor != key:
-            yield context.needs("together", key, anchor)
+    yield from _beside_anchors(context, "together", key)
 
 
 def _resting(context: StartContext) -> Iterator[Condition]:
@@ -189,16 +187,15 @@ def _holding(context: StartContext) -> Iterator[Condition]:
         yield context.needs("holds", key, CHARACTER)
 
 
-def _worn(context: StartContext) -> Iterator[Condition]:
-    key = context.key()
-    if key is not None:
-        yield context.needs("in", key, CHARACTER)
+def _plainly(name: str, *others: Key) -> Abduction:
+    """The condition of that name holds of the object."""
 
+    def abduced(context: StartContext) -> Iterator[Condition]:
+        key = context.key()
+        if key is not None:
+            yield context.needs(name, key, *others)
 
-def _free(context: StartContext) -> Iterator[Condition]:
-    key = context.key()
-    if key is not None:
-        yield context.needs("free", key)
+    return abduced
 
 
 def _closed_or_open(context: StartContext) -> Iterator[Condition]:
@@ -219,6 +216,6 @@ ABDUCTIONS: dict[Code, Abduction] = {
     Code.NOT_IN_ROOM: _same_room,
     Code.NOT_SITTING_OR_LYING: _resting,
     Code.NOT_HOLDING: _holding,
-    Code.NOT_WORN: _worn,
-    Code.OCCUPIED: _free,
+    Code.NOT_WORN: _plainly("in", CHARACTER),
+    Code.OCCUPIED: _plainly("free"),
 }

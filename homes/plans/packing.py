@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hearth.homes.forms import Form, form
-from hearth.homes.geometry import Rect, bottom, box_over, footprint, top, wall_of
+from hearth.homes.geometry import OPPOSITE_WALL, Rect, bottom, box_over, footprint, top, wall_of
 from hearth.homes.plans.entries import ON_TOP
 from hearth.homes.plans.furniture import NoPlaceError, names_of, shape
 from hearth.homes.plans.plan import Faults, Piece
-from hearth.homes.plans.shell import Thing
+from hearth.homes.plans.shell import Thing, band, span
 from hearth.homes.plans.table_setting import places, setting
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
@@ -354,25 +354,15 @@ def _box(support: Support, level: Level, local: Local, under: float, height: flo
     u0, v0, u1, v1 = (value + support.rim for value in local)
     rect = footprint(support.thing.box)
     wall = wall_of(support.thing.yaw or 0.0)
-    if wall == "north":
-        over = Rect(rect.x0 + u0, rect.z1 - v1, rect.x0 + u1, rect.z1 - v0)
-    elif wall == "south":
-        over = Rect(rect.x0 + u0, rect.z0 + v0, rect.x0 + u1, rect.z0 + v1)
-    elif wall == "east":
-        over = Rect(rect.x1 - v1, rect.z0 + u0, rect.x1 - v0, rect.z0 + u1)
-    else:
-        over = Rect(rect.x0 + v0, rect.z0 + u0, rect.x0 + v1, rect.z0 + u1)
-    return box_over(over, level.y + under, level.y + under + height)
+    low = span(rect, wall)[0]
+    return box_over(band(rect, wall, low + u0, low + u1, v0, v1), level.y + under, level.y + under + height)
 
 
 def local_of(support: Support, rect: Rect) -> Local:
     """A rectangle of the room in the support's own axes: the inverse of what `_box` does."""
     over = footprint(support.thing.box)
     wall = wall_of(support.thing.yaw or 0.0)
-    if wall in ("north", "south"):
-        u0, u1 = rect.x0 - over.x0, rect.x1 - over.x0
-        v0, v1 = (over.z1 - rect.z1, over.z1 - rect.z0) if wall == "north" else (rect.z0 - over.z0, rect.z1 - over.z0)
-    else:
-        u0, u1 = rect.z0 - over.z0, rect.z1 - over.z0
-        v0, v1 = (over.x1 - rect.x1, over.x1 - rect.x0) if wall == "east" else (rect.x0 - over.x0, rect.x1 - over.x0)
+    low = span(over, wall)[0]
+    u0, u1 = (along - low for along in span(rect, wall))
+    v0, v1 = over.reach(wall) - rect.reach(wall), over.reach(wall) + rect.reach(OPPOSITE_WALL[wall])
     return u0 - support.rim, v0 - support.rim, u1 - support.rim, v1 - support.rim

@@ -120,13 +120,18 @@ def shared_wall(a: Rect, b: Rect) -> tuple[str, float, float] | None:
 
 def strip(rect: Rect, wall: str, start: float, end: float, depth: float) -> Rect:
     """The strip along one side of a rectangle: `depth` deep inwards from it, or outwards when negative."""
+    return band(rect, wall, start, end, 0.0, depth)
+
+
+def band(rect: Rect, wall: str, start: float, end: float, near: float, far: float) -> Rect:
+    """The band along one side of a rectangle between two distances inwards from it, outwards when negative."""
     if wall == "north":
-        return _ordered(start, rect.z1 - depth, end, rect.z1)
+        return _ordered(start, rect.z1 - far, end, rect.z1 - near)
     if wall == "south":
-        return _ordered(start, rect.z0, end, rect.z0 + depth)
+        return _ordered(start, rect.z0 + near, end, rect.z0 + far)
     if wall == "east":
-        return _ordered(rect.x1 - depth, start, rect.x1, end)
-    return _ordered(rect.x0, start, rect.x0 + depth, end)
+        return _ordered(rect.x1 - far, start, rect.x1 - near, end)
+    return _ordered(rect.x0 + near, start, rect.x0 + far, end)
 
 
 def before(rect: Rect, yaw: float, depth: float) -> Rect:

@@ -8,7 +8,7 @@ from functools import lru_cache
 from hashlib import file_digest, sha256
 from pathlib import Path
 
-from hearth.kb.knowledge import Knowledge, key_of
+from hearth.kb.knowledge import Knowledge, grouped, key_of
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
 from hearth.kb.loading.layers import yaml_entries
 from hearth.kb.loading.lines import Entry, Faults, check_extent
@@ -150,8 +150,8 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         _object_names=spellings,
         _aliases={name: thing.synonyms for name, thing in named.items() if thing.synonyms},
         _stand_ins=stand_ins,
-        _placements=_grouped(placements, 0),
-        _held=_grouped(placements, 2),
+        _placements=_by_weight(placements, 0),
+        _held=_by_weight(placements, 2),
         _limits={kind: entry.value for kind, entry in limits.items()},
     )
 
@@ -177,19 +177,12 @@ def _object_spellings(
 
 
 def _with_synonyms(objects: Mapping[str, ObjectClass], aliases: Mapping[str, str]) -> dict[str, ObjectClass]:
-    own: dict[str, list[str]] = {}
-    for alias, name in aliases.items():
-        own.setdefault(name, []).append(alias)
-    return {
-        name: replace(thing, synonyms=tuple(own[name])) if name in own else thing for name, thing in objects.items()
-    }
+    own = grouped((name, alias) for alias, name in aliases.items())
+    return {name: replace(thing, synonyms=own[name]) if name in own else thing for name, thing in objects.items()}
 
 
-def _grouped(placements: list[Placement], column: int) -> dict[str, tuple[Placement, ...]]:
-    found: dict[str, list[Placement]] = {}
-    for placement in placements:
-        found.setdefault(str(placement[column]), []).append(placement)
-    return {name: tuple(sorted(rows, key=lambda row: -row.weight)) for name, rows in found.items()}
+def _by_weight(placements: list[Placement], column: int) -> dict[str, tuple[Placement, ...]]:
+    return grouped((str(each[column]), each) for each in sorted(placements, key=lambda each: -each.weight))
 
 
 def _default_states(entry: Entry) -> dict[str, dict[str, tuple[str, ...]]]:

@@ -7,8 +7,9 @@ from typing import Any
 
 import orjson
 
-from hearth.pipelines.readers.item import LARGEST_FILE, Place, opened, size_of
+from hearth.pipelines.readers.item import LARGEST_FILE, opened
 from hearth.schemas.failures import Code
+from hearth.storage.archives import Place, size_of
 from hearth.storage.rejects import Reject
 
 _LOOKS_JSON = re.compile(r"""\s*(?:\{\s*["}]|\[\s*(?:["\{\[\]\d-]|$))""")

@@ -8,8 +8,9 @@ from contextlib import suppress
 from typing import Any
 
 from hearth.pipelines.readers.document import parsed
-from hearth.pipelines.readers.item import Place, fault_of, pieces
+from hearth.pipelines.readers.item import fault_of, pieces
 from hearth.schemas.failures import Code
+from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 LONGEST_ENTRY = 16_000_000

@@ -13,7 +13,7 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import ConditionRow, QuantityRow
-from hearth.storage.archives import DamagedError, Place, raw, size_of
+from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 
 LONGEST_LINE = 1_000_000
@@ -23,25 +23,6 @@ LARGEST_FILE = 256_000_000
 """Bytes a member of an archive may unpack to."""
 
 _MARKS = ((b"\xff\xfe", "utf-16-le", 2), (b"\xfe\xff", "utf-16-be", 2), (b"\xef\xbb\xbf", "utf-8", 3))
-
-
-__all__ = [
-    "LARGEST_FILE",
-    "LONGEST_LINE",
-    "DamagedError",
-    "Item",
-    "Place",
-    "Source",
-    "fault_of",
-    "lines",
-    "opened",
-    "pieces",
-    "read_refused",
-    "record",
-    "refused",
-    "size_of",
-    "suffixless",
-]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.pipelines.readers import plans
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
+from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
@@ -17,7 +17,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
-from hearth.storage.archives import leaves
+from hearth.storage.archives import Place, leaves
 from hearth.storage.rejects import Reject
 
 NAME = "records"

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 from hearth.kb.language.plans import NUMBERED, TITLE, header
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, Place, fault_of, lines, record, refused
+from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
+from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 NAME = "spoken"

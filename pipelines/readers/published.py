@@ -11,10 +11,11 @@ from typing import Any
 
 from hearth.datasets.format.codecs import program_of
 from hearth.pipelines.readers import ours
-from hearth.pipelines.readers.item import DamagedError, Item, refused
+from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import print_lines
+from hearth.storage.archives import DamagedError
 from hearth.storage.files import read_json
 from hearth.storage.rejects import Reject
 

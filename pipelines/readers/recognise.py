@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
-from hearth.pipelines.readers.item import LARGEST_FILE, DamagedError, Place, lines, opened, size_of
+from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.archives import GZIP, ZSTD, Member, members, refusal_of
+from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
 from hearth.storage.files import walk
 from hearth.storage.rejects import Reject, as_text
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from hearth.pipelines.readers.item import Item, Place, fault_of, pieces, record, refused, size_of
+from hearth.pipelines.readers.item import Item, fault_of, pieces, record, refused
 from hearth.pipelines.readers.text_blocks import LONGEST_PROGRAM, Block, blocks
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.syntax import MAX_LINE
+from hearth.storage.archives import Place, size_of
 from hearth.storage.rejects import Reject
 
 NAME = "text"
