@@ -24,7 +24,7 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     to.mkdir(parents=True, exist_ok=True)
     for table in TABLES:
         some = table in _OF_PROGRAMS
-        query = f"SELECT * FROM {table}" + (f" WHERE program_id IN ({chosen})" if some else "") + " ORDER BY 1, 2"
+        query = f"SELECT * FROM {table}" + (f" WHERE program_id IN ({chosen})" if some else "") + " ORDER BY ALL"
         with (to / f"{table}.jsonl").open("wb") as file:
             for row in stream(dataset, query, asked if some else {}):
                 file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
