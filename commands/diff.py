@@ -50,7 +50,8 @@ def _lines(found: TableDifference) -> Iterator[str]:
 
 
 def _key(key: tuple[Any, ...]) -> str:
-    return " ".join(map(str, key))
+    """What identifies a row, as far as it is short."""
+    return " ".join(str(value) for value in key if value is not None and not isinstance(value, list))
 
 
 def _json(found: TableDifference) -> dict[str, Any]:

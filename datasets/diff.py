@@ -18,7 +18,8 @@ KEYS = {
     "home_edges": ("home", "source", "relation", "target"),
     "environments": ("environment_id",),
     "executions": ("execution_id",),
-    "repairs": ("program_id", "attempt"),
+    # Repairs that led to no program of their own have none: those of a parent differ in what was perturbed.
+    "repairs": ("program_id", "parent_id", "environment_id", "home", "perturbations", "attempt"),
     "splits": ("split", "execution_id"),
     "sketches": ("program_id", "keep"),
     "frames": ("execution_id", "tick", "camera", "modality"),

@@ -40,6 +40,18 @@ def test_the_same_dataset(made, copy):
     assert compare(made.out, copy) == []
 
 
+def test_repairs_that_led_to_no_program(copy, tmp_path):
+    """They have no program's id; what was perturbed distinguishes them."""
+
+    def duplicates(table):
+        rows = [{**row, "program_id": None, "execution_id": None} for row in table.to_pylist()]
+        return pa.Table.from_pylist(rows, table.schema)
+
+    rows = rewritten(copy, "repairs", duplicates)
+    assert len(rows) > len({row["attempt"] for row in rows})
+    assert compare(copy, shutil.copytree(copy, tmp_path / "again")) == []
+
+
 def test_a_row_that_is_gone_and_one_that_came(made, copy):
     rows = rewritten(copy, "executions", lambda table: table.slice(1))
     (found,) = compare(made.out, copy)
