@@ -1,12 +1,12 @@
 # Hearth: `make` sets up .venv and builds a dataset from data_raw/ into data_out/; `make help` lists the rest.
-# Every stage is the file that says it is complete, so that a second `make` does nothing and a touched input
-# rebuilds only what follows from it.
+# The target of a stage is its manifest, so that a second `make` does nothing and a changed input rebuilds only the
+# dependent stages.
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
 
-# Compiled modules are kept, whatever the environment says: every process would spend seconds compiling them again.
+# Byte code is always written: compiling it again would cost every process seconds.
 unexport PYTHONDONTWRITEBYTECODE
 
 OUT    ?= data_out
@@ -19,17 +19,17 @@ PY     := .venv/bin/python
 HEARTH := $(PY) cli.py
 STAGES := ingest validate sample augment render publish
 
-# What open3d pulls in for notebooks. It is never imported here, and it holds a third of all files.
+# Dependencies of open3d for notebooks, a third of all files, which are never imported here.
 NOTEBOOK := asttokens attrs configargparse executing fastjsonschema ipython ipython-pygments-lexers ipywidgets jedi \
   jsonschema jsonschema-specifications jupyter-core jupyterlab-widgets matplotlib-inline nbformat parso pexpect \
   platformdirs prompt-toolkit psutil ptyprocess pure-eval referencing rpds-py stack-data traitlets wcwidth \
   widgetsnbextension
 
-# Code and data below some folders.
+# Code and data in some folders.
 tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.csv' -o -name '*.json' -o -name '*.sql' \) 2>/dev/null)
 manifest = $(OUT)/$(1)/manifest.json
 
-# What decides a stage's output. Generous: a stage that runs without need finds by digests that nothing changed.
+# Prerequisites of the stages. There may be too many: a stage finds by digests whether anything changed.
 SHARED   := version.py $(call tree,schemas storage homes simulation grounding repair datasets analysis) \
             $(call tree,pipelines/engine pipelines/crowd pipelines/checks)
 KNOWN    := $(SHARED) $(call tree,kb)
@@ -39,7 +39,7 @@ WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
-# Each program in two homes drawn for it, so that all seven are used and each program comes in several.
+# Each program in two homes drawn for it, so that all seven homes are used.
 full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,000 augmented, in data_out/full
 	@mkdir -p $(OUT)/full
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
@@ -47,18 +47,18 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,
 	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --tier full
 
 mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
-frames: $(READY)  ## one of our corpus with many pictures and some films, in data_out/frames
+frames: $(READY)  ## a dataset of our corpus with many pictures and some films, in data_out/frames
 mini frames:
 	@$(HEARTH) build --out $(OUT)/$@ --seed $(SEED) --workers $(JOBS) --tier $@
 
-setup: $(READY)  ## make .venv with the locked versions (uv if there is one, else pip)
+setup: $(READY)  ## make .venv with the locked versions (with uv if installed, else pip)
 
 $(READY): requirements.lock pyproject.toml setup.sh
 	@PYTHON=$(PYTHON) ./setup.sh
 
 $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up to date
 
-# Progress goes to the terminal; the table that each command prints is only wanted at the end.
+# Progress goes to the terminal; the table of each command is only printed at the end.
 RUN = @$(HEARTH) $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
 
 $(call manifest,ingest): $(SHARED) $(shell find kb -name '*.py') $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
@@ -87,13 +87,13 @@ test: $(READY)  ## the tests, without the slow ones
 	@$(PY) -m pip install -qq --no-compile --no-deps -r $<
 	@touch $@
 
-test-tools: .venv/.tools  ## tests that hold our files up to other people's tools: planners, browsers, clusters, S3
+test-tools: .venv/.tools  ## tests with other tools: planners, browsers, clusters, S3
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
 
 test-all: .venv/.tools  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
 
-coverage: .venv/.tools  ## which lines and branches the tests of `make test` go through, rendering apart
+coverage: .venv/.tools  ## coverage of lines and branches by `make test`, without rendering
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools" --cov --cov-report=term
 
 lint: $(READY)  ## ruff and mypy
@@ -101,14 +101,14 @@ lint: $(READY)  ## ruff and mypy
 	@$(PY) -m ruff format --check .
 	@MYPYPATH=.types $(PY) -m mypy -p hearth
 
-bench: full  ## measure everything into benchmarks/RESULTS.md; fails where a ratio to plain code fell by a third
+bench: full  ## measure everything into benchmarks/RESULTS.md; fails if a ratio to plain code fell by a third
 	@$(PY) benchmarks/results.py
 
 docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, commands and knowledge
 	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocs<2' 'mkdocstrings[python]>=0.28'
 	@NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build -q && echo build/site/index.html
 
-lock: ## choose the newest versions that fit pyproject.toml and pin them in requirements.lock and requirements-tools.lock
+lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock and requirements-tools.lock
 	@rm -rf build/lock && mkdir -p build/lock
 	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
 	@build/lock/all/bin/python -m pip install -q -e '.[test,tools]' setuptools
@@ -122,14 +122,14 @@ lock: ## choose the newest versions that fit pyproject.toml and pin them in requ
 	@{ sed '/^#/!d' requirements-tools.lock; comm -13 build/lock/base.txt build/lock/all.txt; } > requirements-tools.lock
 	@mv build/lock/requirements.lock requirements.lock && rm -rf build/lock
 
-wheel: $(READY)  ## dist/: the package to install elsewhere
+wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
-clean:  ## remove what was built; .venv stays
+clean:  ## remove the output; .venv stays
 	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
-distclean: clean  ## remove .venv, too
+distclean: clean  ## also remove .venv
 	@rm -rf .venv
 
 help:  ## this list

@@ -129,9 +129,9 @@ def load(path: str) -> Dataset:
 
 
 def knowledge(overlay: str | None = None) -> Knowledge:
-    """What Hearth knows of actions, objects and places, with the files of the folder `overlay` laid over it, if given.
+    """Hearth's knowledge of actions, objects and places, with the files of the folder `overlay` laid over it.
 
-    A dataset's own is `load(path).knowledge`.
+    A dataset's own knowledge is `load(path).knowledge`.
 
     Raises:
         HearthError: every fault of the overlay's files.

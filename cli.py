@@ -1,7 +1,7 @@
 """The command line: `python cli.py COMMAND`, or `hearth COMMAND` once installed.
 
 Each command is a function of `hearth.commands`; its module is imported when it is called, so that `--help` is quick.
-This is the one place where bad input becomes a message and an exit status.
+Bad input becomes a message and an exit status here, for all commands.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _ROOT = Path(__file__).resolve().parent
 
 
 def _find_package() -> None:
-    """Go on under `.venv`'s Python when this one has no Hearth (`python cli.py` with the system's Python)."""
+    """Restart with the Python of `.venv` if this one has no Hearth (`python cli.py` with the system's Python)."""
     import importlib.util
 
     if importlib.util.find_spec("hearth") and importlib.util.find_spec("typer"):
@@ -27,7 +27,7 @@ def _find_package() -> None:
 
 
 if __name__ == "__main__":
-    # As a script its folder stands first in the path, where `schemas` or `version` would hide modules of those names.
+    # The folder of a script is first in the path, where `schemas` or `version` would hide modules of those names.
     sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != _ROOT]
     _find_package()
 
@@ -39,7 +39,7 @@ from hearth.schemas.failures import Code
 
 
 class Entry(NamedTuple):
-    """Where a command lives (`module:function` or `module:app` of `hearth.commands`) and its line in `--help`."""
+    """The place of a command (`module:function` or `module:app` of `hearth.commands`) and its line in `--help`."""
 
     place: str
     line: str
@@ -48,29 +48,33 @@ class Entry(NamedTuple):
 COMMANDS: dict[str, dict[str, Entry]] = {
     "Make a dataset": {
         "build": Entry("build:build", "Run the stages one after another and publish a dataset."),
-        "ingest": Entry("build:ingest", "Read descriptions and programs, from whatever they arrived in."),
+        "ingest": Entry("build:ingest", "Read descriptions and programs of any known form."),
         "validate": Entry("build:validate", "Check every program against the action grammar."),
         "sample": Entry("build:sample", "Place every program in a home where it runs."),
-        "augment": Entry("build:augment", "Perturb what programs rely on, run them, and repair what breaks."),
+        "augment": Entry("build:augment", "Perturb the preconditions of programs, run them, and repair the failures."),
         "render": Entry("build:render", "Picture programs while they run."),
         "publish": Entry("build:publish", "Write the tables, the catalog and the manifest."),
     },
     "Use a dataset": {
-        "query": Entry("query:query", "Ask a published dataset a question in SQL."),
-        "verify": Entry("verify:verify", "Check a dataset: hashes, counts, references, every execution run again."),
-        "diff": Entry("diff:diff", "Say what changed between two datasets, by table and by row."),
-        "export": Entry("export:export", "Write a dataset in another form: release, words, JSON Lines, code, graphs."),
+        "query": Entry("query:query", "Query a published dataset in SQL."),
+        "verify": Entry(
+            "verify:verify", "Check a dataset: hashes, counts, references, and a replay of every execution."
+        ),
+        "diff": Entry("diff:diff", "Print the differences between two datasets, by table and by row."),
+        "export": Entry(
+            "export:export", "Write a dataset in another form: release, text, JSON Lines, code, graphs, PDDL."
+        ),
         "plan": Entry("plan:plan", "Solve planning problems of a dataset, and run the plans."),
         "report": Entry("report:report", "Write a dataset as static HTML that needs no network."),
         "augmented": Entry("augmented:augmented", "Compare an augmented dataset with the thesis's, table 5.1."),
         "score": Entry("score:app", "Score predicted programs against references."),
-        "corpus": Entry("corpus:app", "What people wrote: statistics, synthesis, ratings, faults."),
+        "corpus": Entry("corpus:app", "Descriptions and programs: statistics, synthesis, ratings, error detection."),
     },
     "Try a program": {
-        "check": Entry("check:check", "Check program files and underline what is wrong."),
-        "run": Entry("run:run", "Run a program in a home and print what happens."),
-        "repair": Entry("repair:repair", "Perturb what a program relies on, and show how it is repaired."),
-        "sketch": Entry("sketch:sketch", "Tell the steps that are the activity from those due to the environment."),
+        "check": Entry("check:check", "Check program files and underline the faults."),
+        "run": Entry("run:run", "Run a program in a home and print the changes of each step."),
+        "repair": Entry("repair:repair", "Perturb the preconditions of a program, and show its repairs."),
+        "sketch": Entry("sketch:sketch", "Print the steps of a program that do not depend on the environment."),
         "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
     },
     "Make pictures": {
@@ -79,10 +83,12 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "render-sheet": Entry("render:sheet", "Draw every model, variant and state."),
     },
     "Look around": {
-        "kb": Entry("kb:app", "What is known of actions and objects."),
+        "kb": Entry("kb:app", "The knowledge of actions and objects."),
         "home": Entry("home:app", "The homes: list, show and check them."),
-        "environment": Entry("environment:app", "What programs need, and how realistic what is sampled is."),
-        "doctor": Entry("doctor:doctor", "Say what is there, what is missing and what it costs."),
+        "environment": Entry(
+            "environment:app", "Preconditions of programs, sampled environments, and their distribution."
+        ),
+        "doctor": Entry("doctor:doctor", "Check libraries, codecs, disk and data on this machine."),
     },
 }
 """Every command. To add one: a function in `commands/`, and a row here."""
@@ -107,7 +113,7 @@ def load(name: str) -> Any:
 
 
 class Commands(TyperGroup):
-    """The commands of `COMMANDS`, each loaded when it is called; turns bad input into messages and a status."""
+    """The commands of `COMMANDS`, each loaded when it is called; prints bad input and sets the status."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Every name, in the order of the table."""
@@ -118,7 +124,7 @@ class Commands(TyperGroup):
         return load(cmd_name) if cmd_name in COMMANDS_BY_NAME else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
-        """Find the command, or say which name was probably meant."""
+        """Find the command, or suggest the most similar name."""
         if args and args[0] not in COMMANDS_BY_NAME and not args[0].startswith("-"):
             import difflib
 
@@ -127,25 +133,25 @@ class Commands(TyperGroup):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """List the commands by what they are for, without importing any."""
+        """List the commands by section, without importing them."""
         for title, entries in COMMANDS.items():
             with formatter.section(title):
                 formatter.write_dl([(name, entry.line) for name, entry in entries.items()])
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Note whether the command was asked for JSON, so that an error can be JSON too."""
+        """Store whether --json was given, so that an error can be JSON too."""
         ctx.meta["hearth.json"] = "--json" in args
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; bad input is printed and ends with status 1, a name that nothing has with status 2."""
+        """Run the command; bad input is printed and ends with status 1, an unknown name with status 2."""
         try:
             return super().invoke(ctx)
         except (BrokenPipeError, typer.Abort, typer.Exit):
             raise
         except KeyboardInterrupt:
             kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
-            after = " What was complete is kept: the same command goes on from there." if kept else ""
+            after = " Complete parts are kept: the same command continues from there." if kept else ""
             print(f"Stopped.{after}", file=sys.stderr)
             raise typer.Exit(STOPPED) from None
         except Exception as error:
@@ -155,16 +161,16 @@ class Commands(TyperGroup):
 
 
 STOPPED = 128 + 2
-"""The status of what an interrupt (signal 2) from the keyboard ended, as shells have it."""
+"""The status after an interrupt (signal 2) from the keyboard, as in shells."""
 
 
 def _is_of_typer(error: Exception) -> bool:
-    """Typer shows its own errors: wrong usage, an option that makes no sense."""
+    """Whether Typer prints the error itself: wrong usage, an invalid option."""
     return hasattr(error, "format_message")
 
 
 def _fail(error: Exception, *, as_json: bool) -> NoReturn:
-    """Say what was wrong, once for all commands."""
+    """Print an error, for all commands."""
     from hearth.commands import output
 
     if isinstance(error, HearthError):
@@ -173,7 +179,9 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
         faults = (_of_the_machine(error),)
     else:
         what = f"{type(error).__name__}: {error}"
-        print(f"A fault of Hearth's, not of yours: {what}\n`--debug` before the command shows where.", file=sys.stderr)
+        print(
+            f"An error in Hearth, not in your input: {what}\n`--debug` before the command shows where.", file=sys.stderr
+        )
         raise typer.Exit(output.BAD_INPUT) from error
     if as_json:
         output.emit({"errors": faults})
@@ -184,11 +192,11 @@ def _fail(error: Exception, *, as_json: bool) -> NoReturn:
 
 
 NAMED = (Code.UNKNOWN_HOME, Code.UNKNOWN_ID, Code.UNSUPPORTED_FILE)
-"""What is wrong with a name that an option was given, when no file is at fault."""
+"""Faults of a name in an option, if they have no file."""
 
 
 def _of_the_machine(error: OSError) -> Diagnostic:
-    """A file that is not there or cannot be read, or a place that cannot be written."""
+    """The diagnostic of a file that is missing or can't be read, or of a folder that can't be written."""
     import errno
 
     name = str(error.filename or "")
@@ -221,15 +229,15 @@ def _options(
     version: bool = typer.Option(
         False, "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
     ),
-    debug: bool = typer.Option(False, "--debug", envvar="HEARTH_DEBUG", help="Show where in the code an error arose."),
+    debug: bool = typer.Option(False, "--debug", envvar="HEARTH_DEBUG", help="Show the traceback of an error."),
 ) -> None:
     """Hearth turns what people say they do at home into datasets that machines can run.
 
     \b
     Examples:
-      python cli.py check morning.txt        underline what is wrong in a program
+      python cli.py check morning.txt        underline the faults of a program
       python cli.py build --out data_out     make a dataset of the starter corpus
-      python cli.py COMMAND --help           what a command takes, with an example
+      python cli.py COMMAND --help           the options of a command, with an example
     """
 
 

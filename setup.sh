@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Sets up .venv with the locked versions: with uv if it is there, else with pip. Safe to run again.
+# Sets up .venv with the locked versions, with uv if installed, else with pip. It can be run again.
 # PYTHON=python3.12 ./setup.sh chooses the interpreter.
 set -euo pipefail
 cd "$(dirname "$0")"
 
 say() { printf '%s\n' "$*" >&2; }
 
-# Prints the first Python that fits: the one asked for, python3, or a versioned one.
+# Prints the first suitable Python: $PYTHON, python3, or a versioned one.
 find_python() {
     local candidate
     for candidate in ${PYTHON:-} python3 python3.14 python3.13 python3.12 python3.11; do
@@ -15,13 +15,13 @@ find_python() {
             return
         fi
     done
-    say "Hearth needs Python 3.11 to 3.14, and there is none. Debian, Ubuntu: apt-get install python3 python3-venv"
+    say "Hearth needs Python 3.11 to 3.14, which is not installed. Debian, Ubuntu: apt-get install python3 python3-venv"
     exit 1
 }
 
 can_install() { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; }
 
-# Installs system packages where that is allowed; otherwise fails, and the caller says what to do.
+# Installs system packages if allowed; otherwise fails, and the caller prints the command.
 apt_install() {
     can_install || return 1
     say "Installing $* with apt"
@@ -36,7 +36,7 @@ make_venv() {
     rm -rf .venv
     if command -v uv >/dev/null && uv venv -q --seed --python "$(command -v "$python")" .venv; then return; fi
     if "$python" -m venv .venv >/dev/null 2>&1; then return; fi
-    # Debian keeps venv's pip in a package of its own.
+    # On Debian the pip of venv is in a separate package.
     version=$("$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])')
     rm -rf .venv
     if apt_install "$version" && "$python" -m venv .venv; then return; fi
@@ -50,28 +50,28 @@ with_uv() {
         uv pip install -q --python .venv/bin/python "$@"
 }
 
-# Byte code is compiled when a module is first imported: most of these modules never are.
+# Byte code is compiled when a module is first imported; most of these modules are never imported.
 with_pip() { .venv/bin/python -m pip install -qq --no-compile --disable-pip-version-check "$@"; }
 
 install_packages() {
-    # An old pip takes twice as long as a new one, itself included; with uv, none of it matters.
+    # An old pip takes twice as long as a new one, including its upgrade; uv does not need it.
     command -v uv >/dev/null || with_pip --upgrade pip || true
     if with_uv --no-deps -r requirements.lock || with_pip --no-deps -r requirements.lock; then
         with_uv --no-deps --no-build-isolation -e . || with_pip --no-deps --no-build-isolation -e .
     else
-        say "The locked versions can't be had here; taking what fits pyproject.toml instead."
+        say "The locked versions can't be installed; installing versions allowed by pyproject.toml instead."
         with_uv -e '.[test]' || with_pip -e '.[test]'
     fi
 }
 
-# Only rendering needs these; all else works without.
+# Only rendering needs these; everything else works without them.
 install_libraries() {
     local lacking
     lacking=$(.venv/bin/python cli.py doctor --libraries | tr '\n' ' ')
     [ -n "$lacking" ] || return 0
     # shellcheck disable=SC2086
     if ! apt_install $lacking; then
-        say "Rendering needs system libraries that are not here; all else works. To add them:"
+        say "Rendering needs missing system libraries; everything else works. To install them:"
         say "    sudo apt-get install $lacking"
     fi
 }

@@ -1,4 +1,4 @@
-"""`augmented`: how does an augmented dataset compare with the thesis's?"""
+"""`augmented`: compares an augmented dataset with the thesis's."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _BAR = 40
 
 
 def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json: options.Json = False) -> None:
-    """Print table 5.1 of the thesis beside a dataset's own figures, and what augmenting has changed.
+    """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
 
-    Programs, lengths, nodes and edges; how long programs are before and after; which conditions their objects start in
-    (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home, of which there should be none.
+    Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the
+    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected).
 
     \b
     Example:
@@ -44,7 +44,7 @@ def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json:
     print("\nPrograms by length")
     output.table(("steps", "originals", "augmented"), [(name, before[name], after[name]) for name in before])
     for name, conditions in found["conditions"].items():
-        print(f"\nConditions of the start that name a {name.replace('_', ' ')}: before, and after augmenting")
+        print(f"\nConditions of the start that name a {name.replace('_', ' ')}: before and after augmenting")
         for condition, shares in conditions.items():
             for label, share in shares.items():
                 print(f"  {condition if label == 'before' else '':12} {label:7} {_bar(share)} {_percent(share)}")
@@ -57,11 +57,11 @@ def _published(folder: Path) -> Path:
 def _print_table(table: dict[str, Any]) -> None:
     rows = [
         (group, who, *("-" if value is None else value for value in row.values()))
-        for group, told in table.items()
-        for who, row in told.items()
+        for group, compared in table.items()
+        for who, row in compared.items()
     ]
     output.table(("programs", "", "how many", "length", "nodes", "edges"), rows)
-    print("The thesis's 1,387 and 27,284 add up to 28,671; it says 32,761.")
+    print("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
 
 
 def _bar(share: float) -> str:

@@ -1,4 +1,4 @@
-"""`build`, and each stage by its name."""
+"""`build`, and a command for each stage."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 Sources = Annotated[
     list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Files and folders; the embedded corpus if none.")
 ]
-Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Gets one folder a stage.")]
+Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="The folder for the output, one folder a stage.")]
 Jobs = Annotated[
     int,
     typer.Option(
         "--workers", "-j", metavar="N", min=0, callback=options.processes, help="Processes; 0 for one a core."
     ),
 ]
-Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on what is there.")]
+Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on existing output.")]
 InHomes = Annotated[
     list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")
 ]
 SomeHomes = Annotated[
-    list[str] | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours; or `all` of them.")
+    list[str] | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours, or `all`.")
 ]
-Rehearsed = Annotated[
+TriedSources = Annotated[
     list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Try these programs, and write nothing.")
 ]
 NodesWanted = Annotated[
@@ -40,20 +40,23 @@ NodesWanted = Annotated[
         "--nodes",
         metavar="N",
         min=1,
-        help="With SOURCE: environments of N nodes, 10 more or less: small homes are filled, large ones thinned.",
+        help="With SOURCE: environments of N nodes, within 10: small homes are filled, large ones thinned.",
     ),
 ]
 Salt = Annotated[
     str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
 ]
-Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Picture so many programs.")]
-Videos = Annotated[int, typer.Option("--videos", metavar="N", min=0, help="Film so many of them in motion.")]
+Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Number of programs to picture.")]
+Videos = Annotated[int, typer.Option("--videos", metavar="N", min=0, help="Number of them to film.")]
 Variants = Annotated[
     int,
     typer.Option("--per-program", "--variants", metavar="N", min=0, help="Perturbed environments for each execution."),
 ]
 Target = Annotated[
-    int, typer.Option("--target", metavar="N", min=0, help="Augmented programs wanted; 0 for all --per-program gives.")
+    int,
+    typer.Option(
+        "--target", metavar="N", min=0, help="Augmented programs in all; 0 for as many as --per-program gives."
+    ),
 ]
 HomesEach = Annotated[
     int,
@@ -61,21 +64,24 @@ HomesEach = Annotated[
 ]
 
 Tier = Annotated[
-    str, typer.Option("--tier", metavar="NAME", help="How much it holds: mini, full or frames; other options go first.")
+    str,
+    typer.Option(
+        "--tier", metavar="NAME", help="Size of the dataset: mini, full or frames; other options override it."
+    ),
 ]
 
 EngineName = Annotated[
-    str, typer.Option("--engine", metavar="NAME", help="What runs the partitions: local (processes here) or dask.")
+    str, typer.Option("--engine", metavar="NAME", help="Engine for the partitions: local (processes) or dask.")
 ]
 Scheduler = Annotated[
-    str, typer.Option("--scheduler", metavar="ADDRESS", help="With --engine dask: use the cluster that is there.")
+    str, typer.Option("--scheduler", metavar="ADDRESS", help="With --engine dask: use a running cluster.")
 ]
 TimeLimit = Annotated[
     float,
-    typer.Option("--time-limit", metavar="SECONDS", min=0, help="What one record may take in a stage; 0 for any time."),
+    typer.Option("--time-limit", metavar="SECONDS", min=0, help="Time limit of a record in a stage; 0 for none."),
 ]
 LogJson = Annotated[bool, typer.Option("--log-json", help="Progress as lines of JSON on stderr.")]
-Force = Annotated[bool, typer.Option("--force", help="Build even where the disk looks too small for it.")]
+Force = Annotated[bool, typer.Option("--force", help="Build even if the disk seems too small.")]
 
 _OUT = Path("data_out")
 _CODES = 4
@@ -110,10 +116,10 @@ def build(
 ) -> None:
     """Run the stages one after another and publish a dataset.
 
-    What a source is, is told by its content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, program
-    text, steps in words, JSON Lines, sketches, scene graphs, a dataset; packed or not. What did not change since the
-    last build is not done again, and a build that was stopped goes on where it was. Ends with what became of every
-    record. Folders may be URLs (s3://bucket/folder): see `pip install 'hearth[remote]'`.
+    Sources are recognised by content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, program text,
+    natural-language steps, JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only what
+    changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
+    (s3://bucket/folder), with `pip install 'hearth[remote]'`.
 
     \b
     Examples:
@@ -139,7 +145,7 @@ def ingest(
     strict: options.Strict = False,
     as_json: options.Json = False,
 ) -> None:
-    """Read descriptions and programs, from whatever they arrived in.
+    """Read descriptions and programs of any known form.
 
     \b
     Example:
@@ -167,7 +173,7 @@ def validate(
 
 def sample(
     context: typer.Context,
-    sources: Rehearsed = None,
+    sources: TriedSources = None,
     out: Out = _OUT,
     seed: options.Seed = 0,
     home: InHomes = None,
@@ -181,9 +187,9 @@ def sample(
 ) -> None:
     """Place every valid program in homes where it runs.
 
-    With a SOURCE nothing is written: its programs are tried in environments sampled from every home, and what becomes
-    of each pair of a program and a home is counted: ran; proven impossible, with the two steps or the fact that forbid
-    it; failed, with why.
+    With a SOURCE nothing is written: its programs are run in environments sampled from every home. Each pair of a
+    program and a home is counted as run; as impossible, with the steps or the fact that prove it; or as failed, with
+    the reason.
 
     \b
     Examples:
@@ -194,7 +200,7 @@ def sample(
     folder = next((Path(text) for text in homes or () if text != _ALL), None)
     if not sources:
         if size is not None or limit is not None:
-            raise typer.BadParameter("only for programs of a SOURCE, which are tried and not written",
+            raise typer.BadParameter("only with a SOURCE, whose programs are tried and not written",
                                      param_hint="--nodes, --limit")  # fmt: skip
         _run(context, "sample", {**context.params, "homes": folder})
         return
@@ -217,10 +223,10 @@ def augment(
     strict: options.Strict = False,
     as_json: options.Json = False,
 ) -> None:
-    """Perturb what programs rely on, run them, and repair what breaks.
+    """Perturb the preconditions of programs, run them, and repair the failures.
 
-    With --target, pairs are spread evenly over all executions, at most --per-program each. `--homes` takes a folder of
-    homes, or names of ours, separated by commas, to augment in; `all` by default.
+    With --target, pairs are spread evenly over all executions, at most --per-program each. `--homes` is a folder of
+    homes, or names of ours separated by commas; by default programs are augmented in `all` homes.
 
     \b
     Examples:
@@ -240,7 +246,7 @@ def augment(
 
 
 def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
-    """What stands after --homes: the folder, and names where it is none."""
+    """The values of --homes: a folder, and names of homes."""
     texts = [text for text in given or () if text != _ALL]
     folder = next((Path(text) for text in texts if Path(text).is_dir()), None)
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
@@ -277,7 +283,7 @@ def publish(
     strict: options.Strict = False,
     as_json: options.Json = False,
 ) -> None:
-    """Write the tables, the catalog and the manifest; what does not replay is refused.
+    """Write the tables, the catalog and the manifest; an execution that does not replay is refused.
 
     \b
     Example:
@@ -287,7 +293,7 @@ def publish(
 
 
 def _run(context: typer.Context, only: str | None, chosen: Mapping[str, Any] | None = None) -> None:
-    """Build as a command's options say, or as `chosen` does instead, and print what became of the records."""
+    """Build by the options of a command, or by `chosen`, and print the counts of records."""
     given = context.params
     found = _built(only, chosen or given)
     if given["as_json"]:
@@ -307,14 +313,14 @@ def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
 
 
 _NAMES = {"homes": "homes_folder", "kb": "kb_folder", "home": "homes"}
-"""Options that are called otherwise in `Settings`."""
+"""Options with another name in `Settings`."""
 
 _OTHERS = frozenset({"sources", "out", "only", "tier", "size", "log_json", "strict", "as_json"})
-"""Options that are none of the settings."""
+"""Options that are not settings."""
 
 
 def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of a build by what was chosen for the options of a command."""
+    """The settings of a build, from the options of a command."""
     found = {_NAMES.get(name, name): value for name, value in chosen.items() if name not in _OTHERS}
     folders = {name: str(found[name]) for name in ("homes_folder", "kb_folder") if found.get(name) is not None}
     return {**found, **folders, **({"homes": tuple(found["homes"] or ())} if "homes" in found else {})}
@@ -326,7 +332,7 @@ def _print(found: Funnel, out: Path, *, whole: bool) -> None:
         for name, counts in found.stages.items()
     ]
     sys.stdout.write("\n")
-    output.table(("stage", "records in", "went on", "rejected", "rows out", "why rejected"), rows)
+    output.table(("stage", "records in", "passed", "rejected", "rows out", "reasons"), rows)
     if whole and found.dataset:
         command = Path(sys.argv[0]).name
         program = "python cli.py" if command == "cli.py" else "hearth"

@@ -1,4 +1,4 @@
-"""`check`: are these programs well written?"""
+"""`check`: finds the faults of program files."""
 
 from __future__ import annotations
 
@@ -20,19 +20,17 @@ if TYPE_CHECKING:
     from hearth.schemas.program import Program
 
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Program files; `-` reads standard input.")]
-Affordances = Annotated[
-    bool, typer.Option("--affordances", help="Report objects that an action is never done to, as well.")
-]
+Affordances = Annotated[bool, typer.Option("--affordances", help="Also report objects that do not afford an action.")]
 
 
-Lint = Annotated[bool, typer.Option("--lint", help="Warn as well of what is well written and can't be meant.")]
-Fix = Annotated[bool, typer.Option("--fix", help="Make the safe corrections in the files, and show them as a diff.")]
-DryRun = Annotated[bool, typer.Option("--diff", help="Show what --fix would do, and change nothing.")]
+Lint = Annotated[bool, typer.Option("--lint", help="Also warn of contradictions and missing steps.")]
+Fix = Annotated[bool, typer.Option("--fix", help="Make the safe corrections in the files and show a diff.")]
+DryRun = Annotated[bool, typer.Option("--diff", help="Show the diff of --fix without changing the files.")]
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was found in one file; warnings do not count as faults."""
+    """The counts, faults and warnings of one file."""
 
     file: str
     programs: int
@@ -51,11 +49,11 @@ def check(
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Check program files and underline what is wrong.
+    """Check program files and underline the faults.
 
-    Every fault of every file is reported at once: lines that are no steps, instances that are no numbers, actions and
-    objects nobody knows, a wrong number of objects. A file may hold several programs. The status is 1 if there was
-    any fault. With --lint: things switched on twice, things used that nobody went to, programs that do nothing.
+    All faults of all files are reported: lines that are not steps, instances that are not numbers, unknown actions and
+    objects, a wrong number of objects. A file may hold several programs. The status is 1 if there is a fault. With
+    --lint: states set twice, objects used without a walk to them, programs without an effect.
 
     \b
     Examples:
@@ -76,7 +74,7 @@ def check(
 
 
 def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
-    """Correct one file where it can be read as text; what it would be is compared with what it is."""
+    """Correct one file if it is text; the difference as a diff."""
     from hearth.pipelines.checks import fixes
     from hearth.storage.files import write_bytes
 
@@ -92,7 +90,7 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
 
 
 def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False, lint: bool = False) -> Checked:
-    """Read one file and find every fault in it; a file that can't be read is a fault too."""
+    """Read one file and find all its faults; a file that can't be read is a fault too."""
     name = "standard input" if path == Path("-") else str(path)
     try:
         text = decode(sys.stdin.buffer.read() if path == Path("-") else path.read_bytes(), name)
@@ -107,7 +105,7 @@ def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False, l
 def check_text(
     text: str, knowledge: Knowledge, file: str = "", *, affordances: bool = False, lint: bool = False
 ) -> Checked:
-    """Find every fault of a text that holds programs: of syntax, names and arity, ordered by line."""
+    """Find all faults of a text of programs: of syntax, names and arity, ordered by line."""
     from hearth.kb import grammar
 
     parsed = parse_programs(text, file)
@@ -144,8 +142,8 @@ def _print(checked: list[Checked], faults: int) -> None:
         output.report(each.faults, sys.stdout)
         output.report(each.warnings, sys.stdout, kind="warning")
     programs, steps = sum(each.programs for each in checked), sum(each.steps for each in checked)
-    said = output.counted(faults, "fault") if faults else "no faults"
+    result = output.counted(faults, "fault") if faults else "no faults"
     warnings = sum(len(each.warnings) for each in checked)
-    said += f", {output.counted(warnings, 'warning')}" if warnings else ""
+    result += f", {output.counted(warnings, 'warning')}" if warnings else ""
     counts = [output.counted(len(checked), "file"), output.counted(programs, "program"), output.counted(steps, "step")]
-    print(f"{', '.join(counts)}: {said}")
+    print(f"{', '.join(counts)}: {result}")

@@ -1,4 +1,4 @@
-"""`corpus`: what a dataset's words and programs look like, more of them, and how well faults in them are found."""
+"""`corpus`: statistics, synthesis, ratings and error detection of descriptions and programs."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from hearth.analysis.corpus_statistics import Corpus, Similarities
     from hearth.schemas.program import Program
 
-app = typer.Typer(help="What people say and write: statistics, synthesis, ratings, and how well faults are found.")
+app = typer.Typer(help="Descriptions and programs: statistics, synthesis, ratings and error detection.")
 
-Count = Annotated[int, typer.Argument(metavar="[N]", min=1, help="How many programs.")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Where to; standard output if left out.")]
+Count = Annotated[int, typer.Argument(metavar="[N]", min=1, help="Number of programs.")]
+Out = Annotated[
+    Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file to write; standard output if omitted.")
+]
 
 
 @app.command()
@@ -25,9 +27,9 @@ def synthesize(
     count: Count = 5_193,
     seed: options.Seed = 0,
     actions: Annotated[
-        str, typer.Option("--actions", metavar="animated|all", help="The 14 that the thesis animates, or all.")
+        str, typer.Option("--actions", metavar="animated|all", help="The 14 actions that the thesis animates, or all.")
     ] = "animated",
-    told: Annotated[int, typer.Option("--descriptions", metavar="N", min=1, help="Ways to tell each program.")] = 2,
+    descriptions: Annotated[int, typer.Option(metavar="N", min=1, help="Descriptions of each program.")] = 2,
     grammar: Annotated[
         Path | None, typer.Option("--grammar", metavar="FILE", help="A grammar instead of ours.")
     ] = None,
@@ -41,7 +43,7 @@ def synthesize(
     Examples:
       python cli.py corpus synthesize --out synthetic.jsonl
       python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
-      python cli.py sample synthetic.jsonl   (runs every one of them in every home)
+      python cli.py sample synthetic.jsonl   (runs each of them in every home)
     """
     import orjson
 
@@ -51,7 +53,7 @@ def synthesize(
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
     weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
-    drawn = synthesis.synthesize(count, seed, weights, told)
+    drawn = synthesis.synthesize(count, seed, weights, descriptions)
     lines = (orjson.dumps(synthesis.record(one, number, seed)) + b"\n" for number, one in enumerate(drawn, 1))
     if out is None:
         sys.stdout.buffer.writelines(lines)
@@ -71,15 +73,16 @@ Sources = Annotated[
 def stats(
     sources: Sources = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Gets the figures and the numbers as Parquet.")
+        Path | None,
+        typer.Option("--out", "-o", metavar="DIR", help="The folder for the figures and for the numbers as Parquet."),
     ] = None,
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Say what a corpus looks like, beside the thesis's numbers: funnel, variety, diversity, averages, missing actions.
+    """Print statistics of a corpus beside the thesis's: funnel, variety, diversity, averages, missing actions.
 
-    With --out: histograms of actions and objects, the funnel, the similarity matrix of activities and which objects
-    are used together as PNG and SVG, and all numbers as Parquet.
+    With --out: histograms of actions and objects, the funnel, the similarity matrix of activities and the
+    co-occurrence of objects as PNG and SVG, and all numbers as Parquet.
 
     \b
     Examples:
@@ -124,34 +127,34 @@ def _print_stats(found: Corpus, alike: Similarities) -> None:
 
     for title, ours, thesis in (
         ("What became of the descriptions", numbers.funnel(found), numbers.THESIS_FUNNEL),
-        ("How various they are", numbers.variety(found), numbers.THESIS_VARIETY),
+        ("Variety", numbers.variety(found), numbers.THESIS_VARIETY),
     ):
-        _say(title, ("", "here", "thesis 3.4"), [(name, ours[name], theirs) for name, theirs in thesis.items()])
+        _print(title, ("", "here", "thesis 3.4"), [(name, ours[name], theirs) for name, theirs in thesis.items()])
     table = [("here", *numbers.averages(found)), *((name, *row) for name, row in numbers.THESIS_AVERAGES.items())]
-    _say("Averages (table 4.1)", ("dataset", "programs", "steps", "sentences", "words"), table)
+    _print("Averages (table 4.1)", ("dataset", "programs", "steps", "sentences", "words"), table)
     compared = [
         (title, *((own.programs, own.lcs, own.normalised) if own else (0, None, None)), *row)
         for title, row, own in numbers.beside_thesis(alike.activities)
     ]
     columns = ("activity", "programs", "LCS", "norm. LCS", "thesis: programs", "LCS", "norm. LCS")
-    _say("Diversity of programs (table 3.1)", columns, compared)
+    _print("Diversity of programs (table 3.1)", columns, compared)
     common = [(one.title, one.programs, one.lcs, one.normalised) for one in alike.activities[:8] if one.programs > 1]
-    _say("The commonest activities", ("activity", "programs", "LCS", "norm. LCS"), common)
+    _print("The commonest activities", ("activity", "programs", "LCS", "norm. LCS"), common)
     for title, counts in (("Refused", found.refused), ("Warnings", found.warnings), ("Special blocks", found.specials)):
         if counts:
-            _say(title, ("", "times"), [*counts.most_common(12)])
+            _print(title, ("", "times"), [*counts.most_common(12)])
 
 
 @app.command()
 def dirt(
     key: Annotated[Path, typer.Argument(metavar="KEY", help="A CSV of the faulty records: HITId, fault.")],
     sources: Annotated[
-        list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="What it is the key of; our corpus if none.")
+        list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="The sources of the key; our corpus if none.")
     ] = None,
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Say how well faults are found in a corpus whose faults are known: precision and recall.
+    """Measure the error detection in a corpus whose faults are known: precision and recall.
 
     \b
     Example:
@@ -164,10 +167,10 @@ def dirt(
         output.emit(report)
         return
     rows = [(one.fault, one.labelled, one.found, one.recall, _codes(one.codes)) for one in report.scores]
-    _say("Found, by kind of fault", ("fault", "labelled", "found", "recall", "as (! refused)"), rows)
-    _say("Found where the key says nothing", ("as", "records"), [*report.false])
+    _print("Found, by kind of fault", ("fault", "labelled", "found", "recall", "as (! refused)"), rows)
+    _print("Found in records that are not in the key", ("as", "records"), [*report.false])
     total = [("all findings", report.precision, report.recall), ("refusals", report.rejected_precision, None)]
-    _say("Altogether", ("", "precision", "recall"), total)
+    _print("Altogether", ("", "precision", "recall"), total)
 
 
 def _codes(codes: tuple[tuple[str, int], ...]) -> str:
@@ -176,14 +179,14 @@ def _codes(codes: tuple[tuple[str, int], ...]) -> str:
 
 @app.command()
 def fuzz(
-    seconds: Annotated[float, typer.Option("--seconds", metavar="S", min=0, help="How long to go on.")] = 300,
+    seconds: Annotated[float, typer.Option("--seconds", metavar="S", min=0, help="Time to run.")] = 300,
     seed: options.Seed = 0,
-    most: Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="At most so many cases.")] = None,
+    most: Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="At most N cases.")] = None,
     as_json: options.Json = False,
 ) -> None:
-    """Give every reader mutated input; the status is 1 if any of it made a traceback or vanished.
+    """Test every reader with mutated input; the status is 1 if a record caused a traceback or was lost.
 
-    One line a reader: files, files of which nothing could be read, the records of the others, and what became of them.
+    Prints a line for each reader: files, files refused whole, and the records of the others by outcome.
 
     \b
     Example:
@@ -202,8 +205,8 @@ def fuzz(
              one.tracebacks, round(1000 * one.longest, 1))
             for one in report.table()
         ]  # fmt: skip
-        _say("What became of mutated input", columns, rows)
-        _say("Why refused", ("code", "times"), [*report.codes.most_common()])
+        _print("Mutated input by reader", columns, rows)
+        _print("Reasons of refusals", ("code", "times"), [*report.codes.most_common()])
         for crash in report.crashes[:20]:
             print(crash)
     output.status(sum(not one.adds_up or one.tracebacks for one in report.table()), strict=True)
@@ -212,13 +215,13 @@ def fuzz(
 @app.command()
 def sheet(
     sources: Sources = None,
-    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="How many programs.")] = 100,
-    raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Rows for so many raters.")] = 5,
+    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Number of programs.")] = 100,
+    raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Number of raters.")] = 5,
     seed: options.Seed = 0,
     out: Out = None,
     as_json: options.Json = False,
 ) -> None:
-    """Write a sheet on which people rate how complete programs are (thesis 3.4.1).
+    """Write a sheet on which people rate the completeness of programs (thesis 3.4.1).
 
     \b
     Example:
@@ -231,8 +234,8 @@ def sheet(
     text = ratings.sheet(drawn, raters)
     if out is not None:
         write_bytes(out, text.encode())
-    said = text.removesuffix("\n") if out is None else f"{out}: ratings are 1, 2 or 3"
-    output.say(said, {"programs": [name for name, _ in drawn], "raters": raters, "file": out}, as_json)
+    message = text.removesuffix("\n") if out is None else f"{out}: ratings are 1, 2 or 3"
+    output.say(message, {"programs": [name for name, _ in drawn], "raters": raters, "file": out}, as_json)
 
 
 def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str, Program]]:
@@ -249,13 +252,15 @@ def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str,
 @app.command()
 def completeness(
     sources: Sources = None,
-    sheets: Annotated[list[Path] | None, typer.Option("--sheet", metavar="FILE", help="Filled in by raters.")] = None,
-    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Estimate for so many.")] = 100,
-    home: Annotated[str, typer.Option("--home", metavar="NAME", help="The home to try them in.")] = "maple",
+    sheets: Annotated[
+        list[Path] | None, typer.Option("--sheet", metavar="FILE", help="A sheet filled in by raters.")
+    ] = None,
+    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Number of programs to estimate.")] = 100,
+    home: Annotated[str, typer.Option("--home", metavar="NAME", help="The home to run them in.")] = "maple",
     seed: options.Seed = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Estimate how complete programs are from what repairing has to insert, beside raters and the thesis's 64/28/8%.
+    """Estimate the completeness of programs by the steps that repairs insert, beside raters and the thesis's 64/28/8%.
 
     \b
     Examples:
@@ -277,9 +282,9 @@ def completeness(
     if as_json:
         output.emit({"rows": table, "agreement": agree, "estimates": {k: int(v) for k, v in estimated.items()}})
         return
-    _say("How complete programs are", ("", "programs", *ratings.SAID.values()), table)
+    _print("Completeness of programs", ("", "programs", *ratings.SAID.values()), table)
     if agree is not None:
-        print(f"Estimate and median agree on {agree:.0%} of the programs that both speak of.")
+        print(f"Estimate and median agree on {agree:.0%} of the programs that have both.")
 
 
 def _shares(classes: dict[str, Any]) -> list[float]:
@@ -288,6 +293,6 @@ def _shares(classes: dict[str, Any]) -> list[float]:
     return [*ratings.shares(classes.values()).values()]
 
 
-def _say(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
+def _print(title: str, columns: tuple[str, ...], rows: list[tuple[Any, ...]]) -> None:
     output.table(columns, rows, title)
     print()

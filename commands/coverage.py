@@ -1,4 +1,4 @@
-"""`sample SOURCE`: does every program run in every home, and if not, why?"""
+"""`sample SOURCE`: runs every program in every home and reports the failures."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | None, limit: int | None, strict: bool,
          as_json: bool) -> None:  # fmt: skip
-    """Rehearse and print; with `strict` the status is 1 if a pair ran neither and is not proven impossible."""
+    """Run and print; with `strict` the status is 1 if a pair failed that is not proven impossible."""
     from itertools import islice
 
     from hearth.analysis.coverage import rehearse, scripts
@@ -31,8 +31,8 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     with bar("programs tried") as seen:
         found = rehearse(watched(programs, seen, limit), homes, homes.names(), settings["seed"], wanted)
     if as_json:
-        told = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
-        output.emit({**found.summary(), **told})
+        pairs = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
+        output.emit({**found.summary(), **pairs})
     else:
         figures = {**found.summary(), "homes": len(found.homes)}
         figures["failures_by_code"] = ", ".join(f"{k} {n:,}" for k, n in figures["failures_by_code"].items()) or "none"
@@ -48,16 +48,16 @@ def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
 
     for script, where, failure in found.impossible:
         steps = at_odds(script.program, homes.knowledge) if where == ANY_HOME else (failure.tick,)
-        yield _told(script, where, failure, steps)
+        yield _row(script, where, failure, steps)
 
 
 def _failures(found: Rehearsal) -> Iterator[dict[str, Any]]:
     for script, home, failure in found.failed:
-        yield _told(script, home, failure, (min(failure.tick, len(script.program.steps) - 1),))
+        yield _row(script, home, failure, (min(failure.tick, len(script.program.steps) - 1),))
 
 
-def _told(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
-    """Why a program does not run, with the lines of the steps that are at odds."""
+def _row(script: Script, home: str, failure: Failure, steps: Sequence[int]) -> dict[str, Any]:
+    """The reason why a program does not run, with the lines of the steps that contradict each other."""
     return {
         "program": script.program_id,
         "place": script.place,

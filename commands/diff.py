@@ -1,4 +1,4 @@
-"""`diff`: what changed between two datasets."""
+"""`diff`: the differences between two datasets."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 First = Annotated[Path, typer.Argument(metavar="A", help="A dataset, or a build's folder.")]
 Second = Annotated[Path, typer.Argument(metavar="B", help="Another.")]
-Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Tell at most N rows a table and kind; 0: all.")]
+Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Print at most N rows a table and kind; 0: all.")]
 
 
 def diff(
     first: First, second: Second, rows: Rows = 5, strict: options.Strict = False, as_json: options.Json = False
 ) -> None:
-    """Say what changed between two datasets, by table and by row.
+    """Print the differences between two datasets, by table and by row.
 
     \b
     Example:

@@ -1,4 +1,4 @@
-"""`doctor`: what is there, what is missing, and what its absence costs."""
+"""`doctor`: checks libraries, codecs, disk and data, with the consequence of each that is missing."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ LIBRARIES = {
     "libEGL.so.1": "libegl1",
     "libX11.so.6": "libx11-6",
 }
-"""What open3d links at load, and the Debian and Ubuntu packages that hold it."""
+"""Libraries that open3d links at load, and their Debian and Ubuntu packages."""
 
 CODECS = {"mp4v": ".mp4", "VP80": ".webm", "FFV1": ".mkv"}
-"""Video codecs that rendering writes: for players, for browsers, without loss."""
+"""Video codecs of rendering: for players, for browsers, lossless."""
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 ROOMY = 2 * 2**30
-"""Bytes a full build takes with its pictures."""
+"""Bytes of a full build with its pictures."""
 
 OK, MISSING, BROKEN = "ok", "missing", "broken"
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing Hearth can use.
+    """The state of one requirement of Hearth.
 
     Attributes:
         what: its name.
-        state: `ok`; `missing`, where something optional lacks; `broken`, where Hearth can't work without it.
-        found: its version, place or amount; or why it does not work.
-        cost: what does not work without it, and the remedy.
+        state: `ok`; `missing`, if it is optional; `broken`, if Hearth can't work without it.
+        found: its version, path or amount; or the reason why it does not work.
+        cost: the consequence of its absence, and the remedy.
     """
 
     what: str
@@ -65,7 +65,7 @@ def python() -> Finding:
 
 
 def packages() -> Finding:
-    """The libraries Hearth always needs, by their metadata; nothing is imported."""
+    """The libraries that Hearth always needs, by their metadata, without importing them."""
     try:
         wanted = importlib.metadata.requires("hearth") or []
     except importlib.metadata.PackageNotFoundError:
@@ -86,7 +86,7 @@ def _installed(name: str) -> bool:
 
 
 def missing_libraries() -> list[str]:
-    """The Debian packages that open3d needs and this machine lacks."""
+    """The Debian packages of open3d's libraries that are missing on this machine."""
     return [package for library, package in LIBRARIES.items() if not _loads(library)]
 
 
@@ -99,7 +99,7 @@ def _loads(library: str) -> bool:
 
 
 def rays() -> Finding:
-    """Whether a ray can be cast: open3d's scene, which stands on Embree."""
+    """Ray casting, by open3d with Embree."""
     cost = "no pictures; all else works"
     if importlib.util.find_spec("open3d") is None:
         return Finding("rays (open3d)", MISSING, "not installed", f"{cost}; x86-64 Linux: pip install open3d-cpu")
@@ -113,7 +113,11 @@ def rays() -> Finding:
 
 
 def _cast_one_ray() -> str:
-    """Cast a ray at a box a metre away; the library's version when it hits."""
+    """Cast a ray at a box a metre away, and return the library's version.
+
+    Raises:
+        ValueError: the ray hits at another distance.
+    """
     import numpy as np
     import open3d
 
@@ -127,7 +131,7 @@ def _cast_one_ray() -> str:
 
 
 def codecs() -> Finding:
-    """The video codecs that can really be opened."""
+    """The video codecs that OpenCV can open."""
     if importlib.util.find_spec("cv2") is None:
         return Finding("video (OpenCV)", BROKEN, "not installed", "no pictures, no video: run `make setup`")
     import cv2
@@ -149,7 +153,7 @@ def _opens(codec: str, path: Path) -> bool:
 
 
 def browser() -> Finding:
-    """A browser that can be driven without a display."""
+    """A browser that runs without a display."""
     place = next(filter(None, map(shutil.which, BROWSERS)), None)
     if place:
         return Finding("browser", OK, place)
@@ -157,7 +161,7 @@ def browser() -> Finding:
 
 
 def fonts() -> Finding:
-    """Fonts of the system; figures bring their own."""
+    """Fonts of the system; figures have their own."""
     folders = (Path("/usr/share/fonts"), Path("/usr/local/share/fonts"), Path.home() / ".local/share/fonts")
     count = sum(1 for folder in folders if folder.is_dir() for file in folder.rglob("*") if file.suffix in _FONTS)
     if count:
@@ -169,14 +173,14 @@ _FONTS = {".ttf", ".otf", ".ttc", ".pfb"}
 
 
 def disk() -> Finding:
-    """Room where datasets are written."""
+    """Free disk space in the working directory."""
     free = shutil.disk_usage(Path.cwd()).free
     cost = "" if free > ROOMY else f"a full build with pictures takes {ROOMY / 2**30:.0f} GB"
     return Finding("disk", OK if free > ROOMY else MISSING, f"{free / 2**30:.1f} GB free here", cost)
 
 
 def cores() -> Finding:
-    """Processors this process may use, and memory."""
+    """The processors of this process, and the memory."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
     cost = "" if count > 1 else "stages run one record after another"
@@ -184,7 +188,7 @@ def cores() -> Finding:
 
 
 def real_data() -> Finding:
-    """The original release's sample, which some tests and benchmarks read when it is there."""
+    """The sample of the original release, which some tests and benchmarks read."""
     root = Path(__file__).resolve().parent.parent
     folder = Path(os.environ.get("HEARTH_REAL_DATA") or root.parent / "shared/real")
     if folder.is_dir():
@@ -202,17 +206,17 @@ def uv() -> Finding:
 CHECKS: tuple[Callable[[], Finding], ...] = (
     python, packages, rays, codecs, browser, fonts, disk, cores, real_data, uv,
 )  # fmt: skip
-"""Everything that is looked at, in the order it is printed."""
+"""All checks, in the order of the table."""
 
 Libraries = Annotated[
-    bool, typer.Option("--libraries", help="Only print the system packages that rendering lacks, one a line.")
+    bool, typer.Option("--libraries", help="Only print the missing system packages of rendering, one a line.")
 ]
 
 
 def doctor(libraries: Libraries = False, as_json: options.Json = False) -> None:
-    """Say what is there, what is missing and what it costs.
+    """Check libraries, codecs, disk and data, and print the consequence of each that is missing.
 
-    The status is 1 only if something is missing that nothing works without.
+    The status is 1 only if Hearth can't work without it.
 
     \b
     Example:
@@ -222,11 +226,11 @@ def doctor(libraries: Libraries = False, as_json: options.Json = False) -> None:
         lacking = missing_libraries() if importlib.util.find_spec("open3d") else []
         output.emit(lacking) if as_json else print("\n".join(lacking), end="\n" if lacking else "")
         return
-    findings = [look() for look in CHECKS]
+    findings = [check() for check in CHECKS]
     broken = sum(finding.state == BROKEN for finding in findings)
     if as_json:
         output.emit({"findings": findings, "broken": broken})
     else:
         rows = [(each.what, each.state, each.found, each.cost) for each in findings]
-        output.table(("what", "", "found", "what it costs, and the remedy"), rows)
+        output.table(("what", "", "found", "consequence and remedy"), rows)
     output.status(broken, strict=True)

@@ -1,4 +1,4 @@
-"""`environment`: what programs need, environments for them, and how realistic and varied those are."""
+"""`environment`: preconditions of programs, sampled environments, and their distribution."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="What programs need of a home, and how realistic and varied sampled environments are.",
+    help="Preconditions of programs, sampled environments, and their distribution.",
 )
 
-Names = Annotated[list[str] | None, typer.Option("--home", metavar="NAME", help="In this home; all of them if none.")]
+Names = Annotated[list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; in all if none.")]
 
 
 @app.command()
 def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Json = False) -> None:
-    """What a program needs at its start, step by step, beside what the release's own rules would name.
+    """Print the preconditions of a program, step by step, beside those of the release's rules.
 
     \b
     Example:
@@ -56,7 +56,7 @@ def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Js
         output.emit({"conditions": ours, "release_rules": theirs})
         return
     output.table(("step", "condition", "because"), [
-        (o["step"], o["condition"], "the step needs it" if o["needed"] else "its author takes it for granted")
+        (o["step"], o["condition"], "the step needs it" if o["needed"] else "it is usual")
         for o in ours])  # fmt: skip
     print()
     output.table(("by the release's rules", "among ours"), [(t["condition"], t["why"] or "yes") for t in theirs])
@@ -64,10 +64,10 @@ def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Js
 
 @app.command()
 def rules(source: options.Source, limit: options.Limit = None, as_json: options.Json = False) -> None:
-    """Over all programs: the conditions that the release's rules name, which are ours, and why the others are not.
+    """Compare the preconditions of all programs with those of the release's rules, by kind.
 
-    `not needed`: every step runs without it. `refused`: with it, a step would fail. `missed`: ours alone.
-    `environment conditions` shows both for one program, step by step.
+    `not needed`: every step runs without it. `refused`: a step fails with it. `missed`: only ours.
+    `environment conditions` compares them for one program, step by step.
 
     \b
     Example:
@@ -79,38 +79,40 @@ def rules(source: options.Source, limit: options.Limit = None, as_json: options.
     from hearth.analysis.coverage import scripts
 
     known = inputs.read_knowledge(None)
-    told = agreement(islice(scripts([str(source)], known), limit), known)
+    found = agreement(islice(scripts([str(source)], known), limit), known)
     if as_json:
-        output.emit(told)
+        output.emit(found)
         return
-    rows = told["conditions"]
+    rows = found["conditions"]
     output.table(tuple(name.replace("_", " ") for name in rows[0]) if rows else ("condition",),
                  [tuple(row.values()) for row in rows])  # fmt: skip
-    print(f"{told['programs']} programs, {told['impossible']} impossible")
+    print(f"{found['programs']} programs, {found['impossible']} impossible")
 
 
 @app.command("sample")
 def sample_one(
     file: Annotated[
-        Path | None, typer.Argument(metavar="[FILE]", help="A program that is to run there; `-` reads standard input.")
+        Path | None, typer.Argument(metavar="[FILE]", help="A program that can run there; `-` reads standard input.")
     ] = None,
     goal: Annotated[
         list[str] | None,
-        typer.Option("--goal", metavar="WHAT", help="What is not so yet, as in `ON(plate, kitchen_table): 3`."),
+        typer.Option("--goal", metavar="WHAT", help="A goal that is not met, as in `ON(plate, kitchen_table): 3`."),
     ] = None,
     home: options.HomeName = "maple",
     homes: options.Homes = None,
     kb: options.Kb = None,
     nodes: Annotated[
-        int | None, typer.Option("--nodes", metavar="N", min=1, help="About so many nodes; large homes are thinned.")
+        int | None, typer.Option("--nodes", metavar="N", min=1, help="About N nodes; large homes are thinned.")
     ] = None,
     seed: options.Seed = 0,
-    out: Annotated[Path | None, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE", help="The file for the scene graph, .json.")
+    ] = None,
     as_json: options.Json = False,
 ) -> None:
-    """Draw one environment: for a program, for a goal that can be reached and is not met, or for nothing.
+    """Sample one environment: for a program, for a goal that can be reached and is not met, or for neither.
 
-    A goal counts up to nine things of a class; --goal may be given several times.
+    A goal counts up to nine objects of a class; --goal may be given several times.
 
     \b
     Examples:
@@ -128,29 +130,31 @@ def sample_one(
     graph = drawn.world.graph()
     if out is not None:
         exporting.write_release(graph, out)
-    told = {"home": home, "seed": seed, "nodes": len(graph.nodes), "edges": len(graph.edges), "file": out, **drawn.told}
+    nodes_found, edges = len(graph.nodes), len(graph.edges)
     if as_json:
-        output.emit(told)
+        output.emit({"home": home, "seed": seed, "nodes": nodes_found, "edges": edges, "file": out, **drawn.facts})
         return
-    print(f"{told['nodes']:,} nodes, {told['edges']:,} edges" + (f"; {out}" if out else ""))
+    print(f"{nodes_found:,} nodes, {edges:,} edges" + (f"; {out}" if out else ""))
     for name in ("objects", "conditions", "goal"):
-        output.records(drawn.told.get(name) or ())
+        output.records(drawn.facts.get(name) or ())
 
 
 @app.command()
 def realism(
     source: options.Source,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Gets two heat maps, as SVG.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The folder for two heat maps, as SVG.")
+    ] = None,
     home: Names = None,
     homes: options.Homes = None,
     seed: options.Seed = 0,
     limit: options.Limit = None,
     as_json: options.Json = False,
 ) -> None:
-    """Where sampled objects are, beside where a release's stored start graphs have them (figure B-4), and their states.
+    """Compare the places and states of sampled objects with those of a release's stored start graphs (figure B-4).
 
-    The distance of two distributions is 0 when they are alike and 1 when they have nothing in common. The release
-    leaves most things that it adds on and in nothing, so they are compared without those, too.
+    The distance of two distributions is 0 if they are equal and 1 if they are disjoint. The release places most added
+    objects neither on nor in anything, so the distance is also given without those objects.
 
     \b
     Example:
@@ -167,14 +171,14 @@ def realism(
         (out / "release.svg").write_text(report.heat_map(theirs, "Start graphs of the release"), encoding="utf-8")
         (out / "sampled.svg").write_text(report.heat_map(ours, "Sampled environments"), encoding="utf-8")
     held = report.distances(report.held(theirs), report.held(ours))
-    told = {"places": report.overall(places), "places_held": report.overall(held), "states": report.overall(states)}
+    means = {"places": report.overall(places), "places_held": report.overall(held), "states": report.overall(states)}
     if as_json:
-        output.emit({**told, "places_by_class": places, "states_by_class": states, "files": out})
+        output.emit({**means, "places_by_class": places, "states_by_class": states, "files": out})
         return
     for what, by_class in (("places", places), ("states", states)):
         output.table((what, "distance", "in the release", "sampled"), [(k, *row) for k, row in by_class.items()])
-        print(f"{what}: {told[what]} on average\n")
-    print(f"places of what is on or in something in both: {told['places_held']} on average")
+        print(f"{what}: {means[what]} on average\n")
+    print(f"places of objects on or in something in both: {means['places_held']} on average")
 
 
 @app.command()
@@ -182,11 +186,13 @@ def diversity(
     file: options.Program,
     home: options.HomeName = "maple",
     homes: options.Homes = None,
-    samples: Annotated[int, typer.Option("--samples", metavar="N", min=1, help="Environments drawn.")] = 1000,
+    samples: Annotated[
+        int, typer.Option("--samples", metavar="N", min=1, help="Number of environments to sample.")
+    ] = 1000,
     seed: options.Seed = 0,
     as_json: options.Json = False,
 ) -> None:
-    """How many different environments there are among so many samples of one program.
+    """Count the different environments among several samples for one program.
 
     \b
     Example:
@@ -196,27 +202,27 @@ def diversity(
 
     found = _homes([home], homes)
     found.names()
-    told = report.diversity(inputs.read_program(file, found.knowledge), found, home, samples, seed)
+    figures = report.diversity(inputs.read_program(file, found.knowledge), found, home, samples, seed)
     if as_json:
-        output.emit({"home": home, **told})
+        output.emit({"home": home, **figures})
     else:
-        output.figures({name: str(value) for name, value in told.items()})
+        output.figures({name: str(value) for name, value in figures.items()})
 
 
 @app.command()
 def preconditions(
     source: options.Source,
     classes: Annotated[
-        list[str] | None, typer.Option("--class", metavar="NAME", help="cup and sauce_pan if none.")
+        list[str] | None, typer.Option("--class", metavar="NAME", help="A class; cup and sauce_pan if none.")
     ] = None,
     dataset: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Stages' folder: counts augmented programs' too.")
+        Path | None, typer.Option("--out", metavar="DIR", help="A build's folder, to count its programs too.")
     ] = None,
     drawing: Annotated[Path | None, typer.Option("--drawing", metavar="FILE", help="Draw the bars, as .svg.")] = None,
     limit: options.Limit = None,
     as_json: options.Json = False,
 ) -> None:
-    """How the preconditions about some classes are distributed, before and after augmenting (figure 5-4).
+    """Print the distribution of the preconditions on some classes, before and after augmenting (figure 5-4).
 
     \b
     Examples:
@@ -253,7 +259,7 @@ def _svg(path: Path, text: str) -> None:
 
 
 def _bars(group: str, counts: Any) -> None:
-    """One bar a condition, as long as its share."""
+    """One bar for each condition, as long as its share."""
     total = counts.total()
     for condition, count in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
         print(f"  {group:10} {condition:12} {'#' * round(40 * count / total):40} {count:,}")

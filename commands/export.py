@@ -27,9 +27,9 @@ def export(
 ) -> None:
     """Write a published dataset in another form.
 
-    Forms: release (the original layout, which `ingest` reads back), nl (steps in words, pairs for instruction tuning,
-    the planning papers' examples), jsonl (every table), code (Python functions), networkx (node-link JSON) and graphml
-    (graphs before and after), rdf (Turtle), pddl (a domain, and a problem for each execution).
+    Forms: release (the original layout, which `ingest` reads back), nl (natural-language steps, pairs for instruction
+    tuning, examples of planning papers), jsonl (every table), code (Python functions), networkx (node-link JSON) and
+    graphml (graphs before and after), rdf (Turtle), pddl (a domain, and a problem for each execution).
 
     \b
     Example:

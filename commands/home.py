@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="The homes: list, show, check, convert and edit them, or draw up new ones.",
+    help="The homes: list, show, check, convert, edit and generate them.",
 )
 
 Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
@@ -28,7 +28,7 @@ Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan
 
 @app.command("list")
 def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> None:
-    """List the homes with their rooms, things and relations.
+    """List the homes with their numbers of rooms, nodes and edges.
 
     \b
     Example:
@@ -58,7 +58,7 @@ def show(
     homes: options.Homes = None,
     as_json: options.Json = False,
 ) -> None:
-    """Show a home: its rooms and what is in them; with --out, draw its floor plan.
+    """Show the rooms of a home and their contents; with --out, draw its floor plan.
 
     \b
     Example:
@@ -84,15 +84,16 @@ def show(
 def lint(
     home: Home,
     layout: Annotated[
-        bool, typer.Option("--layout", help="Lay a scene graph out, and say what of it no geometry could show.")
+        bool,
+        typer.Option("--layout", help="Lay a scene graph out, and report the relations that the layout can't show."),
     ] = False,
     homes: options.Homes = None,
     as_json: options.Json = False,
 ) -> None:
-    """Report what is wrong with a home or with any scene graph; the status is 1 if something is.
+    """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
-    With --layout, a graph without geometry is given some, and every relation that this could not show is named; that
-    is no fault.
+    With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
+    are not faults.
 
     \b
     Examples:
@@ -104,17 +105,17 @@ def lint(
 
     graph = _graph(home, homes)
     faults = check(graph, _known(), file=home if Path(home).suffix else "")
-    laid = library.graph_layout(home, _known(), homes) if layout else None
+    made = library.graph_layout(home, _known(), homes) if layout else None
     if as_json:
-        told = {"home": home, "faults": faults, "by_code": _codes(faults)}
-        output.emit(told if laid is None else {**told, "met": met(laid), "unmet": laid.unmet})
+        document = {"home": home, "faults": faults, "by_code": _codes(faults)}
+        output.emit(document if made is None else {**document, "met": met(made), "unmet": made.unmet})
     else:
         output.report(faults)
-        if laid is not None:
-            for fault in laid.unmet:
+        if made is not None:
+            for fault in made.unmet:
                 print(f"{fault.message} ({fault.suggestion})")
             output.table(("of the graph", "there are", "shown by the layout"), [
-                (row["what"], row["all"], row["shown"]) for row in met(laid)])  # fmt: skip
+                (row["what"], row["all"], row["shown"]) for row in met(made)])  # fmt: skip
         codes = ", ".join(f"{code} {count}" for code, count in _codes(faults).items())
         print(f"{home}: {output.counted(len(faults), 'fault')} of the graph itself" + (f": {codes}" if codes else ""))
     output.status(len(faults), strict=True)
@@ -124,14 +125,14 @@ def _codes(faults: Sequence[Diagnostic]) -> dict[str, int]:
     return dict(sorted(Counter(str(fault.code) for fault in faults).items()))
 
 
-def met(laid: GraphLayout) -> list[dict[str, Any]]:
-    """Of each relation, and of the things, how many there are and how many the layout shows."""
-    said = Counter(edge.relation for edge in laid.graph.edges)
+def met(layout: GraphLayout) -> list[dict[str, Any]]:
+    """For nodes and for each relation, the number in the graph and the number that the layout shows."""
+    edges = Counter(edge.relation for edge in layout.graph.edges)
     lost = Counter(
-        "things" if fault.code == "NO_PLACE" else next(name for name in said if f") {name} " in fault.message)
-        for fault in laid.unmet
+        "things" if fault.code == "NO_PLACE" else next(name for name in edges if f") {name} " in fault.message)
+        for fault in layout.unmet
     )
-    rows = {"things": len(laid.graph.nodes), **{name: said[name] for name in ("ON", "INSIDE", "CLOSE", "FACING")}}
+    rows = {"things": len(layout.graph.nodes), **{name: edges[name] for name in ("ON", "INSIDE", "CLOSE", "FACING")}}
     return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
 
 
@@ -139,16 +140,13 @@ def met(laid: GraphLayout) -> list[dict[str, Any]]:
 def convert(
     home: Home,
     out: Annotated[Path, typer.Argument(metavar="FILE", help="`.json`: the release's layout; `.ids.csv`: node ids.")],
-    layout: Annotated[
-        bool, typer.Option("--layout", help="Give a scene graph the geometry that its relations suggest.")
-    ] = False,
+    layout: Annotated[bool, typer.Option("--layout", help="Lay a scene graph out by its relations.")] = False,
     homes: options.Homes = None,
     as_json: options.Json = False,
 ) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
-    Beside a plan `x.yaml`, a file `x.ids.csv` keeps the ids as they are when the plan changes later: what is new gets
-    new numbers.
+    A file `x.ids.csv` beside a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
 
     \b
     Examples:
@@ -168,25 +166,25 @@ def convert(
 
 @app.command()
 def generate(
-    rooms: Annotated[int, typer.Option("--rooms", help="How many rooms, 3 to 9.")] = 5,
-    seed: Annotated[int, typer.Option("--seed", help="Decides everything else.")] = 0,
+    rooms: Annotated[int, typer.Option("--rooms", help="Number of rooms, 3 to 9.")] = 5,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of everything else.")] = 0,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="FILE", help="A plan (.yaml), a scene graph (.json) or a drawing (.svg, .png)."),
     ] = None,
     as_json: options.Json = False,
 ) -> None:
-    """Draw up a home by lot: rooms along a hall, furniture with clearances, things where the knowledge puts them.
+    """Generate a home: rooms along a hall, furniture with clearances, objects placed by the knowledge.
 
     \b
     Example:
       python cli.py home generate --rooms 6 --seed 1 --out my_homes/oak.yaml
     """
     from hearth.homes import exporting
-    from hearth.homes.procedural.generate import generate as draw_up
+    from hearth.homes.procedural.generate import generate as generated_layout
     from hearth.homes.scene_graph import scene
 
-    layout = draw_up(rooms, seed, _known())
+    layout = generated_layout(rooms, seed, _known())
     if out is not None:
         exporting.write(layout, out, _known())
     figures = _figures(scene(layout, _known()))
@@ -200,15 +198,15 @@ def edit(
     home: Home,
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")],
     add: Annotated[
-        list[str] | None, typer.Option("--add", metavar="CLASS:on:ID", help="A new thing, on or inside.")
+        list[str] | None, typer.Option("--add", metavar="CLASS:on:ID", help="Add a thing, on or inside another.")
     ] = None,
-    remove: Annotated[list[int] | None, typer.Option("--remove", metavar="ID", help="A thing that vanishes.")] = None,
-    move: Annotated[list[str] | None, typer.Option("--move", metavar="ID:on:ID", help="A thing put elsewhere.")] = None,
-    states: Annotated[list[str] | None, typer.Option("--set", metavar="ID:STATE", help="A state to be in.")] = None,
+    remove: Annotated[list[int] | None, typer.Option("--remove", metavar="ID", help="Remove a thing.")] = None,
+    move: Annotated[list[str] | None, typer.Option("--move", metavar="ID:on:ID", help="Move a thing.")] = None,
+    states: Annotated[list[str] | None, typer.Option("--set", metavar="ID:STATE", help="Set a state.")] = None,
     homes: options.Homes = None,
     as_json: options.Json = False,
 ) -> None:
-    """Add, remove and move things of a home and set states, each as often as wanted, as far as the knowledge allows.
+    """Add, remove and move things of a home and set states, if the knowledge allows it; options may be repeated.
 
     \b
     Example:
@@ -227,14 +225,16 @@ def edit(
 
 @app.command()
 def stats(
-    generated: Annotated[int, typer.Option("--generated", metavar="N", min=0, help="Draw up so many homes too.")] = 28,
-    seed: Annotated[int, typer.Option("--seed", help="Of the first one drawn up; the rest follow.")] = 0,
+    generated: Annotated[
+        int, typer.Option("--generated", metavar="N", min=0, help="Number of homes to generate.")
+    ] = 28,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of the first generated home; the others follow.")] = 0,
     homes: options.Homes = None,
     as_json: options.Json = False,
 ) -> None:
-    """Room sizes, things, degrees and relations of our homes, of generated ones, and of those in a folder.
+    """Compare our homes, generated homes and those of a folder: room sizes, things, degrees and relations.
 
-    The homes drawn up have 3 to 9 rooms in turn; each is checked as `home lint` does.
+    Generated homes have 3 to 9 rooms in turn; each is checked as by `home lint`.
 
     \b
     Examples:
@@ -242,7 +242,7 @@ def stats(
       python cli.py home stats --generated 1000
     """
     from hearth.homes import library
-    from hearth.homes.procedural.generate import generate as draw_up
+    from hearth.homes.procedural.generate import generate as generated_layout
     from hearth.homes.scene_graph import scene
     from hearth.homes.statistics import beside, of_homes
 
@@ -251,13 +251,13 @@ def stats(
     groups = {
         "ours": of_homes((_graph(name, None) for name in ours), known),
         "generated": of_homes(
-            (scene(draw_up(3 + k % 7, k, known), known) for k in range(seed, seed + generated)), known
+            (scene(generated_layout(3 + k % 7, k, known), known) for k in range(seed, seed + generated)), known
         ),
         "theirs": of_homes((_graph(name, homes) for name in theirs), known),
     }
     found = {name: figures for name, figures in groups.items() if figures}
     for figures in found.values():
-        # Homes of other sizes are compared at the same number of nodes: by edges a node.
+        # Homes of different sizes are compared by edges a node.
         figures["density beside theirs, %"] = beside(figures, found.get("theirs"))
     if as_json:
         output.emit(found)

@@ -1,4 +1,4 @@
-"""What `home edit` is told: `CLASS:on:ID`, `ID:inside:ID`, `ID:STATE`, read and done."""
+"""The orders of `home edit`: `CLASS:on:ID`, `ID:inside:ID`, `ID:STATE`."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def edited(
     knowledge: Knowledge,
     name: str = "",
 ) -> tuple[EnvironmentGraph, tuple[int, ...]]:
-    """A graph with things added, removed and moved and states set, and the ids of what was added.
+    """A graph with things added, removed and moved and states set, and the ids of added things.
 
-    In a home with geometry, what was added or moved stands where there is room on or in its place.
+    In a home with geometry, added and moved things get a position with room on or in their place.
 
     Raises:
-        HearthError: an order that cannot be read, names what there is not, or does not fit the knowledge.
+        HearthError: an order can't be read, names an unknown node or class, or contradicts the knowledge.
     """
     from hearth.homes.from_graph.measured import has_geometry
     from hearth.homes.reposing import posed
@@ -70,7 +70,7 @@ def _check_ids(named: Sequence[int], known: Collection[int]) -> None:
 def _placing(text: str, form: str) -> tuple[str, str, int]:
     parts = text.split(":")
     if len(parts) != 3 or parts[1].lower() not in RELATIONS:
-        _refuse(f"`{text}` says not what goes where", f"write {form}, with `on` or `inside`")
+        _refuse(f"`{text}` is not a placement", f"write {form}, with `on` or `inside`")
     return parts[0], RELATIONS[parts[1].lower()], _number(parts[2], text)
 
 
@@ -79,13 +79,13 @@ def _state(text: str) -> tuple[int, str]:
 
     thing, _, state = text.partition(":")
     if state.upper() not in STATES:
-        _refuse(f"`{text}` names no state", f"write ID:STATE, with one of {', '.join(STATES)}")
+        _refuse(f"`{text}` does not name a state", f"write ID:STATE, with one of {', '.join(STATES)}")
     return _number(thing, text), state.upper()
 
 
 def _number(text: str, whole: str) -> int:
     if not text.isdigit():
-        _refuse(f"`{text}` in `{whole}` is no node id", _IDS)
+        _refuse(f"`{text}` in `{whole}` is not a node id", _IDS)
     return int(text)
 
 
@@ -96,7 +96,7 @@ def _node(class_name: str, node_id: int, knowledge: Knowledge) -> Node:
     if known is None:
         near = knowledge.suggest(class_name)
         hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"
-        raise HearthError.of(Code.UNKNOWN_OBJECT, f"`{class_name}` is no class", suggestion=hint)
+        raise HearthError.of(Code.UNKNOWN_OBJECT, f"`{class_name}` is not a class", suggestion=hint)
     states = knowledge.default_states(known.name)
     return Node(node_id, known.name, known.category, tuple(sorted(known.properties)), states)
 

@@ -1,4 +1,4 @@
-"""What several commands read: knowledge, a program file, the home it is tried in, the paths of sources."""
+"""Inputs of several commands: knowledge, a program file, a home, the paths of sources."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def paths(sources: Sequence[Path] | None) -> list[str]:
-    """Sources as a stage takes them; those of the embedded corpus if there are none."""
+    """The paths of the sources, or of the embedded corpus if there are none."""
     from hearth.pipelines.build import corpus
 
     return [str(path) for path in sources or corpus()]
@@ -58,7 +58,7 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     """The home of that name, or that of a graph file.
 
     Raises:
-        HearthError: UNKNOWN_HOME, or what is wrong with the file.
+        HearthError: UNKNOWN_HOME, or a fault of the file.
     """
     from hearth.homes import library
     from hearth.simulation.world.home import Home

@@ -1,4 +1,4 @@
-"""`kb ...`: what is known, looked up, checked, compared and extended."""
+"""`kb ...`: looks up, checks, compares and extends the knowledge."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="kb",
-    help="The knowledge: actions, objects, places, states and how they relate.",
+    help="The knowledge: actions, objects, places, states and their relations.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -27,7 +27,7 @@ _SHOWN = 20
 
 @app.command()
 def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: options.Json = False) -> None:
-    """Show everything known about an object, or an action when no object has the name.
+    """Show everything known about an object, or about an action if no object has the name.
 
     \b
     Example:
@@ -49,7 +49,7 @@ def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: option
 
 @app.command()
 def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> None:
-    """Show what an action takes, needs and changes, how it is said, and what repairs it.
+    """Show an action: objects, preconditions, effects, phrases and repairs.
 
     \b
     Example:
@@ -83,7 +83,7 @@ def find(
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Find the objects that meet every condition given, most usual first where a place is given.
+    """Find the objects that meet all conditions, ordered by frequency if a place is given.
 
     \b
     Example:
@@ -110,7 +110,7 @@ def path(
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Show how two things, actions or kinds are related: the most telling chain of facts.
+    """Show the most specific chain of facts that relates two things, actions or kinds.
 
     \b
     Example:
@@ -136,7 +136,7 @@ def path(
 
 @app.command()
 def lint(kb: options.Kb = None, as_json: options.Json = False) -> None:
-    """Look for contradictions; the status is 1 if there are any.
+    """Check the knowledge for contradictions; the status is 1 if there are any.
 
     \b
     Example:
@@ -164,7 +164,7 @@ def diff(
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
-    """Compare with another's knowledge fact by fact, with the reason beside each deliberate difference.
+    """Compare with other knowledge fact by fact, with the reason of each deliberate difference.
 
     The status is 1 if a fact of the other is missing here without a reason.
 
@@ -191,8 +191,10 @@ def mine(
     dataset: Annotated[
         Path, typer.Argument(metavar="DATASET", help="A published dataset folder, or its programs table.")
     ],
-    least: Annotated[int, typer.Option("--least", min=1, help="Programs that must show a fact.")] = 3,
-    confidence: Annotated[float, typer.Option("--confidence", min=0, max=1, help="Share that must show it.")] = 0.3,
+    least: Annotated[int, typer.Option("--least", min=1, help="Programs in which a fact must hold.")] = 3,
+    confidence: Annotated[
+        float, typer.Option("--confidence", min=0, max=1, help="Share of programs in which it must hold.")
+    ] = 0.3,
     kb: options.Kb = None,
     as_json: options.Json = False,
 ) -> None:
@@ -223,7 +225,7 @@ def mine(
 def export(
     form: Annotated[str, typer.Argument(metavar="FORM", help="table (Markdown), pddl, graphml or duckdb.")],
     to: Annotated[
-        Path | None, typer.Option("--to", metavar="FILE", help="Where to; standard output when left out.")
+        Path | None, typer.Option("--to", metavar="FILE", help="The file to write; standard output if omitted.")
     ] = None,
     kb: options.Kb = None,
 ) -> None:
@@ -241,11 +243,11 @@ def export(
 
 
 def _show(sheet: dict[str, Any], every: bool, as_json: bool) -> None:
-    """Print plain facts as a table of two columns, then each list of rows as a table of its own."""
+    """Print single facts as a table of two columns, then each list of rows as a table."""
     if as_json:
         output.emit(sheet)
         return
-    plain = [(key, _said(value)) for key, value in sheet.items() if not _is_rows(value) and value not in ("", [], 0)]
+    plain = [(key, _text(value)) for key, value in sheet.items() if not _is_rows(value) and value not in ("", [], 0)]
     output.table(("", ""), plain)
     for key, rows in sheet.items():
         if _is_rows(rows):
@@ -260,7 +262,7 @@ def _is_rows(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
 
 
-def _said(value: Any) -> str:
+def _text(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} {number:g}" for key, number in value.items())
     if isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Options and arguments that several commands take, each declared once; what one command alone takes stands there."""
+"""Options and arguments of several commands, each declared once; those of one command are in its file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _HOMES = "A folder of homes laid over ours."
 
 
 def processes(count: int) -> int:
-    """How many processes are meant: 0 is for one a core."""
+    """The number of processes: 0 means one for each core."""
     return count or os.cpu_count() or 1
 
 
@@ -22,7 +22,7 @@ Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder o
 Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help=_HOMES)]
 HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
 Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of everything random.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all random choices.")]
 Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
 Workers = Annotated[
     int, typer.Option("--workers", "-j", metavar="N", min=0, callback=processes, help="Processes; 0: one a core.")

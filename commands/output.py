@@ -1,4 +1,4 @@
-"""What commands print: tables, JSON for machines, faults with their source underlined; and how commands exit."""
+"""Output of commands: tables, JSON, faults with their source underlined; and exit statuses."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _AROUND = 40
 
 
 def status(rejected: int, *, strict: bool) -> None:
-    """End the command with status 1 when something was rejected and `strict` was asked for; otherwise return."""
+    """End the command with status 1 if something was rejected and `strict` is True; otherwise return."""
     if strict and rejected:
         raise typer.Exit(BAD_INPUT)
 
 
 def emit(value: Any) -> None:
-    """Print one JSON document: keys in the order given, dataclasses and paths understood, a line break at the end."""
+    """Print one JSON document: keys in the given order, dataclasses and paths converted, a line break at the end."""
     import orjson
 
     options = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE | orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
@@ -55,12 +55,12 @@ def _plain(value: Any) -> Any:
 
 
 def say(text: str, document: Any, as_json: bool) -> None:
-    """Print a text, or the document that says the same to machines."""
+    """Print a text, or the same as a JSON document."""
     emit(document) if as_json else print(text)
 
 
 def records(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
-    """Print rows as a table; their keys are its columns."""
+    """Print rows as a table with their keys as columns."""
     if rows:
         table(tuple(rows[0]), [tuple(row.values()) for row in rows], title)
 
@@ -71,7 +71,7 @@ def figures(values: Mapping[str, Any]) -> None:
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = "") -> None:
-    """Print a table: drawn by rich on a terminal, plain aligned columns elsewhere. Numbers stand to the right."""
+    """Print a table: drawn by rich on a terminal, plain aligned columns elsewhere. Numbers are right-aligned."""
     cells = [[_text(cell) for cell in row] for row in rows]
     numeric = [_is_numeric(row[number] for row in cells) for number in range(len(columns))]
     if sys.stdout.isatty():
@@ -120,7 +120,7 @@ def _aligned(cell: str, width: int, right: bool) -> str:
 
 
 def report(faults: Iterable[Diagnostic], stream: TextIO | None = None, kind: str = "error") -> None:
-    """Print faults as a compiler does: code, place, the line, and the offending words underlined."""
+    """Print faults as a compiler does: code, place, the line, and the words at fault underlined."""
     out = stream or sys.stderr
     colour = out.isatty()
     for fault in faults:
@@ -170,7 +170,7 @@ def _underline(source: str, column: int, length: int) -> str:
 
 
 def _cells(text: str) -> int:
-    """Terminal columns a text takes: wide East Asian characters take two, combining marks none."""
+    """Terminal columns of a text: wide East Asian characters take two, combining marks none."""
     import unicodedata
 
     wide = sum(unicodedata.east_asian_width(char) in "WF" for char in text)

@@ -1,4 +1,4 @@
-"""`plan`: do a planner and the engine agree on a dataset's problems?"""
+"""`plan`: solves a dataset's problems with a planner and runs the plans in the engine."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ import typer
 
 from hearth.commands import options, output
 
-Problems = Annotated[
-    int, typer.Option("--problems", "-n", metavar="N", min=1, help="How many executions to ask about.")
-]
+Problems = Annotated[int, typer.Option("--problems", "-n", metavar="N", min=1, help="Number of executions.")]
 
 
 def plan(
@@ -21,10 +19,9 @@ def plan(
 ) -> None:
     """Solve planning problems of a dataset with Fast Downward, and run the plans in the engine.
 
-    Problems are those of `export --format pddl`, of executions from all over the dataset. Each is read by
-    unified-planning and solved; the plan comes back as steps, is run where the execution began, and must reach its
-    goal.
-    Ends with status 1 if one does not. Needs unified-planning and up-fast-downward; a problem takes a few seconds.
+    Problems are those of `export --format pddl`, spread over the executions of the dataset. Each is read by
+    unified-planning and solved; the plan is run as steps in the execution's environment and must reach its goal. The
+    status is 1 if one does not. Needs unified-planning and up-fast-downward; a problem takes a few seconds.
 
     \b
     Example:

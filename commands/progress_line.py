@@ -1,4 +1,4 @@
-"""What is shown while a command takes its time: how far it is, how fast, and how long it will take."""
+"""Progress of a long command on the terminal: items done, rate and time left."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterator[T]:
-    """The same items; `seen` is told of each."""
+    """The same items; each is reported to `seen`."""
     for number, item in enumerate(items, 1):
         seen(number, total)
         yield item
@@ -22,13 +22,13 @@ def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterato
 
 @contextmanager
 def bar(what: str) -> Iterator[Seen]:
-    """A bar on the terminal's error stream, gone when it is over; nothing where that is no terminal.
+    """A bar on the error stream, removed at the end; nothing if the stream is not a terminal.
 
     Args:
-        what: is done, in a word or two.
+        what: the items, in a word or two.
 
     Yields:
-        what is to be told how many of how many are done.
+        A function that reports progress: items done and, if known, the total.
     """
     if not sys.stderr.isatty():
         yield unseen

@@ -1,4 +1,4 @@
-"""Pictures by hand: of one program, and of all models."""
+"""Pictures of one program, and of all models."""
 
 from __future__ import annotations
 
@@ -22,25 +22,29 @@ app = typer.Typer(no_args_is_help=True, help="Pictures of a program, and of ever
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file.")]
 HomeName = Annotated[
-    str, typer.Option("--home", metavar="NAME", help="A home; one without geometry is laid out by its relations.")
+    str, typer.Option("--home", metavar="NAME", help="A home; without geometry it is laid out by its relations.")
 ]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the pictures go.")]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder for the pictures.")]
 OutFile = Annotated[Path, typer.Option("--out", metavar="FILE", help="A PNG file.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Bodies, colours, and what has to be added.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of bodies, colours and added objects.")]
 Hour = Annotated[float, typer.Option("--hour", metavar="H", help="Time of day, 0 to 24.")]
 Fine = Annotated[bool, typer.Option("--fine", help="Smooth edges and soft shadows; four times slower.")]
-Width = Annotated[int, typer.Option("--width", metavar="PX", min=32, max=1920, help="Of one picture; 4 to 3.")]
+Width = Annotated[
+    int, typer.Option("--width", metavar="PX", min=32, max=1920, help="Width of a picture; the height is 3/4 of it.")
+]
 
 
-Mode = Annotated[Literal["snapshots", "video"], typer.Option("--mode", help="One moment a step, or all in motion.")]
+Mode = Annotated[Literal["snapshots", "video"], typer.Option("--mode", help="One picture a step, or a film.")]
 Cameras = Annotated[
-    str, typer.Option("--cameras", metavar="NAMES", help="Of the video: auto, top, first, third, kitchen.54.1, ...")
+    str,
+    typer.Option("--cameras", metavar="NAMES", help="Cameras of the video: auto, top, first, third, kitchen.54.1, ..."),
 ]
 Fps = Annotated[float, typer.Option("--fps", metavar="N", min=5, max=30, help="Pictures a second of the video.")]
 
 
 Vary = Annotated[
-    bool, typer.Option("--vary", help="Of the video: light, places, speed and cameras by the seed, too, and told.")
+    bool,
+    typer.Option("--vary", help="Vary light, positions, speed and cameras of the video by the seed, and report them."),
 ]
 Names = Annotated[
     str,
@@ -72,7 +76,7 @@ def program(
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
     \b
-    Example:
+    Examples:
       python cli.py render-program watch_tv.txt --home maple --out pictures
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
     """
@@ -85,30 +89,30 @@ def program(
     place = with_geometry(library.load_graph(home, known, homes), home, known)
     graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
-    taken = Taken((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
+    shooting = Shooting((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
     if mode == "video":
-        told = _videos(execution, graph, known, out, _split(cameras), taken, fps)
+        made = _videos(execution, graph, known, out, _split(cameras), shooting, fps)
     else:
-        told = _snapshots(execution, graph, known, out, "fine" if fine else "draft", taken, _split(modalities))
+        made = _snapshots(execution, graph, known, out, "fine" if fine else "draft", shooting, _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
-        said = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
-        output.emit({**said, **told})
+        facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
+        output.emit({**facts, **made})
     else:
         print(note, end="\n" if note else "")
-        print(f"{told['pictures']} pictures of {file.name} in {out}; all together: {told['sheet']}")
-        if told.get("visible") is not None:
-            print(f"Steps of which every object is visible: {told['visible']:.1%}")
-        for page in told.get("pages", ()):
+        print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
+        if made.get("visible") is not None:
+            print(f"Steps with all objects visible: {made['visible']:.1%}")
+        for page in made.get("pages", ()):
             print(f"Open {page} in a browser.")
         if failure:
-            print(f"It stopped there: {failure}")
+            print(f"Stopped: {failure}")
     if failure:
         raise typer.Exit(output.BAD_INPUT)
 
 
-class Taken(NamedTuple):
-    """How pictures are taken: width and height, seed, hour, title of the contact sheet, and whether to vary."""
+class Shooting(NamedTuple):
+    """Options of pictures: width and height, seed, hour, title of the contact sheet, and whether to vary."""
 
     size: tuple[int, int]
     seed: int
@@ -127,14 +131,14 @@ def _snapshots(
     known: Knowledge,
     out: Path,
     quality: str,
-    taken: Taken,
+    shooting: Shooting,
     modalities: list[str],
 ) -> dict[str, Any]:
     from hearth.rendering.film.contact import caption
     from hearth.rendering.film.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
-    how = {"size": taken.size, "quality": quality, "seed": taken.seed, "hour": taken.hour}
+    how = {"size": shooting.size, "quality": quality, "seed": shooting.seed, "hour": shooting.hour}
     for shot in snapshots(execution, graph, known, modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
         files += _write(out, shot, modalities)
         if shot.camera.name != TOP:
@@ -142,7 +146,7 @@ def _snapshots(
             seen.append(shot.seen)
     visible = [share for share in seen[1:] if share is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
-    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(out, frames, taken.title)}
+    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(out, frames, shooting.title)}
 
 
 def _videos(
@@ -151,7 +155,7 @@ def _videos(
     known: Knowledge,
     out: Path,
     names: list[str],
-    taken: Taken,
+    shooting: Shooting,
     fps: float,
 ) -> dict[str, Any]:
     import orjson
@@ -162,20 +166,20 @@ def _videos(
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.variation import drawn
 
-    variation = drawn(taken.seed, taken.title) if taken.vary else None
-    trajectory = trajectory_of(execution, graph, known, seed=taken.seed, hour=taken.hour, variation=variation)
+    variation = drawn(shooting.seed, shooting.title) if shooting.vary else None
+    trajectory = trajectory_of(execution, graph, known, seed=shooting.seed, hour=shooting.hour, variation=variation)
     videos, frames, pages = [], [], []
     for name in names:
-        done = record(trajectory, graph, out, name, size=taken.size, fps=fps)
+        done = record(trajectory, graph, out, name, size=shooting.size, fps=fps)
         files = [path.name for path in done.files]
-        (out / f"{name}.html").write_text(page(taken.title, files, done.steps), encoding="utf-8")
+        (out / f"{name}.html").write_text(page(shooting.title, files, done.steps), encoding="utf-8")
         pages.append(str(out / f"{name}.html"))
         made = {"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps}
         videos.append({**made, "variation": trajectory.variation.row()})
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
-    return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(out, frames, taken.title)}
+    return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(out, frames, shooting.title)}
 
 
 def _sheet(out: Path, frames: list[Any], title: str) -> str:
@@ -207,12 +211,14 @@ def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> No
 
 @app.command()
 def visible(
-    sources: Annotated[list[Path] | None, typer.Argument(metavar="SOURCE...", help="Else the corpus within.")] = None,
-    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Programs that run.")] = 30,
+    sources: Annotated[
+        list[Path] | None, typer.Argument(metavar="SOURCE...", help="Sources; our corpus if none.")
+    ] = None,
+    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Number of executable programs.")] = 30,
     seed: Seed = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Count the steps of which every named object is visible in a chosen picture, over programs drawn from a corpus.
+    """Count the steps with all named objects visible in the chosen picture, over programs drawn from a corpus.
 
     \b
     Example:
@@ -236,15 +242,16 @@ def visible(
     if as_json:
         output.emit({"programs": programs, **share._asdict(), "unseen": missed})
         return
-    steps = f"{share.steps} steps of {programs} programs name objects."
-    print(f"{steps} All of them are visible in {share.chosen:.1%} by the")
-    print(f"camera that is chosen, in {share.either:.1%} by that or from above; in {share.open_:.1%} of the steps that")
-    print("name nothing inside something closed.")
+    print(f"{share.steps} steps of {programs} programs name objects. All of these are visible to the chosen camera in")
+    print(
+        f"{share.chosen:.1%} of the steps, to it or from above in {share.either:.1%}; and in {share.open_:.1%} of the"
+    )
+    print("steps without an object in a closed container.")
     output.table(("program", "tick", "not visible"), missed)
 
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
-    """Programs that run, drawn by the seed, each in the next of our homes; with what can be seen of each."""
+    """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
     from hearth.analysis.coverage import Script, scripts
     from hearth.grounding.trial import attempt
     from hearth.homes import library

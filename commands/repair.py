@@ -1,4 +1,4 @@
-"""`repair`: what breaks when what this program relies on is otherwise, and how is it repaired?"""
+"""`repair`: perturbs the preconditions of a program, and shows the failures and their repairs."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from hearth.repair.variants import Augmented, Pair
     from hearth.schemas.program import Program, Step
 
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Of what is perturbed and of the environments.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of perturbations and environments.")]
 Variants = Annotated[int, typer.Option("--variants", metavar="N", min=1, help="Perturbed environments to try.")]
 Kinds = Annotated[
     list[str] | None,
-    typer.Option("--perturb", metavar="KIND", help="Only this, wherever it applies; may be given several times."),
+    typer.Option("--perturb", metavar="KIND", help="Only this kind, wherever it applies; may be given several times."),
 ]
 
 
@@ -37,11 +37,10 @@ def repair(
     perturb: Kinds = None,
     as_json: options.Json = False,
 ) -> None:
-    """Perturb what a program relies on, and show how it is repaired.
+    """Perturb the preconditions of a program, and show its repairs.
 
-    Prints the perturbations, then each failure with its repair, then the repaired program. Kinds of perturbation
-    are those of perturbations.yaml: open, on, plugged, free, at_reach, ...
-    The status is 1 if a program can't be repaired.
+    Prints the perturbations, each failure with its repair, and the repaired program. Kinds of perturbation are those of
+    perturbations.yaml: open, on, plugged, free, at_reach, ... The status is 1 if a program can't be repaired.
 
     \b
     Example:
@@ -74,10 +73,10 @@ def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
 
 
 def _chances(kinds: list[str] | None) -> Chances | None:
-    """Only the kinds asked for, all of them wherever they apply; those of perturbations.yaml when none are.
+    """The given kinds, applied wherever possible; None, for the chances of perturbations.yaml, if there are none.
 
     Raises:
-        HearthError: UNKNOWN_ID, with the kinds there are.
+        HearthError: UNKNOWN_ID, with the known kinds.
     """
     if not kinds:
         return None
@@ -94,9 +93,9 @@ def _chances(kinds: list[str] | None) -> Chances | None:
 
 def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> None:
     print(f"{program.title or 'A program'}, in {home}")
-    print(f"  to be reached: {'; '.join(map(str, found.goal)) or 'nothing'}")
+    print(f"  goal: {'; '.join(map(str, found.goal)) or 'nothing'}")
     if not found.pairs:
-        print("  It relies on nothing that could be otherwise.")
+        print("  It has no precondition that can be perturbed.")
     for pair in found.pairs:
         _print_pair(pair, known)
 
@@ -129,7 +128,7 @@ def _texts(steps: Iterable[Step]) -> list[str]:
 
 
 def _difference(before: list[str], after: list[str], *, every: bool = False) -> Iterator[str]:
-    """Lines that came (`+`) and went (`-`), and with `every` those that stayed."""
+    """Inserted (`+`) and removed (`-`) lines, and with `every` also the others."""
     for line in ndiff(before, after):
         if line[0] in "+-" or (every and line[0] == " "):
             yield line

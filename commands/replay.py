@@ -1,4 +1,4 @@
-"""`replay`: does the engine do what the release's own simulator did?"""
+"""`replay`: compares the engine with the end graphs stored in a release."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 Release = Annotated[Path, typer.Argument(metavar="RELEASE", help="The release, as its zip file or a folder.")]
 Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Stop after N programs.")]
-Strange = Annotated[
-    bool, typer.Option("--default-rules", help="Read actions as everywhere else, without the release's accidents.")
+DefaultRules = Annotated[
+    bool, typer.Option("--default-rules", help="Run actions by our rules instead of the release's.")
 ]
 
 
 def replay(
     release: Release,
     limit: Limit = None,
-    default_rules: Strange = False,
+    default_rules: DefaultRules = False,
     strict: options.Strict = False,
     as_json: options.Json = False,
 ) -> None:
     """Run a release's programs on their stored start graphs and compare with the stored end graphs.
 
-    Prints how many were executed and how many end graphs are reproduced exactly, in every state and relation, with
-    the edges of each mismatch. The release is read in place, one program at a time.
+    Prints the number of executed programs and of end graphs reproduced exactly, in every state and relation, and the
+    edges of each mismatch. The release is read in place, one program at a time.
 
     \b
     Example:

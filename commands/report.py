@@ -18,10 +18,10 @@ def report(
     workers: options.Workers = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Write a dataset as one folder of static HTML: open its index.html, no network or server is needed.
+    """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 
-    Where records went, statistics with the queries that make them, homes as floor plans, and every program with its
-    steps, preconditions, repairs, graphs before and after, and pictures.
+    It has the counts of records by stage, statistics with their queries, homes as floor plans, and every program with
+    its steps, preconditions, repairs, graphs before and after, and pictures.
 
     \b
     Example:
@@ -31,7 +31,7 @@ def report(
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.report.write import write_report
 
-    with bar("shares of programs told") as seen:
+    with bar("shares of programs") as seen:
         programs = write_report(Dataset.open(dataset), out, workers, seen)
     text = f"{output.counted(programs, 'program')}; open {out / 'index.html'}"
     output.say(text, {"out": out, "programs": programs}, as_json)

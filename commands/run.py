@@ -1,4 +1,4 @@
-"""`run`: what happens when this program is run in that home?"""
+"""`run`: runs a program in a home and prints the changes of each step."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="For what has to be added to the home.")]
-AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and leave its states as they are.")]
-Explain = Annotated[bool, typer.Option("--explain", help="Say for each step which checks held, and by what.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the objects added to the home.")]
+AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and keep its states.")]
+Explain = Annotated[
+    bool, typer.Option("--explain", help="Print the checks of each step and the facts by which they hold.")
+]
 
 _SHOWN = 6
 
@@ -40,10 +42,10 @@ def run(
     explain: Explain = False,
     as_json: options.Json = False,
 ) -> None:
-    """Run a program in a home and print what happens.
+    """Run a program in a home and print the changes of each step.
 
-    Its objects are bound to the home's own things if all steps can then run; else an environment is sampled, with
-    what is missing added. Prints the binding and, for each step, what it changed. The status is 1 if a step fails.
+    Its objects are bound to nodes of the home if all steps can then run; else an environment is sampled, with missing
+    objects added. Prints the binding and the changes of each step. The status is 1 if a step fails.
 
     \b
     Example:
@@ -72,11 +74,11 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
 
     print(f"{program.title or 'A program'}, in {place.name}")
     if isinstance(trial, Failure):
-        print(f"  can't be placed there. {trial.message()}")
+        print(f"  can't be placed there: {trial.message()}")
         return
     _print_binding(trial)
     execution = trial.execution
-    stances = _stances(trial, place, homes) if explain else ()
+    poses = _poses(trial, place, homes) if explain else ()
     for number, tick in enumerate(execution.program.ticks()):
         before = execution.worlds[number]
         if number + 1 == len(execution.worlds):
@@ -85,15 +87,15 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
             return
         change = execution.worlds[number + 1].changes(before)
         print(f"{number + 1:3}  {_tick(tick)}\n     {_summary(change, before)}")
-        for stance in stances[number] if stances else ():
+        for stance in poses[number] if poses else ():
             print(f"       {_stance(stance)}")
         if explain:
             _print_checks(before, tick, DEFAULT)
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
 
 
-def _stances(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[HandAndBasePose, ...], ...]:
-    """How the character stands for each step; nothing in homes without geometry."""
+def _poses(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[HandAndBasePose, ...], ...]:
+    """The hand and base pose of the characters for each tick; nothing in homes without geometry."""
     from hearth.homes import library
     from hearth.simulation.motion.base_pose import hand_and_base_poses
     from hearth.simulation.motion.navigation import Ways
@@ -120,7 +122,7 @@ def _print_binding(trial: Trial) -> None:
     if trial.environment is not None:
         assert trial.refused is not None
         added = {node.id for node in trial.environment.nodes}
-        print(f"  sampled, because the home alone won't do: {trial.refused.message()}")
+        print(f"  sampled, because the home alone does not suffice: {trial.refused.message()}")
     else:
         added = set()
     for ref in trial.execution.program.objects():
@@ -139,8 +141,8 @@ def _summary(change: Change, world: World) -> str:
     quiet = Counter(edge.relation for edge in change.added if edge not in loud)
     parts += [f"{count} more {relation}" for relation, count in quiet.items()]
     if change.removed:
-        parts.append(f"{output.counted(len(change.removed), 'edge')} less")
-    return "; ".join(parts) or "changes nothing"
+        parts.append(f"{output.counted(len(change.removed), 'edge')} removed")
+    return "; ".join(parts) or "no change"
 
 
 def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
@@ -169,5 +171,5 @@ def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, 
         "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
         "steps": [print_step(step) for step in execution.program.steps],
         "changes": changes,
-        "stances": _stances(trial, place, homes),
+        "stances": _poses(trial, place, homes),
     }

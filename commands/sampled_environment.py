@@ -1,4 +1,4 @@
-"""`environment sample`: one environment drawn, and what is told of it."""
+"""`environment sample`: samples one environment."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ _GOAL = re.compile(r"\s*(\w+)\s*\(\s*([\w:]+)\s*(?:,\s*([\w:]+)\s*)?\)\s*(?::\s*
 
 
 class Drawn(NamedTuple):
-    """A start, and what is told of it: `objects` and `conditions` of a program, or a `goal` with its progress."""
+    """A start, with `objects` and `conditions` of a program, or a `goal` with its progress."""
 
     world: World
-    told: dict[str, Any]
+    facts: dict[str, Any]
 
 
 def draw(program: Program | None, goals: Sequence[str], home: Home, seed: int, nodes: int | None) -> Drawn:
-    """An environment for a program, for a goal, or, with neither, for nothing in particular.
+    """An environment for a program, for a goal, or for neither.
 
     Raises:
-        HearthError: both are asked for, a goal cannot be read, or there is no such environment.
+        HearthError: both are given, a goal can't be read, or there is no such environment.
     """
     from hearth.grounding.environments.sampling import Size
 
     if program is not None and goals:
-        _refuse("a program and a goal are two things to ask for", "one of them")
+        _refuse("both a program and a goal are given", "give one of them")
     size = Size() if nodes is None else Size.about(nodes)
     return _for_goal(read(goals), home, seed, size) if program is None else _for_program(program, home, seed, size)
 
@@ -69,7 +69,7 @@ def _for_goal(goal: Goal, home: Home, seed: int, size: Size) -> Drawn:
 
 
 def read(goals: Sequence[str]) -> Goal:
-    """A goal from what a user writes: `ON(plate, kitchen_table): 3`, `CLEAN(stove)`, `HOLDS(agent, book)`.
+    """A goal from text: `ON(plate, kitchen_table): 3`, `CLEAN(stove)`, `HOLDS(agent, book)`.
 
     Raises:
         HearthError: SYNTAX.
@@ -80,10 +80,9 @@ def read(goals: Sequence[str]) -> Goal:
 
 
 def _counted(text: str) -> tuple[Literal[Name], int]:
-
     found = _GOAL.fullmatch(text)
     if found is None:
-        _refuse(f"`{text}` is no goal", _FORM)
+        _refuse(f"`{text}` is not a goal", _FORM)
     name, subject, target, count = found.groups()
     terms = (subject,) if target is None else (subject, target)
     return Literal(name.upper(), tuple(map(_word, terms))), int(count or 1)
@@ -95,10 +94,10 @@ def _word(text: str) -> str | int:
 
 def _failed(failure: Failure) -> HearthError:
     hint = "another home, fewer of them, or another goal"
-    said = failure.message()
+    message = failure.message()
     if not failure.action:
-        said = f"{', '.join(failure.names)}: expected {failure.expected}, found {failure.actual}"
-    return HearthError(Diagnostic(failure.code, said, suggestion=hint))
+        message = f"{', '.join(failure.names)}: expected {failure.expected}, found {failure.actual}"
+    return HearthError(Diagnostic(failure.code, message, suggestion=hint))
 
 
 def _refuse(message: str, hint: str) -> NoReturn:

@@ -1,4 +1,4 @@
-"""`score`: how near are predicted programs to their references?"""
+"""`score`: compares predicted programs with their references."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ app = typer.Typer(
 )
 
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="Predictions: JSON Lines or Parquet, one row an id.")]
+File = Annotated[Path, typer.Argument(metavar="FILE", help="Predictions: JSON Lines or Parquet, one row for each id.")]
 References = Annotated[
     Path | None, typer.Option("--references", metavar="FILE", help="Rows of id and reference, if FILE has none.")
 ]
-Instances = Annotated[bool, typer.Option("--instances", help="Tell the instances of a class apart.")]
+Instances = Annotated[bool, typer.Option("--instances", help="Distinguish the instances of a class.")]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of the 95% confidence intervals.")]
 By = Annotated[str | None, typer.Option("--by", metavar="FIELD", help="Also the means by a field of the rows.")]
 Rules = Annotated[
@@ -53,8 +53,8 @@ def lcs(
 ) -> None:
     """Longest common subsequence over the longer program's length, by step, by action and by object, and their mean.
 
-    Each row of FILE is {"id": ..., "predicted": PROGRAM, "reference": PROGRAM}, each program a text or a list of steps.
-    A prediction that is null, or whose id only the references have, is missing and scores 0.
+    Each row of FILE is {"id": ..., "predicted": PROGRAM, "reference": PROGRAM}; a program is a text or a list of steps.
+    A prediction is missing and scores 0 if it is null or if only the references have its id.
 
     \b
     Example:
@@ -116,7 +116,7 @@ def program(
     *,
     references: References = None,
     graph: Annotated[
-        Path | None, typer.Option("--graph", metavar="FILE", help="The environment of rows that name none.")
+        Path | None, typer.Option("--graph", metavar="FILE", help="The environment of rows without one.")
     ] = None,
     homes: options.Homes = None,
     rules: Rules = "default",
@@ -127,10 +127,10 @@ def program(
     by: By = None,
     as_json: options.Json = False,
 ) -> None:
-    """Every score: LCS and parsability; where rows name an environment also executability, final-graph F1 and goal.
+    """All scores: LCS and parsability; for rows with an environment also executability, final-graph F1 and goal.
 
-    Rows are those of `score lcs`. An environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
-    or `home` (a name), or else --graph. The goal is what the reference program achieves there. Steps may be in words.
+    Rows are those of `score lcs`. The environment is a row's `graph` (a scene graph's file, relative to FILE's folder)
+    or `home` (a name), or else --graph. The goal is what the reference achieves there. Steps may be natural language.
 
     \b
     Example:
@@ -198,7 +198,7 @@ def _print_program(how: Options, summary: Summary, by: str | None, groups: dict[
     if summary.errors:
         print()
         output.table(["first failure", "programs"], summary.errors.items())
-    print(f"\n{_said(summary)}")
+    print(f"\n{_sentence(summary)}")
     for signature in signatures(how).values():
         print(signature)
 
@@ -207,12 +207,12 @@ def _means(group: Summary, columns: Sequence[str]) -> list[float | None]:
     return [group.means[name].mean if name in group.means else None for name in columns]
 
 
-def _said(summary: Summary) -> str:
+def _sentence(summary: Summary) -> str:
     text = f"{output.counted(summary.count, 'prediction')}, {summary.missing} missing, {summary.empty} empty"
     if summary.incomparable:
         text += f"; {summary.incomparable} without F1 and goal, because the reference does not run"
     if summary.inexact:
-        text += f"; the F1 of {summary.inexact} is a lower bound, because instances could be assigned in too many ways"
+        text += f"; the F1 of {summary.inexact} is a lower bound, because there are too many assignments of instances"
     return text
 
 
@@ -222,7 +222,7 @@ def dataset(
     file: File,
     *,
     split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
-    part: Annotated[str, typer.Option("--part", metavar="NAME", help="Of the split; `test` takes all tests.")] = "test",
+    part: Annotated[str, typer.Option("--part", metavar="NAME", help="A part of the split; `test` takes all tests.")] = "test",
     match: Match = "best",
     scope: Scope = "either",
     instances: Instances = False,
@@ -231,10 +231,10 @@ def dataset(
     workers: options.Workers = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Every score against a dataset: its programs are the references, its environments where programs run.
+    """All scores against a dataset, whose programs are the references, in its environments.
 
     Each row of FILE is {"id": EXECUTION, "predicted": PROGRAM}, or {"program_id": PROGRAM, "home": HOME, "predicted":
-    PROGRAM}; steps may be in words. Executions without a row are missing predictions and score 0.
+    PROGRAM}; steps may be natural language. Executions without a row are missing predictions and score 0.
 
     \b
     Example:
@@ -255,15 +255,15 @@ def dataset(
 def baselines(
     folder: options.Dataset,
     *,
-    split: Annotated[str, typer.Option("--split", metavar="NAME", help="Which split to learn from and test on.")] = (
+    split: Annotated[str, typer.Option("--split", metavar="NAME", help="The split for training and test.")] = (
         "activities"
     ),
     seed: Seed = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Every score of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
+    """All scores of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
 
-    Needs scikit-learn, for the words.
+    Needs scikit-learn.
 
     \b
     Example:
@@ -288,15 +288,15 @@ def graphs(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="The final graph after the reference.")],
     *,
     nodes: Annotated[
-        str, typer.Option("--nodes", metavar="IDS", help="The nodes the programs name: 41,65 or 41,65/41.")
+        str, typer.Option("--nodes", metavar="IDS", help="The nodes that the programs name: 41,65 or 41,65/41.")
     ],
     match: Match = "best",
     scope: Scope = "either",
     as_json: options.Json = False,
 ) -> None:
-    """Compare two final graphs, whoever made them: precision, recall and F1 over states, relations and both.
+    """Compare two final graphs of any origin: precision, recall and F1 over states, relations and both.
 
-    A file is a scene graph, or a pair as the release stores it, of which the final graph is taken.
+    A file is a scene graph, or a pair in the release's layout, of which the final graph is compared.
 
     \b
     Example:

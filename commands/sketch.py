@@ -1,4 +1,4 @@
-"""`sketch`: which steps of a program are the activity, and which are due to the environment?"""
+"""`sketch`: separates the steps of the activity from the steps that depend on the environment."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
     from hearth.simulation.world.home import Home
 
-Sources = Annotated[list[Path], typer.Argument(metavar="SOURCE...", help="Programs, in any form that is read.")]
+Sources = Annotated[list[Path], typer.Argument(metavar="SOURCE...", help="Programs, in any known form.")]
 Judge = Annotated[
-    Path | None, typer.Option("--judge", metavar="FILE", help="Sketches that people drew; compare with them.")
+    Path | None, typer.Option("--judge", metavar="FILE", help="Compare with these sketches, drawn by people.")
 ]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Of the environments.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the environments.")]
 Every = Annotated[bool, typer.Option("--disagreements", help="With --judge: list the programs that differ.")]
 
 
@@ -33,11 +33,11 @@ def sketch(
     seed: Seed = 0,
     as_json: options.Json = False,
 ) -> None:
-    """Print the sketch of programs: the steps that any environment would ask for.
+    """Print the sketches of programs: the steps that do not depend on the environment.
 
-    Those are the fewest steps from which, in several homes, repairing still reaches what the program is for, and the
-    steps that only the description asks for. With --judge the sketches are compared with people's: precision, recall
-    and F1 over steps, beside two baselines, of which one knows the answers.
+    A sketch has the fewest steps from which, in several homes, repairs still reach the goal of the program, and the
+    steps of which only the description speaks. With --judge the sketches are compared with people's: precision, recall
+    and F1 over steps, beside two baselines, one of which knows the answers.
 
     \b
     Examples:
@@ -73,15 +73,15 @@ def _show(programs: list[Script], places: list[Home], known: Knowledge, seed: in
     from hearth.repair.sketch import sketch as inferred
     from hearth.schemas.syntax import print_step
 
-    told = []
+    rows = []
     for script in programs:
         keep = inferred(script.program, places, known, seed, script.program_id)
         steps = [print_step(step) for step in script.program.steps]
-        told.append({"program_id": script.program_id, "title": script.program.title, "steps": steps, "keep": keep})
+        rows.append({"program_id": script.program_id, "title": script.program.title, "steps": steps, "keep": keep})
         if not as_json:
             _print_steps(f"{script.program.title or script.program_id}: {sum(keep)} of {len(keep)} steps", steps, keep)
     if as_json:
-        output.emit(told)
+        output.emit(rows)
 
 
 def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None:
@@ -111,17 +111,17 @@ def _judge(
 
 
 def _print_judgement(found: Judgement, every: bool) -> None:
-    told: dict[str, Any] = found.summary()
+    summary: dict[str, Any] = found.summary()
     kinds = ("inferred", "dropping_what_is_by_the_way", "keeping_what_people_usually_keep")
     rows = [
-        (kind.replace("_", " "), *(f"{told[kind][name]:.3f}" for name in ("precision", "recall", "f1")))
+        (kind.replace("_", " "), *(f"{summary[kind][name]:.3f}" for name in ("precision", "recall", "f1")))
         for kind in kinds
     ]
     output.table(("sketch", "precision", "recall", "F1"), rows)
-    lengths = ", ".join(f"{name} {value}" for name, value in told["average_length"].items())
-    print(f"\n{told['programs']} programs, {told['steps']} steps; {told['alike']} sketches alike.")
+    lengths = ", ".join(f"{name} {value}" for name, value in summary["average_length"].items())
+    print(f"\n{summary['programs']} programs, {summary['steps']} steps; {summary['alike']} sketches equal.")
     print(f"Steps on average: {lengths}.")
-    for action, kinds_of in told["disagreements_by_action"].items():
+    for action, kinds_of in summary["disagreements_by_action"].items():
         print(f"  {action:10} {', '.join(f'{kind} {count}' for kind, count in kinds_of.items())}")
     for one in found.disagreements() if every else ():
         print(f"\n{one['title']}: {one['description']}")

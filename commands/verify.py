@@ -1,4 +1,4 @@
-"""`verify`: is a dataset what it says it is?"""
+"""`verify`: checks a dataset against its manifest, and runs its executions again."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from hearth.commands import options, output
 
 
 def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: options.Json = False) -> None:
-    """Check a dataset: hashes, columns, counts, references, and every execution run again from what is on disk.
+    """Check a dataset: hashes, columns, counts, references, and a replay of every execution.
 
-    Exit status 1 where anything is wrong, each fault with its file.
+    The status is 1 if there is a fault; each is printed with its file.
 
     \b
     Example:
@@ -26,8 +26,8 @@ def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: opti
             print(f"Note: {found.note}", file=sys.stderr)
         output.report(found.faults)
     ran = f"{output.counted(found.executions, 'execution')} run again"
-    said = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
-    result = output.counted(len(found.faults), "fault") if found.faults else "all as it says"
+    checked_parts = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
+    result = output.counted(len(found.faults), "fault") if found.faults else "no faults"
     counts = {"files": found.files, "rows": found.rows, "executions": found.executions}
-    output.say(f"{said}: {result}", {**counts, "note": found.note, "faults": found.faults}, as_json)
+    output.say(f"{checked_parts}: {result}", {**counts, "note": found.note, "faults": found.faults}, as_json)
     output.status(len(found.faults), strict=True)

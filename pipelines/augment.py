@@ -1,4 +1,4 @@
-"""Stage 4: programs repaired for environments in which something they rely on is otherwise (thesis 5.5.4)."""
+"""Stage 4: programs repaired for environments in which some of their preconditions are violated (thesis 5.5.4)."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ from hearth.storage.manifest import read_manifest
 from hearth.storage.rejects import Reject
 
 THESIS = 0.7
-"""The probability of perturbing a precondition (thesis 5.5.4), to which perturbations.yaml's are relative."""
+"""The probability of perturbing a precondition (thesis 5.5.4); those of perturbations.yaml are relative to it."""
 
 ALLOWANCE = 1.3
-"""Pairs made for one program that is wanted: some turn out duplicates, some rely on too little to be perturbed."""
+"""Pairs made for each program wanted: some are duplicates, and some programs have too few preconditions to perturb."""
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
-"""Why a program that runs and does its work is refused all the same."""
+"""Why a program that runs and reaches its goal is refused."""
 
 
 class Context:
@@ -69,25 +69,25 @@ class Context:
         return [self.homes.home(name) for name in self.homes.names()[:ENVIRONMENTS]]
 
     def others(self, name: str) -> list[Home]:
-        """The homes besides its own in which a program's sketch has to be enough."""
+        """The homes besides its own in which a program's sketch has to suffice."""
         return [home for home in self._others if home.name != name]
 
     def options_for(self, record_id: str) -> Options:
-        """How an execution is augmented: where a share of a pair falls to each, some get one more than others."""
+        """How an execution is augmented; a fractional number of pairs is rounded up or down at random."""
         whole = int(self.each)
         more = rng(self.seed, "augment", record_id).random() < self.each - whole
         return replace(self.options, count=whole + more)
 
 
 def scaled(chances: Chances, factor: float) -> Chances:
-    """Every probability multiplied, none above 1."""
+    """Every probability multiplied, at most 1."""
     return replace(chances, kinds={kind: min(1.0, chance * factor) for kind, chance in chances.kinds.items()})
 
 
 def process(record: CaseRow, context: Context) -> Iterator[Output]:
-    """A row for every repaired program, what was tried in vain and a reject for every environment that gave none.
+    """A row for each repaired program; the failed attempts and a reject for each environment that gave none.
 
-    With them goes the sketch of the program, once however many homes it is in, and what its children inherit of it.
+    The program's sketch is added once, however many homes it is in, and each child's sketch is inherited from it.
     """
     options = context.options_for(record["execution_id"])
     program = program_of(record)
@@ -102,7 +102,7 @@ def process(record: CaseRow, context: Context) -> Iterator[Output]:
 def _sketched(
     record: CaseRow, program: Program, original: tuple[Preconditions, Execution], context: Context
 ) -> Iterator[Output]:
-    """The program's sketch, unless another home's record gave it."""
+    """The program's sketch, unless the record of another home gave it."""
     name = record["program_id"]
     if name != context.sketched:
         context.sketched = name
@@ -115,7 +115,7 @@ def _outputs(record: CaseRow, found: Augmented, context: Context, *, wanted: boo
     for pair in found.pairs:
         if pair.failure is not None:
             yield _reject(record, pair, pair.failure)
-            yield from (("attempts", row) for row in _in_vain(record, pair, pair.failure))
+            yield from (("attempts", row) for row in _failed_attempts(record, pair, pair.failure))
             continue
         row = _row(record, pair, context)
         yield row
@@ -130,16 +130,16 @@ def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> Sketc
 
 
 def _nothing_to_perturb(record: CaseRow) -> Reject:
-    failure = Failure(Code.UNPERTURBED, expected="something the program relies on", actual="nothing")
+    failure = Failure(Code.UNPERTURBED, expected="a precondition that can be perturbed", actual="none")
     return Reject.failed(failure, record["place"], where=f"in {record['home']}")
 
 
 def _reject(record: CaseRow, pair: Pair, failure: Failure) -> Reject:
-    told = "; ".join(map(str, pair.perturbations))
-    return Reject.failed(failure, record["place"], where=f"in {record['home']}, where {told}")
+    perturbed = "; ".join(map(str, pair.perturbations))
+    return Reject.failed(failure, record["place"], where=f"in {record['home']}, where {perturbed}")
 
 
-def _in_vain(record: CaseRow, pair: Pair, failure: Failure) -> Iterator[TriedRow]:
+def _failed_attempts(record: CaseRow, pair: Pair, failure: Failure) -> Iterator[TriedRow]:
     parent, home, outcome = record["program_id"], record["home"], str(failure.code)
     perturbations = [_perturbation(one) for one in pair.perturbations]
     for repair in _repairs(pair):
@@ -147,7 +147,7 @@ def _in_vain(record: CaseRow, pair: Pair, failure: Failure) -> Iterator[TriedRow
 
 
 def _conditions(record: CaseRow) -> Preconditions:
-    """The conditions of a row, those left out that name what the program does not."""
+    """The conditions of a row, without those that name objects which the program does not use."""
     keys = {(ref["name"], ref["instance"]) for step in record["steps"] for ref in step["objects"]} | {CHARACTER}
     found = conditions_of(record["conditions"])
     return found.without(*(condition for condition in found if not keys.issuperset(condition.objects)))
@@ -178,7 +178,7 @@ def _row(record: CaseRow, pair: Pair, context: Context) -> CaseRow:
 
 
 def _environment(environment: Environment, name: str, context: Context) -> DifferenceRow:
-    if context.is_at_rest(name):
+    if context.in_default_state(name):
         return environment_of(environment, context.homes.edges(name))
     change = environment.world.changes(World.start(context.homes.home(name)))
     new = {node.id for node in environment.nodes}
@@ -211,7 +211,7 @@ def _repair(attempt: Attempt, successful: bool) -> RepairRow:
 
 
 def _texts(steps: tuple[Step, ...]) -> list[str]:
-    """Steps as text, unbound; what is done in the tick of the step before begins with a bar."""
+    """Steps as text, unbound; a step in the same tick as the one before begins with a bar."""
     return list(map(_text, steps))
 
 
@@ -222,7 +222,7 @@ def _text(step: Step) -> str:
 
 
 def prepare(settings: Settings) -> Plan:
-    """What the user laid over our knowledge and homes, which homes are left out, and how many pairs fall to each."""
+    """The user's overlays, the homes left out, and the number of pairs for each execution."""
     plan = overlays(settings)
     if settings.homes:
         homes = Homes(settings)
@@ -245,5 +245,5 @@ STAGE = Stage(
     facts=knowledge_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
-    tally=lambda row: f"{len(row['repairs'])} repairs" if "repairs" in row else None,
+    label=lambda row: f"{len(row['repairs'])} repairs" if "repairs" in row else None,
 )

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 
 from hearth.pipelines.engine.context import kept_knowledge
 from hearth.pipelines.engine.engines import engine as make_engine
-from hearth.pipelines.engine.estimates import foretold
+from hearth.pipelines.engine.estimates import forecast
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
@@ -33,12 +33,12 @@ _SHOWN = 20
 
 @dataclass(frozen=True, slots=True)
 class Funnel:
-    """What became of everything that was read.
+    """What became of every record.
 
     Attributes:
-        stages: counts by stage, in order; stages that never ran are not there.
-        fresh: stages that had something to do.
-        dataset: where the published dataset is; None while there is none.
+        stages: counts by stage, in order, of the stages that have run.
+        fresh: stages that were not up to date.
+        dataset: the folder of the published dataset; None before it is published.
     """
 
     stages: dict[str, Counts]
@@ -55,7 +55,7 @@ class Funnel:
 
     @property
     def rejected(self) -> int:
-        """Records refused whole by any stage that reads what people wrote."""
+        """Records refused whole by any stage but `augment`, whose refusals concern perturbed environments."""
         return sum(counts.rejected for name, counts in self.stages.items() if name != "augment")
 
 
@@ -77,21 +77,21 @@ def build(
     progress: Progress | None = None,
     **options: Any,
 ) -> Funnel:
-    """Bring a dataset up to date with its sources; what did not change is not done again.
+    """Bring a dataset up to date with its sources; stages and partitions that did not change are kept.
 
     Args:
-        sources: files and folders, in any mix of forms; the embedded corpus when there are none.
-        out: gets one folder a stage; the dataset is its `publish`. May be a URL that fsspec knows.
+        sources: files and folders, in any mix of forms; the embedded corpus if empty.
+        out: the folder for one folder a stage; the dataset is its `publish`. May be a URL that fsspec reads.
         workers: processes; any number gives the same bytes.
-        engine: what runs them, one of `engines.ENGINES`; any gives the same bytes.
+        engine: one of `engines.ENGINES`; any gives the same bytes.
         scheduler: address of a running cluster's scheduler, for the dask engine.
-        force: build even where the disk looks too small for it.
-        only: the one stage to run, on what the earlier ones wrote.
-        progress: told how it goes.
+        force: build even if the disk seems too small.
+        only: the one stage to run, on the output of the earlier ones.
+        progress: receives the counts of each stage as it runs.
         options: the other fields of `Settings` (seed, limit, homes, ...).
 
     Raises:
-        HearthError: a source can't be read, or nothing in any could be used.
+        HearthError: a source can't be read, or no record of any source can be used.
 
     Examples:
         >>> made = hearth.build(["milk.txt"], "small", homes=("maple",), variants=0, pictures=0)
@@ -108,9 +108,9 @@ def build(
             for name in [only] if only else list(STAGES):
                 result = run_stage(stage(name), settings, pool, progress)
                 if name == "validate" and not only:
-                    said = foretold(result.manifest.counts.through, settings, pool.count, force=force)
-                    if said and progress:
-                        progress.note(said)
+                    expected = forecast(result.manifest.counts.through, settings, pool.count, force=force)
+                    if expected and progress:
+                        progress.note(expected)
                 if result.fresh:
                     fresh.append(name)
                 if name == "ingest":
@@ -119,7 +119,7 @@ def build(
 
 
 def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
-    """What the manifests of a build say."""
+    """The counts in the manifests of a build."""
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
     published = manifests["publish"]
@@ -127,7 +127,7 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
 
 
 def _check_something(ingested: Manifest) -> None:
-    """Say why nothing could be read, where that is so."""
+    """Raise the first rejects if no record could be read."""
     if ingested.counts.through:
         return
     faults = list(_faults(pq.read_table(ingested.folder / REJECTS).slice(0, _SHOWN).to_pylist()))

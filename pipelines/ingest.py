@@ -1,4 +1,4 @@
-"""Stage 1: reads whatever descriptions and programs arrived in, one row each, and leaves their words as they are."""
+"""Stage 1: reads descriptions and programs of any known form, one row each, their text unchanged."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
-"""What finds the records of a file or folder, by reader."""
+"""The function that finds the records of a file or folder, by reader."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
@@ -48,17 +48,17 @@ READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     scenes.NAME: lambda item, salt: [scenes.read(item)],
     "refused": lambda item, salt: [read_refused(item)],
 }
-"""What reads one record, by reader. To add a reader: a file in `readers/`, a row here and in `SCANNERS`."""
+"""The function that reads one record, by reader. To add one: a file in `readers/`, a row here and in `SCANNERS`."""
 
 WEIGHTS = {text.NAME: 1, plans.NAME: 4, ours.NAME: 4, release.NAME: 256, scenes.NAME: 1024}
-"""What a record counts towards filling a partition, by what it brings; others count `_USUAL`."""
+"""The weight of a record in filling a partition, by reader; others weigh `_USUAL`."""
 
 _USUAL = 64
 _FULL = 8_192
 
 
 def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
-    """Every record of the sources with its source's label; copies of one that was there before are refused."""
+    """Every record of the sources with its source's label; a copy of an earlier record is refused."""
     repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in _recognised(source)]
     described = Described()
@@ -75,7 +75,7 @@ def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
 
 
 def _recognised(source: Source) -> Iterator[Recognised]:
-    """What a source holds; a fault of ours is refused as one record.
+    """The entries of a source; an error in Hearth is refused as one record.
 
     Raises:
         HearthError: the source is missing, or nothing in it can be read.
@@ -89,7 +89,7 @@ def _recognised(source: Source) -> Iterator[Recognised]:
 
 
 def _scanned(entry: Recognised) -> Iterator[Item]:
-    """What a reader finds; where it breaks off, what came before is kept and the break is refused."""
+    """The records that a reader finds; if it breaks off, those before the break, then the break as a reject."""
     found = False
     try:
         for item in SCANNERS[entry.reader](entry.path, entry.inside):
@@ -124,7 +124,7 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def _limited(found: Iterator[tuple[str, Item]], limit: int | None) -> Iterator[tuple[str, Item]]:
-    """The first so many programs, and at most as many of what is no program; refused items do not count."""
+    """The first `limit` programs and at most as many other records; refused items do not count."""
     counts = {True: 0, False: 0}
     for source, item in found:
         is_program = not (item.reader == crowd.NAME and item.value["stage"] == 1) and item.reader != sketches.NAME
@@ -156,7 +156,7 @@ def _digest(share: list[tuple[str, Item]]) -> str:
 
 
 def _storable(source: str, item: Item) -> Item:
-    """The item, or its refusal where it is not JSON in UTF-8 of at most some 250 levels."""
+    """The item, or its refusal if it is not JSON in UTF-8 of at most some 250 levels."""
     try:
         _digest([(source, item)])
     except TypeError as error:
@@ -189,7 +189,7 @@ def process(record: Found, salt: str) -> list[IngestedRow | Reject]:
 
 
 def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Reject]:
-    """What an item holds: rows, and a reject for what can't be read of it.
+    """The rows of an item, and a reject for each part of it that can't be read.
 
     Args:
         item: as found by `items`.
@@ -201,7 +201,7 @@ def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Rej
 
 
 def prepare(settings: Settings) -> dict[str, Any]:
-    """Name the salt without telling it."""
+    """Identify the salt by a digest, without revealing it."""
     return {"salt": value_digest(salt(settings))[:16]}
 
 
@@ -215,5 +215,5 @@ STAGE = Stage(
     partitions=partitions,
     records=records,
     batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
-    tally=lambda row: row["kind"],
+    label=lambda row: row["kind"],
 )

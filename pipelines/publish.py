@@ -1,4 +1,4 @@
-"""Stage 6: the tables people load. Every execution is run again from what is published of it, or refused."""
+"""Stage 6: the published tables. An execution that its published row does not reproduce is refused."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from hearth.schemas.tables import TABLES
 from hearth.storage.rejects import Reject
 
 PER_CASE = ("programs", "environments", "executions", "repairs")
-"""Tables whose rows come from one case each; the others need all of them."""
+"""Tables whose rows come from one case each; the others need all cases."""
 
 GATHER = 2_048
-"""Cases published in one file: whoever asks for one opens every file's footer, so that there should be few."""
+"""Cases published in one file: a query opens every file's footer, so files should be few."""
 
 
 class Context:
-    """Homes, the seed, and which program was published last: one in several homes is one row."""
+    """Homes, the seed, and the program published last: a program in several homes is one row."""
 
     def __init__(self, homes: Homes, seed: int) -> None:
         self.homes, self.seed = homes, seed
@@ -31,7 +31,7 @@ class Context:
 
 
 def process(case: CaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
-    """The rows of one case, if running it again gives what it says."""
+    """The rows of one case, if replaying it gives the same execution."""
     difference = difference_on_replay(case, context.homes)
     if difference:
         return Reject.of(Code.REPLAY_DIFFERS, difference, file=case["place"], found=case["execution_id"])

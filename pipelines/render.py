@@ -1,5 +1,6 @@
-"""Stage 5: pictures of a few programs while they run: the home from above and one camera, colour and instance ids; and
-films of some of them, each with light, bodies, designs, places and speed of its own.
+"""Stage 5: pictures of a few executions, from above and by one camera, as colour and instance ids; and films of some.
+
+Each film has its own light, bodies, designs, positions and speed.
 """
 
 from __future__ import annotations
@@ -31,9 +32,8 @@ TOP = "top"
 FRAMES = "frames"
 """Folder of the pictures, in the stage's own folder and in the dataset."""
 
-
 FILMS = "films"
-"""Folder of the films, likewise."""
+"""Folder of the films, in both."""
 
 
 class Context(NamedTuple):
@@ -44,7 +44,7 @@ class Context(NamedTuple):
     drawable: dict[str, DrawableHome]
 
     def home(self, name: str) -> DrawableHome:
-        """A home with geometry, which is made if it has none; once a process."""
+        """A home with geometry, derived from its relations if it has none; once a process."""
         from hearth.homes import library
         from hearth.rendering.scene.with_geometry import with_geometry
 
@@ -55,7 +55,7 @@ class Context(NamedTuple):
 
 
 def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow]]:
-    """One row for each picture of a case, and one for its film, if it is filmed."""
+    """One row for each picture of a case, and one for its film, if any."""
     from hearth.rendering.film.png import encode
     from hearth.rendering.film.snapshots import snapshots
 
@@ -75,11 +75,11 @@ def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow 
 
 
 FILM_SIZE, FILM_RATE = (320, 240), 15.0
-"""Width and height of a film, and its pictures a second."""
+"""Width and height of a film in pixels, and its pictures a second."""
 
 
 def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> FilmedRow:
-    """Write a film, as webm: browsers play that, and not the mp4 that OpenCV writes."""
+    """Write a film as webm, which browsers play; they do not play the mp4 that OpenCV writes."""
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.variation import drawn
@@ -122,13 +122,13 @@ def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
 
 
 def _folder(execution_id: str) -> str:
-    """A folder's name that any file system takes, and that no two executions share."""
+    """A folder name, unique to the execution, that any file system accepts."""
     words = "".join(letter if letter.isalnum() or letter in "-_." else "_" for letter in execution_id)
     return f"{words.strip('._')[-80:]}-{value_digest(execution_id)[:8]}"
 
 
 def _view(camera: Camera) -> str:
-    """`top`, or `auto` for the camera of the room that was chosen: its name is in the row."""
+    """`top`, or `auto` for the chosen camera of the room, whose name is in the row."""
     return TOP if camera.name == TOP else AUTO
 
 
@@ -160,7 +160,7 @@ def _intrinsics(camera: Camera) -> PinholeRow:
 
 
 def _pose(camera: Camera) -> list[float]:
-    """Camera to world, row by row."""
+    """Camera to world, 4 by 4, row by row."""
     return [float(number) for number in camera.pose.flatten()]
 
 
@@ -178,7 +178,7 @@ def prepare(settings: Settings) -> Plan:
 
 
 def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
-    """Every case with the file it stands in, without what only running it needs."""
+    """Every case with its file, of the columns that the choice needs."""
     manifest = read_manifest(settings.folder("sample"))
     if manifest is None:
         return
@@ -189,11 +189,11 @@ def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
 
 
 SHARES = 64
-"""Partitions at most, so that all workers have something to film and a killed run loses little."""
+"""Partitions at most: enough for all workers, and a killed run loses little."""
 
 
 def partitions(job: Job) -> Iterator[Partition]:
-    """The executions to be filmed, a few at a time; one empty partition if there are none."""
+    """The chosen executions, a few at a time; one empty partition if there are none."""
     manifest = read_manifest(job.settings.folder("sample"))
     known: dict[str, str] = job.plan["executions"]
     executions = list(known)
@@ -206,7 +206,7 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 
 def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
-    """The cases of a partition; the others, nearly all, are never turned into rows."""
+    """The cases of a partition; the others, nearly all, are never converted to rows."""
     import pyarrow as pa
     import pyarrow.compute as pc
     import pyarrow.parquet as pq
@@ -225,7 +225,7 @@ def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
 
 
 def open_context(job: Job) -> Context:
-    """Homes, built when first asked for."""
+    """Homes, built when first used."""
     return Context(Homes(job.settings), job, {})
 
 
@@ -240,6 +240,6 @@ STAGE = Stage(
     facts=knowledge_used,
     partitions=partitions,
     records=records,
-    patience=10,
+    time_factor=10,
     identify=lambda case: str(case["execution_id"]),
 )

@@ -1,4 +1,4 @@
-"""Stage 3: every program in an environment where it runs: sampled from a home, or the one it came with."""
+"""Stage 3: every program in an environment where it runs: sampled from a home, or stored with the program."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
 
 SHARED_BY = 32
-"""Start graphs that are compared to find out what a home is where only environments of it are known."""
+"""Start graphs that are compared to derive a home of which only environments are stored."""
 
 
 class Context(NamedTuple):
@@ -61,7 +61,7 @@ def process(record: ValidatedRow, context: Context) -> Iterator[CaseRow | Reject
 
 
 def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
-    """All homes, or so many of them drawn for each program, in the homes' order."""
+    """All homes, or `each` of them drawn for the program, in the homes' order."""
     if not 0 < context.each < len(context.names):
         return context.names
     drawn = rng(context.seed, "homes", program_id).sample(context.names, context.each)
@@ -69,15 +69,15 @@ def _chosen(program_id: str, context: Context) -> tuple[str, ...]:
 
 
 def _once(outputs: list[CaseRow | Reject]) -> Iterator[CaseRow | Reject]:
-    """The outputs; what fails in every home for one reason is said once."""
-    said: set[tuple[str, int]] = set()
+    """The outputs; if all of them fail, each code and line is reported once."""
+    reported: set[tuple[str, int]] = set()
     fails = all(isinstance(output, Reject) for output in outputs)
     for output in outputs:
         if isinstance(output, Reject) and fails:
             fault = output.diagnostics[0]
-            if (fault.code, fault.line) in said:
+            if (fault.code, fault.line) in reported:
                 continue
-            said.add((fault.code, fault.line))
+            reported.add((fault.code, fault.line))
         yield output
 
 
@@ -94,14 +94,14 @@ def _sampled(
 
 
 def failed(failure: Failure, program: Program, place: str, where: str = "") -> Reject:
-    """A reject for a program that does not run, at the line of the step where that shows."""
+    """A reject for a program that does not run, at the line of the failing step."""
     steps = [number for number, tick in enumerate(program.ticks()) for _ in tick]
     step = steps.index(failure.tick) if failure.tick in steps else 0
     return Reject.failed(failure, place, program.line(step), where)
 
 
 def _stored(record: ValidatedRow, grounding: GroundingRow, start: GraphRow, context: Context) -> CaseRow:
-    """A case in the environment that a program came with, run as the release's programs were."""
+    """A case in the environment stored with the program, run by the release's rules."""
     name = grounding["home"]
     bound: ValidatedRow = {**record, "steps": grounding["steps"]}
     program = program_of(bound, bindings_of(grounding["bindings"]))
@@ -150,14 +150,14 @@ def _case(
 
 
 def prepare(settings: Settings) -> Plan:
-    """The homes to sample in, and the parts from which homes are derived that only stored graphs tell of."""
+    """The homes to sample in, and the parts from which the other homes of stored start graphs are derived."""
     homes = Homes(settings)
-    parts = {name: [digest for digest, _ in found] for name, found in _told_of(settings, homes).items()}
+    parts = {name: [digest for digest, _ in found] for name, found in _parts_by_home(settings, homes).items()}
     return {**overlays(settings), "homes": list(homes.names()), "derived": parts}
 
 
-def _told_of(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path]]]:
-    """For each home that is not in the catalog, the first parts (digest, path) with enough start graphs in it."""
+def _parts_by_home(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path]]]:
+    """For each home outside the catalog, the first parts (digest, path) with enough start graphs of it."""
     manifest = read_manifest(settings.folder("validate"))
     assert manifest is not None
     found: dict[str, list[tuple[str, Path]]] = {}
@@ -175,14 +175,14 @@ def _told_of(settings: Settings, homes: Homes) -> dict[str, list[tuple[str, Path
 
 
 def derive_homes(job: Job) -> None:
-    """Write the homes that only stored start graphs tell of."""
+    """Write the homes that are derived from stored start graphs."""
     folder = job.folder / DERIVED
     folder.mkdir(exist_ok=True)
-    told = _told_of(job.settings, Homes(job.settings))
+    derived = _parts_by_home(job.settings, Homes(job.settings))
     for stale in folder.iterdir():
-        if stale.stem not in told:
+        if stale.stem not in derived:
             stale.unlink()
-    for name, parts in told.items():
+    for name, parts in derived.items():
         write_home(folder / f"{name}.json", common(_starts(name, (path for _, path in parts))))
 
 
@@ -197,7 +197,7 @@ def _starts(name: str, parts: Iterable[Path]) -> Iterator[GraphRow]:
 
 
 def open_homes(job: Job) -> Context:
-    """Homes, built when first asked for."""
+    """Homes, built when first used."""
     return Context(Homes(job.settings), tuple(job.plan["homes"]), job.settings.seed, job.settings.homes_each)
 
 
@@ -211,6 +211,6 @@ STAGE = Stage(
     prepare=prepare,
     facts=knowledge_used,
     begin=derive_homes,
-    tally=lambda row: "executable" if row["executable"] else "not executable",
+    label=lambda row: "executable" if row["executable"] else "not executable",
     share=64,
 )

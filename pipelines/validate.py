@@ -1,4 +1,4 @@
-"""Stage 2: programs against the action grammar: they parse, their names are known, their objects afford the steps."""
+"""Stage 2: checks programs by the action grammar: syntax, names, arity and affordances."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from hearth.storage.rejects import Reject
 
 
 def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
-    """Check one program, and each of its groundings; a grounding at fault is refused alone."""
-    check = checked_words if record["origin"] == plans.NAME else checked
+    """Check one program and each of its groundings; a faulty grounding is refused alone."""
+    check = checked_natural_language if record["origin"] == plans.NAME else checked
     program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
     if faults:
         return [Reject(faults)]
     outcomes = [_grounding(grounding, record["place"], known) for grounding in record["groundings"] or ()]
     groundings = [outcome for outcome in outcomes if not isinstance(outcome, Reject)]
-    told = replace(
+    titled = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
     )
-    start = programs.already(program, groundings, record["conditions"] or (), known)
-    found = [*programs.findings(told, known), *programs.undeclared(told, record, known), *start]
-    warnings = (*warnings, *(programs.diagnostic(each, told, record["place"]) for each in found))
+    start = programs.met_at_start(program, groundings, record["conditions"] or (), known)
+    found = [*programs.findings(titled, known), *programs.undeclared(titled, record, known), *start]
+    warnings = (*warnings, *(programs.diagnostic(each, titled, record["place"]) for each in found))
     row: ValidatedRow = {
         **named(record),
-        "title": told.title,
-        "description": told.description,
+        "title": titled.title,
+        "description": titled.description,
         "steps": step_rows(program),
         "groundings": groundings,
         "conditions": record["conditions"],
@@ -84,16 +84,16 @@ def _replaced(expanded: special.Expanded, place: str) -> Iterator[Diagnostic]:
         yield Diagnostic(Code.SPECIAL_BLOCK, message, place, line, found=text[:200])
 
 
-def checked_words(
+def checked_natural_language(
     text: str, before: int, place: str, known: Knowledge
 ) -> tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """`checked` for steps in words; what was only nearly understood is a warning with its similarity."""
-    heard = parse_steps(text, before, place, known)
-    faults = heard.faults or grammar.affordances(heard.program, known, place)
-    # Words lose instances: what is switched on twice may be two things, so that this is only a warning here.
-    twice = (programs.diagnostic(each, heard.program, place) for each in programs.contradictions(heard.program, known))
-    warnings = (*heard.warnings, *_warnings(heard.program, known, heard.program.lines, place), *twice)
-    return heard.program, faults, () if faults else warnings
+    """`checked` for natural-language steps; a fuzzy match is a warning with its similarity."""
+    parse = parse_steps(text, before, place, known)
+    faults = parse.faults or grammar.affordances(parse.program, known, place)
+    # Natural language loses instances: two lamps may look like one switched on twice, so this is only a warning.
+    twice = (programs.diagnostic(each, parse.program, place) for each in programs.contradictions(parse.program, known))
+    warnings = (*parse.warnings, *_warnings(parse.program, known, parse.program.lines, place), *twice)
+    return parse.program, faults, () if faults else warnings
 
 
 def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place: str) -> Iterator[Diagnostic]:
@@ -104,7 +104,7 @@ def _warnings(program: Program, known: Knowledge, lines: tuple[int, ...], place:
 
 
 def _numbered(program: Program) -> Program:
-    """Objects that are only named by node get an instance of their own, so that (name, instance) tells them apart."""
+    """An instance number for each object identified by its node alone, so that (name, instance) identifies it."""
     if all(ref.instance for step in program.steps for ref in step.objects):
         return program
     taken = {ref.key for step in program.steps for ref in step.objects if ref.instance}
@@ -127,7 +127,7 @@ def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge) -> 
     program, faults, _ = checked(grounding["text"], 0, f"{place} in {grounding['home']}", known)
     unbound = [ref for ref in program.objects() if ref.node is None]
     if not faults and unbound:
-        message = f"`{unbound[0].name}` ({unbound[0].instance}) is bound to no node"
+        message = f"`{unbound[0].name}` ({unbound[0].instance}) is not bound to a node"
         faults = (Diagnostic(Code.UNBOUND, message, place, suggestion="write (1.319) for node 319"),)
     if faults:
         return Reject(faults)

@@ -1,4 +1,4 @@
-"""Pages of the documentation that are made from the code and the knowledge when it is built: none goes stale."""
+"""Pages of the documentation that are generated from the code and the knowledge."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def signature(place: str) -> str:
 
 
 def commands() -> str:
-    """Every command's help."""
+    """The help of every command."""
     from hearth import cli
 
     lines = ["# Commands", "", "`python cli.py COMMAND`, or `hearth COMMAND` once installed."]
@@ -116,15 +116,15 @@ def _helps(words: str, command: Any) -> Iterator[tuple[str, str]]:
 
 
 def actions() -> str:
-    """Every action that is known."""
+    """All actions."""
     from hearth.kb.loading.load import default
 
     lines = [
         "# Actions",
         "",
-        "What each takes and is in words; `hearth kb action NAME` tells all of one.",
+        "Objects, text and failures of each; `hearth kb action NAME` shows all about one.",
     ]
-    lines += ["", "| action | in words | objects | how it can fail |", "|---|---|---|---|"]
+    lines += ["", "| action | text | objects | failures |", "|---|---|---|---|"]
     for name, action in sorted(default().actions.items()):
         roles, needed = (
             ", ".join(action.roles) or "none",
@@ -136,10 +136,10 @@ def actions() -> str:
 
 
 def objects() -> str:
-    """Every class of objects that is known."""
+    """All classes of objects."""
     from hearth.kb.loading.load import default
 
-    lines = ["# Objects", "", "Classes, what they can be and do; `hearth kb show NAME` tells all of one."]
+    lines = ["# Objects", "", "Classes with their properties; `hearth kb show NAME` shows all about one."]
     lines += ["", "| class | category | properties |", "|---|---|---|"]
     for name, kind in sorted(default().objects.items()):
         lines.append(f"| `{name}` | {kind.category} | {', '.join(sorted(kind.properties)).lower()} |")
@@ -147,7 +147,7 @@ def objects() -> str:
 
 
 def tables() -> str:
-    """The published tables, column by column."""
+    """The published tables with their columns."""
     from hearth.schemas.tables import TABLES
 
     lines = ["# Tables", "", "Parquet, typed and nested; `catalog.duckdb` has them as views, with `steps` and `ticks`."]
@@ -161,16 +161,16 @@ def tables() -> str:
 
 
 def failures() -> str:
-    """Every failure code, and what repairs do about it."""
+    """All failure codes and their repairs."""
     from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
     from hearth.schemas.failures import Code
 
     lines = [
         "# Failures",
         "",
-        "Everything that can go wrong, as data.",
+        "All codes of failures and rejects.",
         "",
-        "| code | what repairs do about it |",
+        "| code | repair |",
         "|---|---|",
     ]
     for code in Code:
@@ -181,8 +181,8 @@ def failures() -> str:
 
 
 def library() -> str:
-    """The modules, each with what its docstring says first."""
-    lines = ["# Library", "", "Imports go one way, down this list. Pages are made from the docstrings."]
+    """The modules with the first lines of their docstrings."""
+    lines = ["# Library", "", "Modules import only from packages above. Pages are generated from docstrings."]
     for package in PACKAGES:
         lines += ["", f"## hearth.{package}", ""]
         for file in sorted((ROOT / package).rglob("*.py")):
@@ -194,7 +194,7 @@ def library() -> str:
 
 
 def modules() -> dict[str, str]:
-    """A page for every module, filled by mkdocstrings."""
+    """A page for each module, filled by mkdocstrings."""
     pages = {}
     for package in PACKAGES:
         for file in sorted((ROOT / package).rglob("*.py")):
@@ -205,7 +205,7 @@ def modules() -> dict[str, str]:
 
 
 def index() -> str:
-    """The README, its links to pictures as they are from here."""
+    """The README, with links to pictures relative to the documentation."""
     return (ROOT / "README.md").read_text("utf-8").replace("](docs/", "](")
 
 
@@ -222,7 +222,7 @@ PAGES: dict[str, Callable[[], str]] = {
 
 
 def on_startup(command: str, dirty: bool) -> None:
-    """Lay out the package for mkdocstrings: the checkout is the package's folder, with much in it that is no code."""
+    """Link the package for mkdocstrings, because the checkout holds more than the package."""
     package = ROOT / "build/source/hearth"
     package.mkdir(parents=True, exist_ok=True)
     for path in (*(ROOT / name for name in PACKAGES), *ROOT.glob("*.py")):

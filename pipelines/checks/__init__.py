@@ -1,1 +1,1 @@
-"""What is wrong with a program, and corrections that are safe."""
+"""Checks of programs, and safe corrections."""

@@ -1,4 +1,4 @@
-"""What a look at a program found: the kind, the step, and what would mend it."""
+"""The findings of the checks: code, step, message and correction."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from hearth.schemas.program import ObjectRef, Step
 
 
 class Finding(NamedTuple):
-    """Something that looks wrong with a step (-1: with the whole program), and what would mend it.
+    """A probable fault of a step (-1: of the whole program), and its correction.
 
     Attributes:
         code: the kind.
         step: number of the step, from 0.
         message: the fault.
-        remedy: what to do, in words.
-        before: steps to write before it.
-        remove: whether the step should go.
-        found: the offending words.
+        remedy: the correction as text.
+        before: steps to insert before it.
+        remove: whether the step should be removed.
+        found: the words at fault.
         object: the object at fault, for underlining.
     """
 

@@ -1,4 +1,4 @@
-"""Safe corrections of program files: what is written is kept wherever only one thing can have been meant."""
+"""Safe corrections of program files, made only where a single correction is possible."""
 
 from __future__ import annotations
 
@@ -14,37 +14,37 @@ from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs, print_step
 
 SURE = 0.75
-"""Similarity by edit distance from which the nearest name is taken for a misspelt one."""
+"""Similarity by edit distance from which the nearest name replaces a misspelt one."""
 
 MARGIN = 0.1
-"""How much nearer it must be than any other."""
+"""By how much it must be more similar than any other."""
 
 _PASSES = 8
 _NO_INSTANCE = re.compile(r"<[^<>\[\]]*>(?!\s*\()(?!\s*\[)\s*(?:\d+(?=\s|$))?")
 
 Edit = tuple[int, int, list[str]]
-"""The line (from 0), how many lines go, and the lines that come."""
+"""The first line (from 0), the number of lines to remove, and the lines to insert."""
 
 
 def fixed(text: str, known: Knowledge) -> str:
-    """The text with every safe correction made, one after another until none is left.
+    """The text with every safe correction made, pass by pass until none is left.
 
-    Safe are: a misspelt name that only one known name is near to; a missing instance; a step that only repeats what
-    was just done; a missing Walk; a Special block that the reviewed file replaces.
+    Corrected are: a misspelt name that is similar to only one known name; a missing instance; a step that repeats a
+    state change; a missing Walk; a Special block that the reviewed file replaces.
     """
     for _ in range(_PASSES):
         lines = text.split("\n")
-        edits = {at: (at, gone, new) for at, gone, new in _edits(text, lines, known)}
+        edits = {at: (at, removed, new) for at, removed, new in _edits(text, lines, known)}
         if not edits:
             return text
-        for at, gone, new in sorted(edits.values(), reverse=True):
-            lines[at : at + gone] = new
+        for at, removed, new in sorted(edits.values(), reverse=True):
+            lines[at : at + removed] = new
         text = "\n".join(lines)
     return text
 
 
 def difference(before: str, after: str, file: str) -> str:
-    """A unified diff; empty where nothing changed."""
+    """A unified diff; empty if nothing changed."""
     lines = unified_diff(before.split("\n"), after.split("\n"), file, f"{file} (fixed)", lineterm="")
     return "".join(f"{line}\n" for line in lines)
 
@@ -66,7 +66,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
                 yield fault.line - 1, 1, [line]
         if found or faults:
             continue
-        for finding in (*programs.contradictions(canonical, known), *programs.from_afar(canonical, known)):
+        for finding in (*programs.contradictions(canonical, known), *programs.not_close(canonical, known)):
             at = canonical.line(finding.step) - 1
             if at < 0 or "|" in lines[at]:
                 continue
@@ -74,7 +74,7 @@ def _edits(text: str, lines: list[str], known: Knowledge) -> Iterator[Edit]:
 
 
 def _written(fault: Diagnostic, line: str) -> list[str] | None:
-    """The line or lines to write for one that is no step."""
+    """The lines that replace a line which is not a step."""
     if fault.code is Code.SPECIAL_BLOCK:
         expanded = special.expand(line, 0).text
         return expanded.split("\n") if expanded != line else None
@@ -103,7 +103,7 @@ def _respelt(fault: Diagnostic, line: str, known: Knowledge) -> str | None:
 
 
 def only_near(name: str, spellings: Mapping[str, str]) -> str | None:
-    """The one known name that a misspelt one is near to, or None."""
+    """The only known name that is similar to a misspelt one, or None."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 

@@ -1,6 +1,6 @@
-"""What a well-formed program says that cannot be meant: contradictions, things used from afar, other words.
+"""Checks of the meaning of a well-formed program: contradictions, objects out of reach, descriptions that do not fit.
 
-Faults stop a program; warnings go on with it. Each names the step, and most name the edit that mends it.
+Faults refuse a program; warnings are stored with it. Each names the step, and most name the correction.
 """
 
 from __future__ import annotations
@@ -24,33 +24,33 @@ _MADE = {"ON": "switched on", "OFF": "switched off", "OPEN": "opened", "CLOSED":
 
 
 def contradictions(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """Steps that make a thing what the program has just made it: switched on twice, opened while open."""
+    """Steps that set a state which the program has already set: switched on twice, opened while open."""
     made: dict[tuple[tuple[str, int], str], str] = {}
     for number, step in enumerate(program.steps):
         if step.action in known.group("operates") and step.objects:
             value = known.state_of(step.action)
             key = (step.objects[0].key, known.group_of(value))
             if made.get(key) == value:
-                said = _MADE.get(value, f"{step.action} done")
-                message = f"{print_object(step.objects[0])} is {said} twice with nothing between"
+                done = _MADE.get(value, f"{step.action} done")
+                message = f"{print_object(step.objects[0])} is {done} twice with nothing between"
                 remedy = "leave the second one out"
                 yield Finding(Code.CONTRADICTION, number, message, remedy, (), True, step.action)
             made[key] = value
 
 
-def already(
+def met_at_start(
     program: Program, groundings: Iterable[GroundingRow], conditions: Iterable[ConditionRow], known: Knowledge
 ) -> Iterator[Finding]:
-    """Goals that are true at the start, where a program came with its start: in a home's graph, or as conditions.
+    """Steps whose state already holds at the start, by a stored start graph or by the program's own conditions.
 
     Args:
         program: in canonical names.
-        groundings: those it came with; their start graph may be None.
-        conditions: those it came with.
-        known: what actions change.
+        groundings: those stored with it; their start graph may be None.
+        conditions: those stored with it.
+        known: the effects of actions.
     """
-    told = [(ref["name"], ref["instance"], one["name"]) for one in conditions for ref in one["objects"][:1]]
-    starts = [("by its own conditions", frozenset(told))]
+    stored = [(ref["name"], ref["instance"], one["name"]) for one in conditions for ref in one["objects"][:1]]
+    starts = [("by its own conditions", frozenset(stored))]
     starts += [(f"in {one['home']}", _held(one["start"], one["bindings"])) for one in groundings if one["start"]]
     seen: set[tuple[tuple[str, int], str]] = set()
     for number, step in enumerate(program.steps):
@@ -68,15 +68,15 @@ def already(
 
 
 def _held(start: GraphRow, bindings: list[BindingRow]) -> frozenset[tuple[str, int, str]]:
-    """What is true of a program's objects in the graph that a grounding begins with."""
+    """The states of a program's objects in the start graph of a grounding, as (name, instance, state)."""
     states = {node["id"]: node["states"] for node in start["nodes"]}
     return frozenset(
         (bound["name"], bound["instance"], state) for bound in bindings for state in states.get(bound["node"]) or ()
     )
 
 
-def from_afar(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """Things that are used though nobody went to them, nor to anything they usually are on or in; a Walk is missing."""
+def not_close(program: Program, known: Knowledge) -> Iterator[Finding]:
+    """Objects used without a Walk to them or to anything that they are usually on or in."""
     reached: set[str] = set()
     touched: set[tuple[str, int]] = set()
     for number, step in enumerate(program.steps):
@@ -102,7 +102,7 @@ def _needed_close(step: Step, known: Knowledge) -> tuple[ObjectRef, ...]:
 
 
 def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
-    """Whether it may stand beside, on or in something that was gone to, or something gone to beside, on or in it."""
+    """Whether an object may be near, on or in something reached, or something reached near, on or in the object."""
     things = {name for name in reached if not known.is_room(name)}
     thing = known.object_class(ref.name)
     if thing is None or thing.category == "Rooms" or not things.isdisjoint(known.same_class(ref.name)):
@@ -110,9 +110,11 @@ def _within_reach(ref: ObjectRef, reached: set[str], known: Knowledge) -> bool:
     if {"BODY_PART", "CLOTHES"} & set(thing.properties) or (things and "GRABBABLE" in thing.properties):
         return True
     if thing.category == "Lamps" and reached:
-        return True  # it is switched by the door of the room, or from the bed
+        return True  # its switch is by the door of the room, or near the bed
     destinations = {place.destination for place in known.placements(ref.name)}
-    return any(name in destinations or _holds(known, ref.name, name) or _go(known, ref.name, name) for name in things)
+    return any(
+        name in destinations or _holds(known, ref.name, name) or _associated(known, ref.name, name) for name in things
+    )
 
 
 def _holds(known: Knowledge, name: str, other: str) -> bool:
@@ -122,8 +124,8 @@ def _holds(known: Knowledge, name: str, other: str) -> bool:
 _CLOSELY = 4
 
 
-def _go(known: Knowledge, one: str, other: str) -> bool:
-    """Whether two things hardly go without each other, as a faucet and a bathtub."""
+def _associated(known: Knowledge, one: str, other: str) -> bool:
+    """Whether two things nearly always occur together, as a faucet and a bathtub."""
     return any(
         {row.name, row.other} == {one, other} and row.weight >= _CLOSELY
         for row in known.associations
@@ -132,16 +134,16 @@ def _go(known: Knowledge, one: str, other: str) -> bool:
 
 
 def without_effect(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """A program that only walks about and looks, where that is not what its title is about."""
+    """A program that only walks and looks, unless its title names one of these actions."""
     passing = known.group("goes") | known.group("idle")
     if not program.steps or any(step.action not in passing for step in program.steps):
         return
     if {topics.stem(step.action.lower()) for step in program.steps}.isdisjoint(topics.stems(program.title)):
-        yield Finding(Code.NO_EFFECT, -1, "this program does nothing but go and look", "write what is done there")
+        yield Finding(Code.NO_EFFECT, -1, "this program only walks and looks", "write the steps that are done there")
 
 
 def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[Finding]:
-    """Declared rooms and props that are not used, and what is used though it was not declared (thesis figure 3-3)."""
+    """Declared rooms and props that are not used, and those used but not declared (thesis figure 3-3)."""
     rooms, props = ({one["name"]: one["quantity"] for one in row.get(part) or ()} for part in ("rooms", "props"))
     if not props and not rooms:
         return
@@ -169,7 +171,7 @@ def _is_body(known: Knowledge, name: str) -> bool:
 
 
 def _used(program: Program, known: Knowledge) -> dict[str, int]:
-    """How many things of each class a program handles; rooms and parts of the body are not props."""
+    """The number of objects of each class in a program, without rooms and parts of the body, which are not props."""
     instances: dict[str, set[int]] = {}
     for ref in program.objects():
         thing = known.object_class(ref.name)
@@ -179,11 +181,11 @@ def _used(program: Program, known: Knowledge) -> dict[str, int]:
 
 
 def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[str] = ()) -> Diagnostic:
-    """A finding as people know it from compilers.
+    """A finding as a diagnostic with its place.
 
     Args:
-        finding: what was found.
-        program: the program it was found in; its steps know their lines.
+        finding: one of the program's.
+        program: with the lines of its steps.
         place: the file.
         source: the file's lines, for columns and underlining.
     """
@@ -197,7 +199,7 @@ def diagnostic(finding: Finding, program: Program, place: str, source: Sequence[
 
 
 def findings(program: Program, known: Knowledge) -> Iterable[Finding]:
-    """What a program alone shows, contradictions aside."""
-    yield from from_afar(program, known)
+    """The warnings of a program by itself."""
+    yield from not_close(program, known)
     yield from without_effect(program, known)
     yield from topics.off_topic(program, known)

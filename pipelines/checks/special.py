@@ -1,4 +1,4 @@
-"""Special blocks: free text where no action fitted, and the reviewed steps that replace some of it (thesis 3.3)."""
+"""Special blocks: free text instead of an action, and the reviewed steps that replace some of it (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ _SPECIAL = re.compile(r"\s*\[\s*special\s*\]\s*<?(.*?)>?(?:\s*\(\d+\))?\s*", re.
 
 
 class Expanded(NamedTuple):
-    """A program's text with special blocks replaced, and where each of its lines stood."""
+    """A program's text with special blocks replaced, and the original line of each of its lines."""
 
     text: str
     lines: tuple[int, ...]
     replaced: tuple[tuple[int, str], ...] = ()
-    """The lines of blocks that were replaced, with their text."""
+    """The lines of the replaced blocks, with their text."""
 
     def original(self, line: int) -> int:
         """The line that a line of the expanded text came from."""
         return self.lines[line - 1] if 0 < line <= len(self.lines) else line
 
     def placed(self, fault: Diagnostic) -> Diagnostic:
-        """A fault of the expanded text, at the line it came from; one of the whole text, at its first."""
+        """A fault of the expanded text, moved to its original line; a fault of the whole text, to the first line."""
         return replace(fault, line=self.original(fault.line or 1))
 
 
 @cache
 def blocks() -> dict[str, tuple[str, ...]]:
-    """Free text in lower case with single spaces -> the steps that stand in for it."""
+    """The steps that replace each free text, which is in lower case with single spaces."""
     import yaml
 
     data = yaml.safe_load((files("hearth") / FILE).read_text("utf-8")) or {}
@@ -42,7 +42,7 @@ def blocks() -> dict[str, tuple[str, ...]]:
 
 
 def expand(text: str, before: int) -> Expanded:
-    """Replace the blocks that are known; `before` is how many lines of the file stand before the text."""
+    """Replace the known blocks; `before` is the number of lines of the file before the text."""
     known = blocks()
     kept: list[str] = []
     numbers: list[int] = []

@@ -1,1 +1,1 @@
-"""What is particular to answers of crowds: copies, repetitions, off-topic texts."""
+"""Checks of crowd-sourced answers: copies, repetitions, off-topic texts."""

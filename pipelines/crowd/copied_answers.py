@@ -1,4 +1,4 @@
-"""Answers that were copied: nearly the words of another, nearly another program, one answer pasted again and again."""
+"""Copied answers: near-duplicate descriptions and programs, and one program given for many descriptions."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
 
-from hearth.pipelines.crowd.seen import Tally, digest
+from hearth.pipelines.crowd.seen import SeenSet, digest
 from hearth.pipelines.readers import crowd
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.rejects import Reject
 
 ALIKE_WORDS = 0.8
-"""Share of common words in order from which two descriptions are one."""
+"""Similarity of the words of two descriptions from which they are near-duplicates."""
 
 ALIKE_STEPS = 0.85
-"""The same for the steps of two programs that one worker wrote for one description."""
+"""The same for the steps of two programs by one worker for one description."""
 
 PASTED = 3
-"""For so many descriptions a worker may give one program before it counts as pasted."""
+"""Number of descriptions from which one program by one worker counts as pasted."""
 
 _FEWEST_WORDS = 6
 _FEWEST_STEPS = 4
@@ -30,21 +30,21 @@ _SKETCH = 6
 _MOST_CANDIDATES = 20
 
 RECENT = 20_000
-"""Answers of each stage among which a copy is looked for: whoever copies does so within a batch."""
+"""Answers of each stage that are compared; copies are made within a batch."""
 
 
 class Copies:
-    """Finds copies among crowd answers as they come; what it keeps of an answer is hashes of its words or steps.
+    """Finds copies among crowd answers in one pass; of an answer it keeps hashes of the words or steps.
 
     Args:
-        pasted: digests of (worker, program) given for many descriptions, from a first reading.
-        recent: how many answers of each stage are kept to compare with.
+        pasted: digests of (worker, program) given for many descriptions, from an earlier pass.
+        recent: number of answers of each stage that are kept for comparison.
     """
 
     def __init__(self, pasted: frozenset[int] = frozenset(), recent: int = RECENT) -> None:
         self._pasted = pasted
-        self._told = _Recent(recent)
-        self._written = _Recent(recent)
+        self._descriptions = _Recent(recent)
+        self._programs = _Recent(recent)
 
     def checked(self, item: Item) -> Item:
         """The item, or its refusal as a copy."""
@@ -52,37 +52,37 @@ class Copies:
             return item
         cells = item.value["cells"]
         if item.value["stage"] == 1:
-            message = self._told_before(item.record_id, _words(cells["Answer.description"]))
+            message = self._copied_description(item.record_id, _words(cells["Answer.description"]))
         elif program_digest(cells) in self._pasted:
             message = f"one program that this worker gave for {PASTED} descriptions or more"
         else:
-            message = self._written_before(item.record_id, cells)
+            message = self._copied_program(item.record_id, cells)
         if not message:
             return item
         fault = Reject.of(Code.NEAR_DUPLICATE, message, file=item.place, line=item.line, found=item.record_id)
         return refused(item.place, fault, item.record_id, item.line)
 
-    def _told_before(self, record_id: str, words: Sequence[int]) -> str:
+    def _copied_description(self, record_id: str, words: Sequence[int]) -> str:
         if len(words) < _FEWEST_WORDS:
             return ""
         sketch = sorted({hash_of(f"{a} {b}") for a, b in pairwise(words)})[:_SKETCH]
-        for name, other in self._told.among(sketch):
+        for name, other in self._descriptions.among(sketch):
             alike = _alike(words, other)
             if alike >= ALIKE_WORDS:
                 return f"nearly the words of {name} (similarity {alike:.2f})"
-        self._told.keep(record_id, words, sketch)
+        self._descriptions.keep(record_id, words, sketch)
         return ""
 
-    def _written_before(self, record_id: str, cells: dict[str, str]) -> str:
+    def _copied_program(self, record_id: str, cells: dict[str, str]) -> str:
         steps = [hash_of(step) for step in _steps(cells)]
         if len(steps) < _FEWEST_STEPS:
             return ""
         task = hash_of("\0".join((cells["WorkerId"].strip(), cells["Input.description_id"].strip())))
-        for name, other in self._written.among([task]):
+        for name, other in self._programs.among([task]):
             alike = _alike(steps, other)
             if alike >= ALIKE_STEPS:
                 return f"nearly the program of {name}, of the same worker (similarity {alike:.2f})"
-        self._written.keep(record_id, steps, [task])
+        self._programs.keep(record_id, steps, [task])
         return ""
 
 
@@ -90,23 +90,23 @@ _SHARES = 64
 
 
 class _Recent:
-    """The last so many answers, found by any of their keys; under each key the first few that are still kept."""
+    """The last `most` answers, found by any of their keys; each key has at most `_MOST_CANDIDATES` of them."""
 
     def __init__(self, most: int) -> None:
         self._most = most
         self._kept: dict[int, tuple[str, array[int], tuple[int, ...]]] = {}
-        # One dictionary of all keys would be copied whole each time it has had to grow.
+        # Several dictionaries, because one that grows is copied whole.
         self._by_key: tuple[dict[int, int | tuple[int, ...]], ...] = tuple({} for _ in range(_SHARES))
         self._next = 0
 
     def among(self, keys: Iterable[int]) -> Iterator[tuple[str, Sequence[int]]]:
-        """Names and contents of those that share a key, each once."""
+        """Names and contents of the answers that share a key, each once."""
         for number in dict.fromkeys(number for key in keys for number in self._numbers(key)):
             name, content, _ = self._kept[number]
             yield name, content
 
     def keep(self, name: str, content: Sequence[int], keys: Iterable[int]) -> None:
-        """Keep one more, and forget the oldest."""
+        """Keep one more answer, and forget the oldest."""
         own = tuple(key for key in keys if len(self._numbers(key)) < _MOST_CANDIDATES)
         self._kept[self._next] = (name, array("I", content), own)
         for key in own:
@@ -124,7 +124,7 @@ class _Recent:
         return (found,) if isinstance(found, int) else found
 
     def _put(self, key: int, numbers: tuple[int, ...]) -> None:
-        # Nearly every key has one answer: bare, its number takes a third of the memory.
+        # Nearly every key has one answer: a plain number takes a third of the memory of a tuple.
         share = self._by_key[key % _SHARES]
         if numbers:
             share[key] = numbers if len(numbers) > 1 else numbers[0]
@@ -134,7 +134,7 @@ class _Recent:
 
 def pasted(items: Iterable[Item]) -> frozenset[int]:
     """Programs that one worker gave for many descriptions, as digests of worker and program."""
-    answers, given = Tally(), Tally()
+    answers, given = SeenSet(), SeenSet()
     found: set[int] = set()
     for item in items:
         if item.reader == crowd.NAME and item.value["stage"] == 2:
@@ -147,7 +147,7 @@ def pasted(items: Iterable[Item]) -> frozenset[int]:
 
 
 def program_digest(cells: dict[str, Any]) -> int:
-    """A worker and what they wrote, spaces and case aside; 0 for a program of very few steps."""
+    """A digest of a worker and their program, ignoring spaces and case; 0 for a program of very few steps."""
     steps = _steps(cells)
     return digest([cells["WorkerId"].strip(), *steps]) if len(steps) >= _FEWEST_STEPS else 0
 
@@ -167,5 +167,5 @@ def _alike(one: Sequence[int], other: Sequence[int]) -> float:
 
 
 def hash_of(text: str) -> int:
-    """A number that stands for a text; equal in every process, unlike `hash`."""
+    """A hash of a text of 32 bits, the same in every process, unlike `hash`."""
     return int.from_bytes(blake2b(text.encode("utf-8", "surrogatepass"), digest_size=4).digest(), "little")

@@ -1,11 +1,11 @@
-"""Records that were read before: the same id again, the same answer of a worker, the same words."""
+"""Records that were read before: the same id, the same answer of a worker, or the same text."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from hearth.pipelines.crowd.seen import Tally, digest
+from hearth.pipelines.crowd.seen import SeenSet, digest
 from hearth.pipelines.readers import crowd, plans, text
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
@@ -13,18 +13,18 @@ from hearth.storage.rejects import Reject
 
 
 class Repeated:
-    """Tells first records from copies, across all sources.
+    """Finds copies of earlier records across all sources.
 
-    Programs of text go by their file and a running number: of these only the count is kept.
+    The ids of programs of text are a file and a running number, of which only the count is kept.
     """
 
     def __init__(self) -> None:
-        self._seen = Tally()
+        self._seen = SeenSet()
         self._numbered: dict[str, int] = {}
         self._likely = False
 
     def first(self, items: Iterable[Item], reader: str, place: str) -> Iterator[Item]:
-        """The items of a file, those that came before as refusals."""
+        """The items of a file, copies as refusals."""
         if reader != text.NAME or self._likely:
             yield from map(self._checked, items)
             return
@@ -57,7 +57,7 @@ class Repeated:
 
 
 def _answer(item: Item) -> Any:
-    """What makes two records one: a crowd worker's answer, its own id left out, or steps in words; else None."""
+    """The content by which copies are found: a crowd worker's answer without its id, or natural-language steps."""
     if item.reader == plans.NAME:
         return [plans.NAME, item.value["text"]]
     if item.reader != crowd.NAME:

@@ -1,4 +1,4 @@
-"""Counting what came before in a dozen bytes each, so that millions of records can be told apart in little memory."""
+"""A set of seen keys with counts, in a dozen bytes a key, so that millions of records fit in little memory."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import orjson
 _MOST = 255
 
 
-class Tally:
-    """How often each key came, up to 255 times; keys are digests of 64 bits, of which two in 10^19 pairs are alike."""
+class SeenSet:
+    """Keys with the number of times each was added, up to 255; keys are digests of 64 bits."""
 
     def __init__(self) -> None:
         self._room(1 << 10)
@@ -23,7 +23,7 @@ class Tally:
         self._keys, self._counts, self._mask = array("Q", bytes(8 * slots)), bytearray(slots), slots - 1
 
     def add(self, key: int) -> int:
-        """Count a key; how often it came before."""
+        """Add a key; the number of times it was added before."""
         slot = self._slot(key)
         before = self._counts[slot]
         if not before:
@@ -42,7 +42,7 @@ class Tally:
         return self._used
 
     def _slot(self, key: int) -> int:
-        """Where a key is, or would be put."""
+        """The slot of a key, or the free slot for it."""
         keys, counts, mask = self._keys, self._counts, self._mask
         slot = key & mask
         while counts[slot] and keys[slot] != key:
@@ -59,10 +59,10 @@ class Tally:
 
 
 def digest(value: Any) -> int:
-    """A number that stands for a JSON value, the same in every process."""
+    """A digest of a JSON value of 64 bits, the same in every process."""
     try:
         data = orjson.dumps(value, option=orjson.OPT_SORT_KEYS)
     except TypeError:
-        # Bytes that are no text are read as lone surrogates, which JSON in UTF-8 cannot hold.
+        # Bytes that are not text are read as lone surrogates, which orjson refuses.
         data = json.dumps(value, sort_keys=True).encode()
     return int.from_bytes(blake2b(data, digest_size=8).digest(), "little")

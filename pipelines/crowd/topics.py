@@ -1,4 +1,4 @@
-"""What words are about: whether a text speaks of the things that its program uses, or of an activity at all."""
+"""Topics: whether a text mentions the objects that its program uses, and whether it describes an activity."""
 
 from __future__ import annotations
 
@@ -19,27 +19,26 @@ if TYPE_CHECKING:
 FILE = "pipelines/crowd/off_topic.yaml"
 
 _COMMON_DEPTH = 3
-"""Kinds that have fewer kinds above them (device, artefact) say too little to make two things alike."""
+"""Kinds with fewer kinds above them (device, artefact) are too general to relate two things."""
 
 _COMPOUND = 5
-"""Letters from which a word counts as part of a longer one: chess, chessboard."""
+"""Letters from which a word matches the beginning of a longer one: chess, chessboard."""
 
-_TELLING = 2
-"""Different phrases of one kind from which a text is taken to be no activity."""
+_ENOUGH = 2
+"""Different phrases of one kind from which a text is not a description of an activity."""
 
 
 def off_topic(program: Program, known: Knowledge) -> Iterator[Finding]:
-    """A text that mentions none of the objects that the program uses, nor anything that tells of them.
+    """A text that mentions none of the objects that the program uses, nor anything related to them.
 
-    Of them tell: another name, what they are a kind of, a thing of the same kind or one that stands in for them, the
-    place where they are usually kept.
+    Related are: another name, a kind of the object, an object of the same kind, a stand-in, and its usual container.
     """
     used = {ref.name for step in program.steps for ref in step.objects if not known.is_room(ref.name)}
     if not used or not program.description:
         return
     text = f"{program.title} {program.description}"
     words, things = set(stems(text)), mentioned(text, known)
-    if not any(_named(name, words, known) or _told(name, things, known) for name in sorted(used)):
+    if not any(_named(name, words, known) or _related(name, things, known) for name in sorted(used)):
         shown = ", ".join(sorted(used)[:3])
         yield Finding(Code.OFF_TOPIC, -1, f"the text mentions none of the objects used ({shown})", found=shown)
 
@@ -52,7 +51,7 @@ def _named(name: str, words: set[str], known: Knowledge) -> bool:
     return any(part.startswith(word) for part in own for word in words if len(word) >= _COMPOUND)
 
 
-def _told(name: str, things: set[str], known: Knowledge) -> bool:
+def _related(name: str, things: set[str], known: Knowledge) -> bool:
     kinds = known.ancestors(name)
     for other in things:
         if other in known.stand_ins(name) or name in known.stand_ins(other):
@@ -63,7 +62,7 @@ def _told(name: str, things: set[str], known: Knowledge) -> bool:
 
 
 def mentioned(text: str, known: Knowledge) -> set[str]:
-    """The classes of things, rooms aside, that a text names in one word or two."""
+    """The classes, without rooms, that a text names in one or two words."""
     words = re.findall(r"[a-z]+", text.lower())
     found: set[str] = set()
     for name in (*words, *("_".join(pair) for pair in pairwise(words))):
@@ -74,12 +73,12 @@ def mentioned(text: str, known: Knowledge) -> set[str]:
 
 
 def no_activity(text: str) -> tuple[str, list[str]] | None:
-    """What a text is instead of a description (advertising, words to whoever gave the task), and what tells so."""
+    """The kind of a text that is not a description (advertising, a message to the requester), and its phrases."""
     plain = " ".join(re.findall(r"[a-z0-9%']+|[.:/@]", text.lower()))
     for kind, phrases in _kinds().items():
-        told = [match[0] for pattern in phrases if (match := pattern.search(plain))]
-        if len(told) >= _TELLING:
-            return kind, told
+        matches = [match[0] for pattern in phrases if (match := pattern.search(plain))]
+        if len(matches) >= _ENOUGH:
+            return kind, matches
     return None
 
 
@@ -99,7 +98,7 @@ _ENDINGS = ((re.compile("sses$"), "ss"), (re.compile("(?<=[^s])s$"), ""), (re.co
 
 
 def stem(word: str) -> str:
-    """A word without its plural or common verb endings: `dishes` meets `dish`, `plates` `plate`, `reading` `read`."""
+    """A word without its plural or common verb endings: `dish` for `dishes`, `read` for `reading`."""
     for ending, instead in _ENDINGS:
         word = ending.sub(instead, word)
     return word

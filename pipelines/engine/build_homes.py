@@ -1,4 +1,4 @@
-"""The homes that stages run programs in: the catalog, the user's laid over it, and those derived from start graphs."""
+"""The homes of a build: the catalog, the user's homes laid over it, and homes derived from stored start graphs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DERIVED = "homes"
 
 
 class Homes:
-    """The homes of a build by name, each built once a process: the catalog's at rest, derived ones as they are."""
+    """The homes of a build, built once a process: the catalog's in their default state, derived ones as stored."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -25,7 +25,7 @@ class Homes:
         self.knowledge = knowledge(settings)
 
     def names(self) -> tuple[str, ...]:
-        """Homes to sample in: those asked for, or all of the catalog.
+        """Homes to sample in: those named in the settings, or all of the catalog.
 
         Raises:
             HearthError: UNKNOWN_HOME.
@@ -37,7 +37,7 @@ class Homes:
         return self._settings.homes or library.names(self._settings.homes_folder)
 
     def catalog(self) -> tuple[str, ...]:
-        """All homes that come with us, or are laid over ours."""
+        """All homes of ours and of the user's folder."""
         from hearth.homes import library
 
         return library.names(self._settings.homes_folder)
@@ -51,7 +51,7 @@ class Homes:
         return frozenset(World.start(self.home(name)).edges())
 
     def _home(self, name: str) -> Home:
-        """The home that environments of that name differ from."""
+        """The home to which environments of that name are differences."""
         from hearth.grounding.environments.default_state import prepared
         from hearth.homes import library
 

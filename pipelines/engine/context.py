@@ -1,4 +1,4 @@
-"""The knowledge that a build was asked to use, and what a plan says of it and of the homes."""
+"""The knowledge of a build, and the digests of the user's overlays in a plan."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ def knowledge(settings: Settings) -> Knowledge:
 
 
 def knowledge_used(job: Job) -> dict[str, Any]:
-    """Which knowledge a stage used, for its manifest."""
+    """The knowledge that a stage used, for its manifest."""
     return made_with(job.settings.kb_folder, job.folder)
 
 
 def keep_knowledge(job: Job) -> None:
-    """Copy what is laid over our knowledge into the stage's folder, for stages that are run alone later."""
+    """Copy the user's knowledge into the stage's folder, for stages that are run alone later."""
     copy_overlay(job.settings.kb_folder, job.folder)
 
 
 def kept_knowledge(settings: Settings) -> Settings:
-    """The options, with the knowledge that the programs were checked with where they name none."""
+    """The settings, with the knowledge that `validate` used if they name none."""
     folder = settings.folder("validate") / FOLDER
     return settings if settings.kb_folder or not folder.is_dir() else replace(settings, kb_folder=str(folder))
 

@@ -1,7 +1,7 @@
-"""The dask engine: partitions as tasks of a cluster, our own on this machine or one that is there already.
+"""The dask engine: partitions as tasks of a cluster, started on this machine or already running.
 
-A worker that is lost costs the partitions it was at: dask gives them to another. All workers must see the same files:
-one machine, a shared folder, or a dataset in a store (see `stores`).
+The partitions of a lost worker are run again by another. All workers must see the same files: one machine, a shared
+folder, or a dataset in a store (see `stores`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from hearth.schemas.failures import Code
 from hearth.storage.partitions import Counts
 
 LOSSES = 3
-"""Workers that may die over one partition before it is blamed for it."""
+"""Workers that may die over one partition before the stage stops."""
 
 _CONNECT_SECONDS = 10
 
@@ -42,7 +42,7 @@ class DaskEngine:
 
     @property
     def client(self) -> Any:
-        """The cluster's client; a cluster is started when there is none.
+        """The cluster's client; starts a cluster if none is running.
 
         Raises:
             HearthError: MISSING_FILE, dask is not installed; UNWRITABLE, the scheduler does not answer.
@@ -77,7 +77,7 @@ class DaskEngine:
         """Run partitions and yield each with its counts, in the order of completion.
 
         Raises:
-            HearthError: partitions killed several workers, or the cluster is gone; what was complete is kept.
+            HearthError: a partition killed several workers, or the cluster is gone; complete parts are kept.
         """
         from distributed import as_completed
         from distributed.scheduler import KilledWorker

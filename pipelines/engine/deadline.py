@@ -1,8 +1,7 @@
-"""A time limit for each record: what hangs is interrupted and costs only its own record.
+"""A time limit for each record: a record that hangs is interrupted, and only it is lost.
 
-A thread looks now and then how long the present record has been worked at, and raises `OverTime` in the thread that
-works at it. Unlike an alarm signal this works in any thread, on any system; like one, it waits for library code that
-does not come back to Python.
+A watching thread measures the time of the current record and raises `OverTime` in the thread that processes it. Unlike
+an alarm signal this works in any thread, on any system; like one, it waits for library code to return to Python.
 """
 
 from __future__ import annotations
@@ -15,18 +14,18 @@ _raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
 _raise_in.argtypes = (ctypes.c_ulong, ctypes.py_object)
 
 _LOOKS = 8
-"""Times that the clock is looked at within a limit."""
+"""How often the clock is read within a limit."""
 
 
 class OverTime(BaseException):
-    """A record took too long. No `Exception`: who guards against all that records do wrong must not keep it."""
+    """A record took too long. Not an `Exception`, so that `except Exception` in a stage does not catch it."""
 
 
 class Deadline:
     """A context around one record after another, all in one thread.
 
     Args:
-        seconds: what a record may take; 0 for any time.
+        seconds: the limit of a record; 0 for none.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -51,7 +50,7 @@ class Deadline:
         if self._fired:
             with self._lock:
                 if kind is not OverTime:
-                    _raise_in(self._worker, ctypes.py_object())  # on its way, but the record was just done
+                    _raise_in(self._worker, ctypes.py_object())  # raised, but not yet delivered: the record is complete
                 self._fired = False
 
     def _watch(self) -> None:

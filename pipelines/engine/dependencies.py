@@ -1,4 +1,4 @@
-"""The files on which a module depends: the modules that it imports, theirs in turn, and the data that they name."""
+"""The files on which a module depends: the modules that it imports, directly or not, and the data files they name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DATA = (".csv", ".json", ".sql", ".yaml")
 
 @cache
 def code_digest(*modules: str) -> str:
-    """SHA-256 of the names and bytes of all files on which some modules depend (`hearth.pipelines.sample`)."""
+    """SHA-256 of the names and bytes of all files on which the modules depend (`hearth.pipelines.sample`)."""
     digest = hashlib.sha256()
     for name in sorted(files_of(*modules)):
         digest.update(f"{name}\0{file_digest(ROOT / name)}\n".encode())
@@ -30,7 +30,7 @@ def code_digest(*modules: str) -> str:
 
 
 def files_of(*modules: str) -> set[str]:
-    """Those files, relative to the package: imports are followed wherever they stand, but for those of types alone."""
+    """Those files, relative to the package; every import is followed but those under `TYPE_CHECKING`."""
     found: set[str] = set()
     waiting = list(modules)
     while waiting:
@@ -44,7 +44,7 @@ def files_of(*modules: str) -> set[str]:
 
 @cache
 def _files() -> dict[str, str]:
-    """The modules by name, and data files by their own path, of the packages beside this one."""
+    """The path of each module by its name, and of each data file by its own path."""
     found = {"hearth.version": "version.py"}
     for package in ROOT.glob("*/__init__.py"):
         for folder, _, names in os.walk(package.parent):
@@ -62,13 +62,13 @@ def _module(path: str) -> str:
 
 @cache
 def _read(file: str) -> tuple[frozenset[str], frozenset[str]]:
-    """What a module imports and which data it names; parsing it would take fifteen times as long."""
+    """The modules that a file imports and the data it names, by regular expressions: 15 times as fast as parsing."""
     text = (ROOT / file).read_text("utf-8")
     return frozenset(imports(text)), frozenset(_data(text))
 
 
 def imports(text: str) -> Iterator[str]:
-    """The modules that a source imports, and the names that it takes from them, which may be modules as well."""
+    """The modules that a source imports, and the names imported from them, which may be modules too."""
     for source, names, module in _IMPORT.findall(_TYPES_ONLY.sub("", text) if "if TYPE_CHECKING" in text else text):
         yield source or module
         yield from (f"{source}.{name}" for name in _NAME.findall(names))

@@ -1,4 +1,4 @@
-"""Engines: what spreads a stage's partitions over processes or machines. Every engine gives the same bytes."""
+"""Engines spread a stage's partitions over processes or machines. Every engine gives the same bytes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from hearth.schemas.failures import Code
 
 
 class Engine(Protocol):
-    """Runs partitions somewhere. A context manager: what it started ends with it.
+    """Runs partitions. A context manager: its processes end with it.
 
     Attributes:
-        count: how many partitions it runs at once.
+        count: the number of partitions it runs at once.
     """
 
     count: int
@@ -23,13 +23,13 @@ class Engine(Protocol):
         """Get ready."""
 
     def __exit__(self, *error: object) -> None:
-        """Stop what runs."""
+        """Stop the running partitions."""
 
     def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
-        """Run partitions, asking for few more than run at once, and yield each with its counts when it is done.
+        """Run partitions, taking few more than run at once, and yield each with its counts when it is complete.
 
         Raises:
-            HearthError: partitions could not be run to their end; what was complete is kept.
+            HearthError: a partition could not be completed; complete parts are kept.
         """
 
 
@@ -46,7 +46,7 @@ def _dask(count: int, scheduler: str) -> Engine:
 
 
 ENGINES: dict[str, Callable[[int, str], Engine]] = {"local": _local, "dask": _dask}
-"""How to make each engine from a number of processes and the address of a scheduler, or ""."""
+"""A function for each engine, of the number of processes and the scheduler's address, or ""."""
 
 
 def engine(name: str, count: int = 1, scheduler: str = "") -> Engine:
@@ -58,7 +58,7 @@ def engine(name: str, count: int = 1, scheduler: str = "") -> Engine:
         scheduler: address of a running cluster's scheduler; "" for a cluster of our own.
 
     Raises:
-        HearthError: UNKNOWN_ID, there is no such engine, or what it needs is not installed.
+        HearthError: UNKNOWN_ID, there is no such engine; CONTRADICTION, the local engine has no scheduler.
     """
     if name not in ENGINES:
         known = " and ".join(ENGINES)

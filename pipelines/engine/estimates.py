@@ -1,7 +1,7 @@
-"""What a build will take, told before its long stages begin: time, disk, and whether the disk has it.
+"""Estimates the time and disk space of a build before its long stages begin, and checks the free disk space.
 
-Rough on purpose: from counts that are known once programs are validated and from what builds of the embedded corpus
-took. Twice the time is no surprise, ten times is.
+A rough estimate, from the number of valid programs and the costs of builds of the embedded corpus: right within a
+factor of two or three.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 BYTES = {"sampled": 1_200, "augmented": 1_500, "picture": 4_000_000}
-"""On disk, of one execution in the sample or augment stage and once more published, and of one film."""
+"""On disk: of one execution in the sample or augment stage, and the same again published; of one film."""
 
 SECONDS = {"sampled": 0.004, "augmented": 0.006, "picture": 20.0}
-"""Of one core, for the same."""
+"""Of one core, for each of them."""
 
 LONG = 60.0
-"""Seconds from which a build is worth a word beforehand."""
+"""Seconds from which an estimate is printed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What the stages after validating will take.
+    """The estimated costs of the stages after `validate`.
 
     Attributes:
-        executions: programs that will be run, augmented ones included.
+        executions: including those of augmented programs.
         size: bytes on disk.
-        seconds: with the workers asked for.
+        seconds: with the given workers.
     """
 
     executions: int
@@ -45,13 +45,13 @@ class Estimate:
 
 
 def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Estimate:
-    """What is ahead of a build.
+    """The costs of a build.
 
     Args:
-        programs: that passed validation.
-        settings: what was asked for.
+        programs: the number of valid programs.
+        settings: the options of the build.
         workers: processes.
-        homes: how many there are to sample in.
+        homes: the number of homes to sample in.
     """
     each = min(settings.homes_each, homes) if settings.homes_each else homes
     sampled = programs * each
@@ -64,11 +64,11 @@ def estimate(programs: int, settings: Settings, workers: int, homes: int) -> Est
     return Estimate(sampled + augmented, size, seconds)
 
 
-def foretold(programs: int, settings: Settings, workers: int, *, force: bool = False) -> str:
-    """What to say before the long stages begin; "" for a build that is short.
+def forecast(programs: int, settings: Settings, workers: int, *, force: bool = False) -> str:
+    """The estimate as text; "" for a short build.
 
     Raises:
-        HearthError: UNWRITABLE, the disk has not room enough and nobody forces it.
+        HearthError: UNWRITABLE, the disk is too small and `force` is False.
     """
     ahead = estimate(programs, settings, workers, len(Homes(settings).names()))
     free = shutil.disk_usage(Path(settings.out)).free
@@ -77,7 +77,7 @@ def foretold(programs: int, settings: Settings, workers: int, *, force: bool = F
             Code.UNWRITABLE,
             f"this build needs about {ahead.size / 1e6:,.0f} MB, and {free / 1e6:,.0f} MB are free",
             file=settings.out,
-            suggestion="free some space, choose another folder with --out, or build all the same with --force",
+            suggestion="free some space, choose another folder with --out, or build anyway with --force",
         )
     if ahead.seconds < LONG:
         return ""

@@ -1,4 +1,4 @@
-"""What is published once all cases are: the tables about the whole, the pictures and the catalog."""
+"""The tables that need all cases, the pictures and the catalog, published last."""
 
 from __future__ import annotations
 
@@ -66,11 +66,11 @@ def finish(job: Job, counts: Counts) -> None:
         HearthError: DUPLICATE, when two rows have one id.
     """
     _check_unique(job.folder)
-    told = _activities(job)
+    activities = _activities(job)
     homes = job.context.homes
     makers: dict[str, Callable[[], Iterable[Row]]] = {
-        "activities": told.activity_rows,
-        "descriptions": told.description_rows,
+        "activities": activities.activity_rows,
+        "descriptions": activities.description_rows,
         "homes": lambda: _homes(job, homes),
         "home_nodes": lambda: _home_nodes(job, homes),
         "home_edges": lambda: _home_edges(job, homes),
@@ -84,9 +84,9 @@ def finish(job: Job, counts: Counts) -> None:
     }
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
-    in_vain = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
-    write_rows(in_vain, TABLES["repairs"], _in_vain(job))
-    counts.rows["repairs"] += pq.read_metadata(in_vain).num_rows
+    failed = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
+    write_rows(failed, TABLES["repairs"], _failed_attempts(job))
+    counts.rows["repairs"] += pq.read_metadata(failed).num_rows
     _copy_pictures(job)
     copy_overlay(job.settings.kb_folder, job.folder)
     write_card(job.folder)
@@ -95,7 +95,7 @@ def finish(job: Job, counts: Counts) -> None:
 
 
 def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
-    """Write a table from rows, stamped with the versions it belongs to."""
+    """Write a table from rows, each stamped with the versions it belongs to."""
     path.parent.mkdir(parents=True, exist_ok=True)
     batches = list(_batches(schema, rows))
     write_table(path, pa.Table.from_batches(batches, schema))
@@ -137,15 +137,15 @@ class _Activity:
 
 
 @dataclass(slots=True)
-class _Told:
-    """Activities and descriptions, gathered from what was ingested and published."""
+class _Activities:
+    """Activities and descriptions, gathered from the ingested records and the published programs."""
 
     activities: dict[str, _Activity] = field(default_factory=dict)
     descriptions: dict[str, DescriptionRow] = field(default_factory=dict)
     described: set[str] = field(default_factory=set)
 
     def describe(self, row: IngestedRow) -> None:
-        """Take the words of an ingested row; those of a description go before those repeated with a program."""
+        """Add an ingested row; a description's own row replaces a copy that came with a program."""
         name, own = row["description_id"], row["kind"] == "description"
         if name not in self.descriptions or (own and name not in self.described):
             words = {**row, "activity_id": activity_id(row["title"]), "programs": 0}
@@ -154,7 +154,7 @@ class _Told:
             self.described.add(name)
 
     def count(self, program: ProgramRow) -> None:
-        """Take a published program."""
+        """Add a published program."""
         activity = self.activities.setdefault(program["activity_id"], _Activity())
         activity.programs += 1
         activity.titles[program["title"]] += 1
@@ -188,21 +188,21 @@ class _Told:
 _WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
 
 
-def _activities(job: Job) -> _Told:
-    told = _Told()
+def _activities(job: Job) -> _Activities:
+    found = _Activities()
     for path in _parts(job, "ingest"):
         for row in read_rows(path, list(_WORDS)):
             if row["kind"] in ("program", "description"):
-                told.describe(row)
+                found.describe(row)
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
-            told.count(row)
-    told.gather()
-    return told
+            found.count(row)
+    found.gather()
+    return found
 
 
 def _sketches(job: Job) -> Iterator[SketchRow]:
-    """What was inferred or inherited; what people drew, of which the program goes by the id of its description."""
+    """Inferred and inherited sketches; and those that people drew, whose program is the id of its description."""
     for path in _parts(job, "augment", "sketches"):
         yield from read_rows(path)
     for path in _parts(job, "ingest"):
@@ -212,8 +212,8 @@ def _sketches(job: Job) -> Iterator[SketchRow]:
                 yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
 
 
-def _in_vain(job: Job) -> Iterator[TriedRow]:
-    """Repairs that gave no program."""
+def _failed_attempts(job: Job) -> Iterator[TriedRow]:
+    """The repairs of pairs that gave no program."""
     for path in _parts(job, "augment", "attempts"):
         yield from read_rows(path)
 
@@ -225,7 +225,7 @@ def _manifest(job: Job, stage: str) -> Manifest:
 
 
 def _parts(job: Job, stage: str, table: str = "") -> Iterator[Path]:
-    """The parts of one of a stage's tables."""
+    """The parts of one table of a stage."""
     folder = job.settings.folder(stage)
     for part in _manifest(job, stage).parts:
         yield from (folder / file for file in part["files"] if (folder / file).parent == folder / table)
@@ -277,36 +277,36 @@ def _frames(job: Job, kind: str) -> Iterator[FrameRow | VideoRow]:
 
 
 def _splits(job: Job) -> list[SplitRow]:
-    told = _told_for_splits(job.folder)
+    programs = _programs_for_splits(job.folder)
     runs: list[Any] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
-    likeness = splits.Likeness(told)
-    rows = list(splits.parts(told, runs, job.settings.seed, likeness))
-    write_json(job.folder / "splits.json", splits.summary(told, rows, job.settings.seed, likeness))
+    similarity = splits.Likeness(programs)
+    rows = list(splits.parts(programs, runs, job.settings.seed, similarity))
+    write_json(job.folder / "splits.json", splits.summary(programs, rows, job.settings.seed, similarity))
     return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
 
 
-def _told_for_splits(folder: Path) -> list[splits.Told]:
-    told: dict[str, list[Any]] = {
+def _programs_for_splits(folder: Path) -> list[splits.Told]:
+    columns: dict[str, list[Any]] = {
         name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
     }
     steps: list[tuple[str, ...]] = []
-    # Programs made of one another say most things alike, which is kept once.
+    # Augmented programs share most of their values, which are kept once.
     same: dict[Any, Any] = {}
     for path in sorted((folder / "programs").glob("part-*.parquet")):
-        table = pq.read_table(path, columns=[*told, "steps"])
+        table = pq.read_table(path, columns=[*columns, "steps"])
         steps.extend(same.setdefault(each, each) for each in _step_names(table["steps"].combine_chunks()))
-        for name, values in told.items():
+        for name, values in columns.items():
             values.extend(same.setdefault(each, each) for each in table[name].to_pylist())
-    tops = splits.roots(dict(zip(told["program_id"], told["parent_id"], strict=True)))
-    rows = zip(told["program_id"], told["activity_id"], told["split"], steps, told["description"], strict=True)
-    return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, mine, text in rows]
+    tops = splits.roots(dict(zip(columns["program_id"], columns["parent_id"], strict=True)))
+    rows = zip(*(columns[name] for name in ("program_id", "activity_id", "split", "description")), steps, strict=True)
+    return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, text, mine in rows]
 
 
 def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
-    """For each program its steps as action and class names; by columns, since there are hundreds of thousands."""
+    """For each program its steps as action and class names; by columns, because there are hundreds of thousands."""
     every = steps.flatten()
     actions, objects = every.field("action"), every.field("objects")
     names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))
@@ -320,7 +320,7 @@ def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
 
 
 def _copy_pictures(job: Job) -> None:
-    """Copy the pictures beside the tables, and drop those of an earlier build."""
+    """Copy the pictures beside the tables, and remove those of an earlier build."""
     for name in ("frames", "films"):
         _copy_folder(job.settings.folder("render") / name, job.folder / name)
 

@@ -1,4 +1,4 @@
-"""Progress that tells the truth: records done, rate, time left and rejects; a line a stage where nobody watches."""
+"""Progress of a build: records done, rate, time left and rejects on a terminal; elsewhere one line a stage."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from hearth.storage.partitions import Counts
 
 
 class Progress:
-    """Is told how a build goes; this one says nothing of it."""
+    """Receives the progress of a build; this one reports nothing."""
 
     def note(self, text: str) -> None:
-        """Something that people should know before it begins."""
+        """Information about the build as a whole."""
 
     def start(self, stage: str, total: int | None) -> None:
-        """A stage begins; `total` records, if that is known."""
+        """A stage begins; `total` is the number of its records, if known."""
 
     def seen(self, records: int, rejects: int) -> None:
-        """So many more records were processed, and so many of them rejected."""
+        """Further records were processed, `rejects` of them rejected."""
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """A stage is complete; `fresh` is False when nothing had to be done."""
+        """A stage is complete; `fresh` is False if it was up to date."""
 
 
 class Lines(Progress):
@@ -34,18 +34,18 @@ class Lines(Progress):
         self._stream = stream or sys.stderr
 
     def note(self, text: str) -> None:
-        """Say it."""
+        """Print it."""
         self._stream.write(f"{text}\n")
         self._stream.flush()
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Say what became of the stage's records."""
+        """Print what became of the stage's records."""
         self._stream.write(line(stage, counts, seconds, fresh) + "\n")
         self._stream.flush()
 
 
 class JsonLines(Progress):
-    """A line of JSON for what happens, at most one a second while a stage runs: for logs of long builds.
+    """A line of JSON for each event, at most one a second while a stage runs: for logs of long builds.
 
     Each has `time` (seconds since 1970), `event` (start, progress, end, note) and `stage`.
     """
@@ -56,42 +56,42 @@ class JsonLines(Progress):
         self._stage = ""
         self._total: int | None = None
         self._done = self._rejects = 0
-        self._began = self._said = 0.0
+        self._began = self._printed = 0.0
 
     def note(self, text: str) -> None:
-        """Say it."""
-        self._say("note", text=text)
+        """Print it."""
+        self._print("note", text=text)
 
     def start(self, stage: str, total: int | None) -> None:
-        """Say that a stage begins."""
+        """Print that a stage begins."""
         self._stage, self._total, self._done, self._rejects = stage, total, 0, 0
-        self._began = self._said = self._clock()
-        self._say("start", total=total)
+        self._began = self._printed = self._clock()
+        self._print("start", total=total)
 
     def seen(self, records: int, rejects: int) -> None:
-        """Say how far it is, if a second has gone by."""
+        """Print the progress of the stage, at most once a second."""
         self._done += records
         self._rejects += rejects
         now = self._clock()
-        if now - self._said >= 1.0:
-            self._said = now
+        if now - self._printed >= 1.0:
+            self._printed = now
             rate = self._done / max(now - self._began, 1e-3)
             left = None if self._total is None else round(max(0, self._total - self._done) / max(rate, 1e-9), 1)
-            self._say("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
+            self._print("progress", done=self._done, rejects=self._rejects, rate=round(rate, 1), seconds_left=left)
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Say what became of the stage's records."""
+        """Print what became of the stage's records."""
         self._stage = stage
-        self._say("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
+        self._print("end", fresh=fresh, seconds=round(seconds, 3), **counts.to_json())
 
-    def _say(self, event: str, **facts: object) -> None:
+    def _print(self, event: str, **facts: object) -> None:
         line = {"time": round(self._clock(), 3), "event": event, "stage": self._stage, **facts}
         self._stream.write(json.dumps(line) + "\n")
         self._stream.flush()
 
 
 class Bars(Progress):
-    """A bar for the running stage on a terminal, its line when it is done."""
+    """A bar for the running stage on a terminal, and its line when it is complete."""
 
     def __init__(self) -> None:
         from rich.console import Console
@@ -114,7 +114,7 @@ class Bars(Progress):
         self._began = 0.0
 
     def note(self, text: str) -> None:
-        """Say it."""
+        """Print it."""
         self._console.print(text, highlight=False, markup=False)
 
     def start(self, stage: str, total: int | None) -> None:
@@ -125,14 +125,14 @@ class Bars(Progress):
         self._rich.start()
 
     def seen(self, records: int, rejects: int) -> None:
-        """Move it."""
+        """Update the bar."""
         self._done += records
         self._rejects += rejects
         rate = self._done / max(time.monotonic() - self._began, 1e-3)
         self._rich.update(self._task, completed=self._done, rate=f"{rate:,.0f}", rejects=self._rejects)
 
     def end(self, stage: str, counts: Counts, seconds: float, fresh: bool) -> None:
-        """Put a line in its place."""
+        """Replace the bar by a line."""
         if self._rich.tasks:
             self._rich.remove_task(self._task)
         self._rich.stop()

@@ -1,4 +1,4 @@
-"""Running one stage: what is up to date stays, what is complete is kept, the manifest comes last."""
+"""Runs one stage: an up-to-date stage and complete partitions are kept; the manifest is written last."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ REJECTS = "rejects.parquet"
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """A stage that is complete, and whether anything had to be done for it."""
+    """A complete stage; `fresh` is False if it was up to date."""
 
     manifest: Manifest
     fresh: bool
@@ -45,7 +45,7 @@ def run_stage(
     """Bring a stage's folder up to date.
 
     Raises:
-        HearthError: a stage it reads is missing, someone else builds there, or the folder cannot be written.
+        HearthError: a stage that it reads is missing, another build uses the folder, or it cannot be written.
     """
     progress = progress or Progress()
     try:
@@ -94,14 +94,14 @@ def _run(stage: Stage, settings: Settings, workers: Engine, progress: Progress) 
 
 
 def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
-    """Digest of everything a stage reads, by name."""
+    """The digest of each input of a stage, by name."""
     digests = {}
     for name in (*stage.reads, *stage.needs):
         manifest = read_manifest(settings.folder(name))
         if manifest is None:
             raise HearthError.of(
                 Code.MISSING_FILE,
-                f"stage `{stage.name}` reads what stage `{name}` writes, and that is not there",
+                f"stage `{stage.name}` reads the output of stage `{name}`, which is missing",
                 file=str(settings.folder(name)),
                 suggestion=f"run `{name}` first, or `build` for all stages",
             )
@@ -147,19 +147,19 @@ def _tidy(job: Job) -> None:
 
 
 def _drop_gathered(folder: Path) -> None:
-    """Remove the rejects of single partitions, once a manifest vouches for the file that holds them all."""
+    """Remove the rejects of single partitions, once the manifest lists the file that holds them all."""
     for path in folder.glob(".rejects-*.parquet"):
         path.unlink(missing_ok=True)
 
 
 def _drop_leftovers(folder: Path) -> None:
-    """Remove what workers that were lost had half written."""
+    """Remove files that lost workers wrote in part."""
     for leftover in [path for path in folder.rglob(".*") if is_temporary(path.name)]:
         leftover.unlink(missing_ok=True)
 
 
 def input_partitions(job: Job) -> Iterator[Partition]:
-    """The parts of the stages that a stage reads, one partition each, unless it shares or gathers them."""
+    """The parts of the stages that a stage reads, one partition each, unless the stage splits or gathers them."""
     waiting: list[Partition] = []
     number = 0
     for part in _input_parts(job):
@@ -182,7 +182,7 @@ def _gathered(number: int, parts: list[Partition]) -> Partition:
 
 
 def _input_parts(job: Job) -> Iterator[Partition]:
-    """The parts of the stages that a stage reads, or shares of them; of several tables, those of the first."""
+    """The parts of the first table of the stages that a stage reads, or shares of them."""
     for name in job.stage.reads:
         folder = job.settings.folder(name)
         manifest = read_manifest(folder)
@@ -191,20 +191,20 @@ def _input_parts(job: Job) -> Iterator[Partition]:
             file = part["files"][0]
             digest = manifest.content["files"][file]["sha256"]
             for rows in _shares(part["rows"], job.stage.share):
-                told = digest if rows is None else f"{digest} {rows}"
+                content = digest if rows is None else f"{digest} {rows}"
                 size = part["rows"] if rows is None else rows[1] - rows[0]
-                yield Partition(0, told, (str(folder / file),), size, rows)
+                yield Partition(0, content, (str(folder / file),), size, rows)
 
 
 def _shares(rows: int, share: int | None) -> list[tuple[int, int] | None]:
-    """Rows of a part that make a partition each; None for all of them."""
+    """The rows of a part for each partition, as (first, end); None for all of them."""
     if share is None or rows <= share:
         return [None]
     return [(first, min(first + share, rows)) for first in range(0, rows, share)]
 
 
 def _partitions(job: Job, workers: Engine, progress: Progress) -> tuple[list[int], Counts]:
-    """Run what is not complete yet."""
+    """Run the partitions that are not complete."""
     numbers: list[int] = []
     counts = Counts()
 
@@ -225,13 +225,13 @@ def _partitions(job: Job, workers: Engine, progress: Progress) -> tuple[list[int
 
 
 def _forget(job: Job, number: int) -> None:
-    """Remove a partition that is to be made again, its commit point first."""
+    """Remove a partition that is to be run again, its commit point first."""
     for table in reversed([*job.stage.tables]):
         part_path(job.folder, table, number).unlink(missing_ok=True)
 
 
 def _is_whole(job: Job, number: int, counts: Counts) -> bool:
-    """Whether a partition's rejects are there, too, and none of its records ran out of time."""
+    """Whether a partition's rejects are stored and none of its records timed out."""
     if not counts.rejected and not counts.partial:
         return True
     if counts.codes[Code.TIMED_OUT]:
@@ -256,7 +256,7 @@ def _gather_rejects(job: Job, numbers: list[int]) -> None:
 
 
 def _drop_stale(job: Job, numbers: list[int]) -> None:
-    """Remove parts of partitions that are no more."""
+    """Remove parts of partitions that no longer exist."""
     kept = {part_path(job.folder, table, number) for table in job.stage.tables for number in numbers}
     for path in job.folder.rglob("part-*.parquet"):
         if path not in kept:

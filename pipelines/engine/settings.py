@@ -1,4 +1,4 @@
-"""What a build was asked to do."""
+"""The settings of a build."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The options of a build; a stage names those that decide its output.
+    """The options of a build; a stage names those that its output depends on.
 
     Attributes:
         sources: files and folders to read, in order.
-        out: the folder that gets one folder a stage.
-        seed: of everything random.
-        limit: at most so many programs are read, and as many descriptions; None for all.
-        homes: names of the homes to sample in, or empty for every home of the catalog.
+        out: the folder for one folder a stage.
+        seed: seed of all random choices.
+        limit: programs to read at most, and as many descriptions; None for all.
+        homes: names of the homes to sample in; empty for every home of the catalog.
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.
         salt: hashed with worker ids; by default derived from the sources, so that it is never published.
         probability: of perturbing each precondition (thesis 5.5.4).
-        variants: perturbed environments to make for each execution, at most.
-        target: augmented programs wanted in all; 0 for as many as `variants` gives.
+        variants: perturbed environments for each execution, at most.
+        target: augmented programs in all; 0 for as many as `variants` gives.
         homes_each: homes to sample each program in, drawn from `homes`; 0 for all of them.
         tries: repairs of one program, at most.
-        pictures: how many executions to picture, step by step.
-        videos: how many of them to film in motion.
-        time_limit: seconds that a record may take in a stage; 0 for any time. Those that take longer are tried again by
-            the next build.
-        store: URL of what `out` is a local copy of (see `stores`), or "".
-        revision: which state of the store.
+        pictures: number of programs to picture, step by step.
+        videos: number of them to film.
+        time_limit: seconds that a record may take in a stage; 0 for no limit. Records that take longer are tried again
+            by the next build.
+        store: URL of the store of which `out` is a local copy (see `stores`), or "".
+        revision: the state of the store.
     """
 
     sources: tuple[str, ...] = ()
@@ -53,10 +53,10 @@ class Settings:
     revision: str = ""
 
     def chosen(self, names: tuple[str, ...]) -> dict[str, Any]:
-        """The named options, as they stand in a manifest."""
+        """The named options, as stored in a manifest."""
         values = asdict(self)
         return {name: values[name] for name in names}
 
     def folder(self, stage: str) -> Path:
-        """Where a stage writes."""
+        """The folder of a stage."""
         return Path(self.out) / stage

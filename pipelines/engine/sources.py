@@ -1,4 +1,4 @@
-"""Sources: the files and folders a build is given, under labels that do not tell where on a machine they were."""
+"""Sources: the files and folders of a build, with labels that do not reveal their path on this machine."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from hearth.storage.rejects import as_text
 
 
 def labelled(paths: Iterable[str]) -> list[Source]:
-    """The sources by name, with a label each: their name, numbered where several share one.
+    """The sources with their labels: the file name, numbered if several sources share it.
 
-    In the order of their names, so that the order they are given in decides nothing.
+    They are ordered by name, so that the output does not depend on the order given.
 
     Raises:
-        HearthError: MISSING_FILE, naming every path that is not there; EMPTY, when none were given.
+        HearthError: MISSING_FILE, with every missing path; EMPTY, if there are no paths.
     """
     sources: list[Source] = []
     used: Counter[str] = Counter()
@@ -44,5 +44,5 @@ def source_digests(paths: Iterable[str]) -> dict[str, str]:
 
 
 def salt(settings: Settings) -> str:
-    """What is hashed with worker ids: as given, or else derived from the sources' bytes, which are not published."""
+    """The salt of worker ids: the given one, or else one derived from the sources' bytes, which are not published."""
     return settings.salt or value_digest(["workers", sorted(source_digests(settings.sources).values())])

@@ -1,7 +1,7 @@
 """The loop that all stages share: read, process, count, reject, write, resume.
 
-A stage's author writes `process(record, context)`: one record in; rows out, or a `Reject` with code and place. The base
-owns the rest. Every record read ends in rows or in rejects, and an exception costs only its own record.
+A stage's author writes `process(record, context)`: one record in; rows out, or a `Reject` with code and place. This
+module does the rest. Every record ends in rows or in rejects, and an exception loses only its own record.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Plan = dict[str, Any]
 Output = Row | Reject | tuple[str, Row]
 
 BATCH = 64
-"""Records whose rows are turned into Arrow together, where a stage says nothing else: graphs are large."""
+"""Records whose rows are converted to Arrow together, unless a stage sets another number: graphs are large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +41,9 @@ class Partition:
     Attributes:
         number: its place, from 0.
         digest: of its input's content.
-        payload: what `Stage.records` needs to read it; small and picklable.
-        size: how many records, if known.
-        rows: of a part that several partitions share, the first row of this one and the one after its last.
-
-    Where the payload is paths of parts, it is a tuple of them.
+        payload: input of `Stage.records`, small and picklable; by default the paths of parts.
+        size: the number of records, if known.
+        rows: the (first, end) rows of a part that several partitions share.
     """
 
     number: int
@@ -57,22 +55,22 @@ class Partition:
 
 @dataclass(frozen=True)
 class Stage:
-    """One step of the pipeline, in the words of its author.
+    """One stage of the pipeline, as its author defines it.
 
     Attributes:
         name: also the name of its folder and command.
         tables: columns by table; a stage with one table calls it "".
-        process: one record to its rows (`(table, row)` where there are several tables) or its reject. Rejects among
-            rows refuse a part of a record.
+        process: one record to its rows (`(table, row)` if there are several tables) or its reject. A reject among
+            rows refuses a part of the record.
         reads: the stages whose rows are its records, in order.
-        needs: stages that it looks at besides.
-        settings: names of the options that decide its output.
-        open: makes the context given to `process`, once a process.
-        prepare: looks at all of the input once, before any record; its result is part of what was asked.
-        begin: does what all partitions rely on, before the first of them.
+        needs: further stages that must be complete.
+        settings: names of the options that its output depends on.
+        open: makes the context for `process`, once a process.
+        prepare: makes the plan from all of the input, before any record; the plan is part of the job's key.
+        begin: prepares the folder, before the first partition.
         partitions: shares of the input; by default the parts of the stages it reads.
         records: the records of a partition; by default the rows of its part.
-        select: which rows of the input are records at all.
+        select: whether a row of the input is a record.
         identify: the id of a record.
         columns: columns of the input to read; None for all.
         batch: how many records' rows are turned into Arrow together, of a partition.
@@ -84,7 +82,7 @@ class Stage:
         gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
         exchanged: people read its folder while it is built: it is written beside, and takes its place in one step.
 
-    A stage's module calls it `STAGE` and defines `process`: that is how workers find it.
+    Workers find a stage by its module, which must name it `STAGE` and define `process`.
     """
 
     name: str
@@ -102,16 +100,16 @@ class Stage:
     identify: Callable[[Any], str] = lambda record: str(record["program_id"])
     columns: tuple[str, ...] | None = None
     batch: Callable[[Partition], int] = lambda partition: BATCH
-    tally: Callable[[Any], str | None] = lambda row: None
+    label: Callable[[Any], str | None] = lambda row: None
     finish: Callable[[Job, Counts], None] | None = None
     facts: Callable[[Job], dict[str, Any]] = lambda job: {}
-    patience: int = 1
+    time_factor: int = 1
     share: int | None = None
     gather: int = 0
     exchanged: bool = False
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
-        """Workers get a stage by the module that defines it, as its `STAGE`."""
+        """Pickle a stage as the name of the module that defines it."""
         return _stage_of, (self.process.__module__,)
 
 
@@ -122,7 +120,7 @@ def _stage_of(module: str) -> Stage:
 
 @dataclass(frozen=True)
 class Job:
-    """A stage, what was asked of it, and its plan: all that a worker needs to know."""
+    """A stage, its settings and its plan: all that a worker needs."""
 
     stage: Stage
     settings: Settings
@@ -130,22 +128,22 @@ class Job:
 
     @property
     def folder(self) -> Path:
-        """Where the stage writes."""
+        """The folder of the stage."""
         folder = self.settings.folder(self.stage.name)
         return beside(folder) if self.stage.exchanged else folder
 
     @cached_property
     def context(self) -> Any:
-        """What the stage opened in this process."""
+        """The context that the stage opened in this process."""
         return self.stage.open(self)
 
     @cached_property
     def key(self) -> str:
-        """Digest of all that decides the output, the input aside."""
+        """Digest of everything that decides the output but the input."""
         return value_digest(self.asked())
 
     def asked(self) -> dict[str, Any]:
-        """Stage, code, options and plan, as they stand in the manifest."""
+        """Stage, code, options and plan, as stored in the manifest."""
         return {
             "stage": self.stage.name,
             "code": code_digest(self.stage.process.__module__, __name__, "hearth.version"),
@@ -154,22 +152,22 @@ class Job:
         }
 
     def part_key(self, partition: Partition) -> str:
-        """Digest of all that decides a partition's bytes."""
+        """Digest of everything that decides a partition's bytes."""
         return value_digest([self.key, partition.number, partition.digest])
 
 
 RecordsSeen = Callable[[int, int], None]
-"""Called with the numbers of records and of rejects that were added."""
+"""Called with the numbers of further records and of further rejects."""
 
 Done = tuple[Partition, Counts]
-"""A partition that is written, and what became of its records."""
+"""A written partition and its counts."""
 
 
 def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     """Process one partition and write it."""
     stage = job.stage
     writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
-    deadline = Deadline(job.settings.time_limit * stage.patience)
+    deadline = Deadline(job.settings.time_limit * stage.time_factor)
     try:
         sink = _Sink(job, partition, writer)
         for record in _records(job, partition):
@@ -199,7 +197,7 @@ def _records(job: Job, partition: Partition) -> Iterable[Any]:
 
 
 def _name(stage: Stage, record: Any) -> str:
-    """The id of a record; "" of one that has none."""
+    """The id of a record, or "" if it has none."""
     try:
         return as_text(stage.identify(record))
     except Exception:
@@ -211,7 +209,7 @@ def _place(record: Any) -> str:
 
 
 def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> list[Output]:
-    """All that a record gives; an exception or too long a time gives a reject and none of its rows."""
+    """The outputs of a record; after an exception or a time-out, a reject alone."""
     try:
         with deadline:
             outputs = stage.process(record, context)
@@ -229,7 +227,7 @@ def _attempt(stage: Stage, record: Any, context: Any, deadline: Deadline) -> lis
 
 
 def _stops_the_stage(error: BaseException) -> bool:
-    """Whether no record is at fault: the disk is full; what is complete stays, and the next run goes on from there."""
+    """Whether the disk is full: the stage stops, complete parts are kept, and the next run continues from there."""
     return isinstance(error, OSError) and error.errno in _FULL
 
 
@@ -238,14 +236,14 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 @dataclass(slots=True)
 class _Outcome:
-    """What one record gave, fit to be written.
+    """The outputs of one record, ready to be written.
 
     Attributes:
         rows: each with its table.
-        rejects: how many parts of the record are refused, or that all of it is.
+        rejects: number of refused parts; without rows, the whole record is refused.
         faults: rows of the table of rejects.
-        code: of the first fault.
-        labels: under which its rows are counted.
+        code: the code of the first fault.
+        labels: labels by which its rows are counted.
     """
 
     rows: list[tuple[str, Row]]
@@ -256,7 +254,7 @@ class _Outcome:
 
 
 class _Sink:
-    """Counts what records gave and writes it in batches."""
+    """Counts the outputs of records and writes them in batches."""
 
     def __init__(self, job: Job, partition: Partition, writer: PartWriter) -> None:
         self.stage, self.number, self.writer = job.stage, partition.number, writer
@@ -265,7 +263,7 @@ class _Sink:
         self._waiting: list[tuple[str, _Outcome]] = []
 
     def take(self, record_id: str, outputs: list[Output]) -> None:
-        """Take all that one record gave."""
+        """Add the outputs of one record."""
         self.counts.records_in += 1
         try:
             outcome = self._sorted(outputs)
@@ -294,9 +292,9 @@ class _Sink:
         if not all(reject.diagnostics for reject in rejects):
             raise TypeError("a reject without a fault")
         if not outputs:
-            raise AssertionError("neither rows nor a reject came of this record")
+            raise AssertionError("this record gave neither rows nor a reject")
         faults = [fault for reject in rejects for fault in reject.rows()]
-        labels = [label for _, row in rows if (label := self.stage.tally(row)) is not None]
+        labels = [label for _, row in rows if (label := self.stage.label(row)) is not None]
         return _Outcome(rows, len(rejects), faults, rejects[0].code if rejects else "", labels)
 
     def _refused(self, error: Exception) -> _Outcome:
@@ -304,7 +302,7 @@ class _Sink:
         return _Outcome([], 1, reject.rows(), reject.code, [])
 
     def flush(self) -> None:
-        """Write what waits. Where a row does not fit its table, only its record is refused."""
+        """Write the waiting records. If a row does not fit its table, only its record is refused."""
         try:
             self._write(self._waiting)
         except Exception as error:
@@ -346,5 +344,5 @@ class _Sink:
         else:
             counts.codes[outcome.code] += 1
         for number, fault in enumerate(outcome.faults):
-            of = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
-            self.writer.reject([{**fault, **of, "fault": number}])
+            origin = {"stage": self.stage.name, "record_id": record_id, "partial": partial, "partition": self.number}
+            self.writer.reject([{**fault, **origin, "fault": number}])

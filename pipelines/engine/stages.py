@@ -16,14 +16,14 @@ STAGES: dict[str, str] = {
     "render": "hearth.pipelines.render",
     "publish": "hearth.pipelines.publish",
 }
-"""Name -> the module that defines it, imported when the stage is run."""
+"""The module of each stage, imported when the stage is run."""
 
 
 def stage(name: str) -> Stage:
     """The stage of that name.
 
     Raises:
-        HearthError: UNKNOWN_ID, with what there is.
+        HearthError: UNKNOWN_ID, with the names of the stages.
     """
     if name not in STAGES:
         suggestion = f"stages are {', '.join(STAGES)}"

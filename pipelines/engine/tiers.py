@@ -1,4 +1,4 @@
-"""Tiers: how much a dataset holds, by a name. A tier only stands for other options, which may be given beside it."""
+"""Tiers: sizes of a dataset by name. A tier sets other options, which may also be given themselves."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ TIERS: dict[str, dict[str, int]] = {
     "full": {"homes_each": 2, "variants": 6, "target": 30_000, "pictures": 0, "videos": 0},
     "frames": {"homes_each": 1, "variants": 1, "pictures": 200, "videos": 20},
 }
-"""`mini` is a small one to try things out; `full` is all programs, augmented to 30,000, as text and graphs; `frames` is
-every program about once, with many pictures and some films."""
+"""`mini` is small, for trying things out; `full` has all programs, augmented to 30,000, as text and graphs; `frames`
+has every program about once, with many pictures and some films."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
-    """Options as a tier has them, but for those that were given.
+    """The options with those of a tier; options that the user gave are kept.
 
     Args:
         tier: one of `TIERS`, or "" for none.
-        options: as they would be without.
-        given: the names of those that someone chose.
+        options: the options without a tier.
+        given: the names of the options that the user gave.
 
     Raises:
-        HearthError: UNKNOWN_ID, naming the tiers that there are.
+        HearthError: UNKNOWN_ID, with the names of the tiers.
     """
     if not tier:
         return dict(options)

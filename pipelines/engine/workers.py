@@ -1,4 +1,4 @@
-"""Partitions over processes: a bounded window in flight, progress as records go by, the same bytes for any number."""
+"""Partitions over processes: a bounded number in flight, progress by record, the same bytes for any number."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from hearth.storage.partitions import Counts, part_path, rejects_path
 from hearth.storage.stores import store
 
 AHEAD = 2
-"""Partitions handed out for each process: the next is there when one is done."""
+"""Partitions assigned to each process, so that the next is ready when one is complete."""
 
 _POLL_SECONDS = 0.2
 
 
 class Workers:
-    """Processes that stages share; they start when a stage first has work for two.
+    """Processes that stages share, started when a stage first has two partitions.
 
-    Use it as a context manager, so that they end with the build.
+    Use it as a context manager, so that the processes end with the build.
     """
 
     def __init__(self, count: int = 1) -> None:
@@ -50,7 +50,7 @@ class Workers:
         """Run partitions and yield each with its counts, in the order of completion.
 
         Raises:
-            HearthError: a worker died; what was complete is kept.
+            HearthError: a worker died; complete parts are kept.
         """
         first = list(itertools.islice(partitions, 2))
         rest = itertools.chain(first, partitions)
@@ -73,7 +73,7 @@ class Workers:
 
     def _drive(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         pool = self._start()
-        before = self._told()
+        before = self._counted()
         running: dict[Future[Counts], Partition] = {}
         while True:
             for partition in itertools.islice(partitions, self.count * AHEAD - len(running)):
@@ -81,7 +81,7 @@ class Workers:
             if not running:
                 return
             done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)
-            now = self._told()
+            now = self._counted()
             if now > before:
                 seen(now[0] - before[0], now[1] - before[1])
                 before = now
@@ -100,29 +100,29 @@ class Workers:
             self._pool.shutdown(cancel_futures=True)
             self._pool = None
 
-    def _told(self) -> tuple[int, int]:
+    def _counted(self) -> tuple[int, int]:
         with self._seen.get_lock():
             return self._seen[0], self._seen[1]
 
 
-_told: Any = None
+_counters: Any = None
 _job: Job | None = None
 
 
-def _begin(told: Any) -> None:
-    global _told  # noqa: PLW0603 - a worker's own state
-    _told = told
+def _begin(counters: Any) -> None:
+    global _counters  # noqa: PLW0603 - a worker's own state
+    _counters = counters
     begin()
 
 
 def _collect_seldom() -> None:
-    """Rows and worlds hold no cycles to speak of: looking for them took a fifth of the time."""
+    """Rows and worlds hold few cycles; collecting them took a fifth of the time."""
     gc.freeze()
     gc.set_threshold(50_000, 20, 100)
 
 
 def run_here(job: Job, partition: Partition) -> Counts:
-    """Run a partition in a worker, with the context that the same job opened before."""
+    """Run a partition in a worker; partitions of one job share its context."""
     global _job  # noqa: PLW0603 - a worker's own state
     if _job is None:
         _collect_seldom()
@@ -132,22 +132,22 @@ def run_here(job: Job, partition: Partition) -> Counts:
 
 
 def _run(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
-    """Run a partition; its input comes from a store and its parts go there, where the build is in one."""
+    """Run a partition; if the build is in a store, fetch its input from there and push its parts."""
     if not job.settings.store:
         return run_partition(job, partition, seen)
-    elsewhere = store(job.settings.store)
-    elsewhere.attend(job.settings.revision)
+    remote = store(job.settings.store)
+    remote.attend(job.settings.revision)
     for path in _needed(job, partition):
-        elsewhere.fetch(path)
+        remote.fetch(path)
     counts = run_partition(job, partition, seen)
     rejects = rejects_path(job.folder, partition.number)
     parts = [part_path(job.folder, table, partition.number) for table in job.stage.tables]
-    elsewhere.push([*([rejects] if rejects.exists() else []), *parts])
+    remote.push([*([rejects] if rejects.exists() else []), *parts])
     return counts
 
 
 def _needed(job: Job, partition: Partition) -> list[Path]:
-    """The parts that a partition is made from: its own, or all where a stage has partitions of its own kind."""
+    """The parts that a partition reads: those of its payload, or all if the stage defines its own partitions."""
     if job.stage.partitions is None:
         return [Path(path) for path in partition.payload]
     manifests = [read_manifest(job.settings.folder(name)) for name in job.stage.reads]
@@ -155,7 +155,7 @@ def _needed(job: Job, partition: Partition) -> list[Path]:
 
 
 def _count(records: int, rejects: int) -> None:
-    if _told is not None:
-        with _told.get_lock():
-            _told[0] += records
-            _told[1] += rejects
+    if _counters is not None:
+        with _counters.get_lock():
+            _counters[0] += records
+            _counters[1] += rejects

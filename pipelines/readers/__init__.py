@@ -1,1 +1,1 @@
-"""Readers: one file for each form that programs arrive in, recognised by content."""
+"""Readers: one file for each form of input, recognised by content."""

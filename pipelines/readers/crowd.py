@@ -35,10 +35,10 @@ PROGRAMS = (
 )
 
 LONGEST_RECORD = 2_000
-"""Lines that one answer may have. Beyond it a quote was never closed, and reading goes on after its line."""
+"""Lines of one answer at most: a longer one has a quote that is never closed, and reading continues after its line."""
 
 LONGEST_ANSWER = 2_000_000
-"""Characters after which the same is concluded."""
+"""Characters of one answer at most, likewise."""
 
 _ACCEPTED = frozenset({"approved", "submitted", "accepted", ""})
 _LOOK_AHEAD = 200
@@ -48,7 +48,7 @@ _QUANTITY = re.compile(r"\s*<?([^*<>]+?)>?\s*(?:\*\s*(\d{1,6}))?\s*")
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """A batch's first line: its columns, what parts them, which stage it is and which columns it lacks."""
+    """A batch's first line: columns, delimiter, stage (1 or 2) and missing columns."""
 
     columns: tuple[str, ...]
     delimiter: str
@@ -57,15 +57,14 @@ class Header:
 
 
 def header_of(line: str) -> Header | None:
-    """Read a first line; None when it is not that of a batch."""
+    """Read a first line; None if it is not the header of a batch."""
     delimiter = max(_DELIMITERS, key=line.count)
     columns = tuple(cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), []))
     names = set(columns)
     lacking = [(len(set(wanted) - names), stage) for stage, wanted in ((1, DESCRIPTIONS), (2, PROGRAMS))]
     _, stage = min(lacking)
     wanted = DESCRIPTIONS if stage == 1 else PROGRAMS
-    telling = names & {name for name in wanted if name.startswith(("Input.", "Answer."))}
-    if not telling:
+    if not any(name in names for name in wanted if name.startswith(("Input.", "Answer."))):
         return None
     return Header(columns, delimiter, stage, tuple(name for name in wanted if name not in names))
 
@@ -76,7 +75,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
     first = next(rows, None)
     header = header_of(first[1]) if first else None
     if header is None:
-        fault = Reject.of(Code.BAD_TABLE, "no batch: its first line names none of the columns", file=place, line=1)
+        fault = Reject.of(Code.BAD_TABLE, "not a batch: its first line names none of the columns", file=place, line=1)
         yield refused(place, fault)
     elif header.missing:
         columns = ", ".join(f"`{name}`" for name in header.missing)
@@ -105,7 +104,7 @@ def _answers(rows: _Rows, header: Header, place: str) -> Iterator[Item]:
 
 def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, place: str) -> Diagnostic | None:
     if cells is None:
-        message = "cells that can't be told apart: a quote that is never closed, or too many cells"
+        message = "cells that can't be separated: a quote that is never closed, or too many cells"
         suggestion = "quote cells that hold separators or line breaks, and double the quotes inside"
         return Diagnostic(Code.BAD_TABLE, message, place, line, found=raw[:60], suggestion=suggestion)
     if len(cells) != len(header.columns) and cells:
@@ -116,7 +115,7 @@ def _row_fault(line: int, raw: str, cells: list[str] | None, header: Header, pla
 
 
 class _Rows(Iterator[tuple[int, str]]):
-    """A file's lines with their numbers, some of which can be read again."""
+    """A file's lines with their numbers; lines can be put back."""
 
     def __init__(self, path: Place) -> None:
         self._source = enumerate((line for line, _ in lines(path)), 1)
@@ -126,13 +125,13 @@ class _Rows(Iterator[tuple[int, str]]):
         return self._again.pop() if self._again else next(self._source)
 
     def parsed(self, header: Header) -> Iterator[tuple[int, str, list[str] | None]]:
-        """Each record: its first line's number, its text and its cells; None for cells that can't be told apart."""
+        """Each record: its first line's number, its text and its cells; None for cells that can't be separated."""
         for number, line in self:
             taken = self._record(number, line, header)
             text = "\n".join(piece for _, piece in taken)
             cells = _cells(text, header) if _even(taken) or len(taken) == 1 else None
             if len(taken) > 1 and (cells is None or len(cells) != len(header.columns)):
-                # A quote left open swallows the records after it: give back from where one is whole again.
+                # An open quote takes in the records after it: put back the lines from the next whole record on.
                 ahead = [*taken, *itertools.islice(self, _LOOK_AHEAD)]
                 keep = next((k for k in range(1, len(taken)) if _whole(ahead[k:], header)), len(taken))
                 self._again.extend(reversed(ahead[keep:]))
@@ -141,7 +140,7 @@ class _Rows(Iterator[tuple[int, str]]):
             yield number, text, cells
 
     def _record(self, number: int, line: str, header: Header) -> list[tuple[int, str]]:
-        """The lines of the record that begins here, as far as quotes tell."""
+        """The lines of the record that begins here, according to its quotes."""
         taken = [(number, line)]
         odd, size = line.count('"') % 2 == 1, len(line)
         if odd and _whole(taken, header):
@@ -175,7 +174,7 @@ def _cells(text: str, header: Header, strict: bool = False) -> list[str]:
 
 
 def read(item: Item, salt: str) -> IngestedRow | Reject:
-    """The record of an answer, or why it is not used."""
+    """The record of an answer, or the reject of an answer that is not used."""
     cells = item.value["cells"]
     status = cells["AssignmentStatus"].strip()
     if status.lower() not in _ACCEPTED:
@@ -191,8 +190,8 @@ def _description(item: Item, cells: dict[str, str], salt: str) -> IngestedRow | 
     garbled = _garbled(cells["Answer.description"])
     if garbled:
         message = f"text decoded with the wrong encoding: `{garbled}`"
-        told = {"file": item.place, "found": garbled, "suggestion": "download the batch again, as UTF-8"}
-        return Reject.of(Code.NOT_TEXT, message, line=item.line, **told)
+        hint = "download the batch again, as UTF-8"
+        return Reject.of(Code.NOT_TEXT, message, file=item.place, line=item.line, found=garbled, suggestion=hint)
     other = no_activity(f"{cells['Answer.title']}. {cells['Answer.description']}")
     if other:
         kind, phrases = other
@@ -207,7 +206,7 @@ _GARBLED = re.compile("(?:\u00c3[\u0080-\u00bf\u0152-\u2122]|\u00e2\u20ac[\u0080
 
 
 def _garbled(text: str) -> str:
-    """The first word that is UTF-8 read as Windows-1252, or nothing; what says itself back that way is no accident."""
+    """The first word that is UTF-8 decoded as Windows-1252, or ""; only a word that decodes back counts."""
     match = _GARBLED.search(text)
     if match is None:
         return ""

@@ -1,4 +1,4 @@
-"""JSON documents: what a file holds, told by its beginning, and the whole of it where it is not too large."""
+"""JSON documents: recognised by their first line, and read whole unless they are too large."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def looks_like_json(line: str) -> bool:
 
 
 def document(path: Place, place: str) -> Any | Reject:
-    """The JSON value of a whole file, or why it can't be had."""
+    """The JSON value of a whole file, or a reject if it can't be read."""
     size = size_of(path)
     if size > LARGEST_FILE:
         message = f"a JSON document of {size:,} bytes, at most {LARGEST_FILE:,} are read"
@@ -35,7 +35,7 @@ def document(path: Place, place: str) -> Any | Reject:
 
 
 def parsed(data: bytes | str, place: str, line: int) -> Any | Reject:
-    """A JSON value; `line` is that of its first line."""
+    """A JSON value; `line` is the number of its first line."""
     try:
         return orjson.loads(data)
     except (orjson.JSONDecodeError, RecursionError) as error:

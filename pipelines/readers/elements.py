@@ -1,4 +1,4 @@
-"""JSON lists read entry by entry, so that memory does not grow with the list: at the top of a file, or under a key."""
+"""JSON lists read entry by entry, in constant memory: at the top of a file, or under a key."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 LONGEST_ENTRY = 16_000_000
-"""Characters that one entry may have."""
+"""Characters of one entry at most."""
 
 _TOKEN = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+"|[\[\]{},:"]', re.DOTALL)
 _OPENS, _CLOSES = frozenset("[{"), frozenset("]}")
@@ -22,7 +22,7 @@ _PAIR = {"]": "[", "}": "{"}
 
 
 class BrokenError(Exception):
-    """A document that ends too early, goes on too long, or has an entry that is too long; the line tells where."""
+    """A document that ends too early, has text after its end, or an entry that is too long; with the line."""
 
     def __init__(self, message: str, line: int, code: Code = Code.BAD_JSON) -> None:
         super().__init__(message)
@@ -30,12 +30,12 @@ class BrokenError(Exception):
 
 
 def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any | Reject]]:
-    """The values of a list with the lines they begin in; those that are no JSON, and a broken end, as rejects.
+    """The values of a list with their first lines; an entry that is not JSON and a broken end are rejects.
 
     Args:
         path: the file.
         place: its name, for diagnostics.
-        key: of the list in the object that the file holds; empty where the file is the list.
+        key: the key of the list in the file's object; empty if the file is the list.
     """
     try:
         for line, text in _Scanner(key).entries(pieces(path)):
@@ -47,7 +47,7 @@ def entries(path: Place, place: str, key: str = "") -> Iterator[tuple[int, Any |
 
 
 def kinds(path: Place) -> dict[str, str]:
-    """The keys of the object that a file holds, as far as it can be read, and the mark each value begins with."""
+    """The keys of a file's object, as far as it can be read, with the first character of each value."""
     scanner = _Scanner("", keep=False)
     with suppress(BrokenError):
         for _ in scanner.entries(pieces(path)):
@@ -56,7 +56,7 @@ def kinds(path: Place) -> dict[str, str]:
 
 
 class _Scanner:
-    """Follows brackets and strings through a document; keeps no more than the entry it is in."""
+    """Follows brackets and strings through a document; keeps only the current entry in memory."""
 
     def __init__(self, key: str, keep: bool = True) -> None:
         self.kinds: dict[str, str] = {}
@@ -69,7 +69,7 @@ class _Scanner:
         self._key, self._name = "", ""
 
     def entries(self, texts: Iterable[str]) -> Iterator[tuple[int, str]]:
-        """Each entry of the list with the line it begins in.
+        """Each entry of the list with its first line.
 
         Raises:
             BrokenError: after the last whole entry.
@@ -113,7 +113,7 @@ class _Scanner:
             self.kinds.setdefault(self._key, kind)
 
     def _listed(self) -> bool:
-        """Whether what follows is an entry of the list that is wanted."""
+        """Whether the next value is an entry of the requested list."""
         stack = self._stack
         if len(stack) != self._level or stack[-1] != "[":
             return False
@@ -123,7 +123,7 @@ class _Scanner:
         """A comma or bracket, which may end an entry."""
         if self._listed() and self._start >= 0:
             text = self._buffer[self._start : at]
-            # `[]` has no entry; elsewhere nothing at all is one, and no JSON.
+            # `[]` is an empty list; before or after a comma an empty text is an entry, and not JSON.
             if self._comma or token == "," or text.strip():
                 lead = len(text) - len(text.lstrip())
                 yield self._here(self._start + lead), text.strip()
@@ -140,7 +140,7 @@ class _Scanner:
         return self._line
 
     def _forget(self) -> None:
-        """Keep only the entry that is being read."""
+        """Keep only the current entry."""
         keep = self._start if self._start >= 0 else self._at
         self._here(keep)
         self._buffer, self._at = self._buffer[keep:], self._at - keep

@@ -1,4 +1,4 @@
-"""What readers share: items found while scanning, text read without trusting it, and safe archive members."""
+"""Shared by all readers: items, and text read safely from files and archives."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 
 LONGEST_LINE = 1_000_000
-"""Characters kept of a line while reading; what is longer is refused, and its length still told."""
+"""Characters kept of a line while reading; a longer line is refused with its length."""
 
 LARGEST_FILE = 256_000_000
 """Bytes a member of an archive may unpack to."""
@@ -27,16 +27,16 @@ _MARKS = ((b"\xff\xfe", "utf-16-le", 2), (b"\xfe\xff", "utf-16-be", 2), (b"\xef\
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One record as found while scanning: what is needed to read it, in plain values.
+    """One record as found while scanning, in plain values from which it can be read.
 
     Attributes:
         record_id: stable, unique within a build.
-        reader: the name of the reader that found it and will read it.
+        reader: the name of its reader.
         place: source and file inside it.
-        value: what the reader needs; JSON values only.
-        version: changes when the content behind `value` does.
-        path: where the source is on this machine, for readers that go back to it; decides nothing.
-        line: where it begins in its file, from 1; 0 where it is the whole file.
+        value: the reader's input, in JSON values.
+        version: changes if the content to which `value` refers changes.
+        path: the path of the source on this machine, for readers that open it again; not part of any digest.
+        line: its first line in the file, from 1; 0 if it is the whole file.
     """
 
     record_id: str
@@ -50,15 +50,15 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A file or folder to read: its path, and the label it goes by in places, ids and manifests."""
+    """A file or folder to read: its path, and its label in places, ids and manifests."""
 
     label: str
     path: Path
 
 
 def refused(place: str, reject: Reject, record_id: str = "", line: int = 0) -> Item:
-    """An item of which only the fault is known; without an id of its own it goes by its place."""
-    # Rows of rejects: lines that are not UTF-8 are quoted as text that is.
+    """An item that only carries faults; its id is its place unless given."""
+    # Rows of rejects, which escape text that is not UTF-8.
     faults = [
         [row[name] for name in ("code", "message", "file", "line", "column", "found", "suggestion")]
         for row in Reject.because(reject.diagnostics, place).rows()
@@ -86,7 +86,7 @@ def record(
     conditions: list[ConditionRow] | None = None,
     keep: list[bool] | None = None,
 ) -> IngestedRow:
-    """The row of an item, of which it has the id and, where nothing else is said, origin, place and description."""
+    """The row of an item; id and, unless given, origin, place and description id are those of the item."""
     return {
         "kind": kind,
         "program_id": item.record_id,
@@ -124,7 +124,7 @@ def opened(path: Place) -> Iterator[tuple[BinaryIO, str]]:
     """A file's bytes, unpacked, after its byte-order mark, and the encoding that the mark names (else UTF-8).
 
     Raises:
-        DamagedError: while reading, where a packed file is broken or unpacks to far too much.
+        DamagedError: while reading, if a packed file is broken or unpacks to far too much.
     """
     with raw(path) as file:
         start = file.peek(4)[:4]  # type: ignore[attr-defined]
@@ -141,7 +141,7 @@ def suffixless(name: str) -> str:
 def lines(path: Place) -> Iterator[tuple[str, int]]:
     """Each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
 
-    Bytes that are no text become lone surrogates, which `fault_of` finds; no line is lost for the sake of another.
+    Bytes that are not text become lone surrogates, which `fault_of` finds; other lines are not affected.
     """
     import io
 
@@ -176,7 +176,7 @@ _NOT_TEXT = re.compile(r"[\x00\ud800-\udfff]")
 
 
 def fault_of(text: str, place: str, line: int) -> Diagnostic | None:
-    """Why a piece of a file is not text; `line` is that of its first line."""
+    """The fault of a piece of a file that is not text, or None; `line` is the number of its first line."""
     if text.isascii() and "\x00" not in text:
         return None
     bad = _NOT_TEXT.search(text)

@@ -1,4 +1,4 @@
-"""Records of our own schema as JSON: a line each (JSON Lines), a list, or one alone."""
+"""Records of our own schema as JSON: JSON Lines, a list, or a single object."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
         )
     own = str(value.get("program_id") or value.get("id") or "")
     if any(map(leaves, own.split(":"))) or not own.isprintable():
-        message = "an id that is a path out of its folder, or can't be printed"
+        message = "an id that is a path out of its folder, or not printable"
         suggestion = "letters, digits and `-_./:#`, without `..`"
         return refused(place, Reject.of(Code.BAD_JSON, message, file=place, line=line, found=ascii(own)[:60],
                                         suggestion=suggestion), line=line)  # fmt: skip
@@ -79,19 +79,19 @@ def read(item: Item) -> list[IngestedRow | Reject]:
 
 def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
     words = {name: _word(value, name) for name in _WORDS}
-    text, is_spoken = _text(value, words)
+    text, in_sentences = _text(value, words)
     kind = "program" if text else "description"
     if not text and not words["description"]:
         message = "neither steps nor a description"
         return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
-    title, description = header(text) if text and not is_spoken and "steps" not in value else ("", "")
+    title, description = header(text) if text and not in_sentences and "steps" not in value else ("", "")
     origin = _word(value, "origin") or NAME
     return record(
         item,
         kind,
         words["title"] or title,
         words["description"] or description,
-        origin=plans.NAME if is_spoken else origin if origin in _ORIGINS else NAME,
+        origin=plans.NAME if in_sentences else origin if origin in _ORIGINS else NAME,
         description_id=words["description_id"] or "",
         scene=words["scene"],
         worker=words["worker"],
@@ -104,7 +104,7 @@ def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
 
 
 def _others(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow]:
-    """Other ways to tell the same program."""
+    """Further descriptions of the same program."""
     kept: Any = {key: row[key] for key in ("origin", "scene", "worker", "platform", "line")}
     for number, text in enumerate(value.get("descriptions") or (), 2):
         other = replace(item, record_id=f"{row['program_id']}~{number}")
@@ -119,7 +119,7 @@ def _word(value: Mapping[str, Any], name: str) -> str | None:
 
 
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool]:
-    """The program's text, and whether its steps are in words."""
+    """The program's text, and whether it has natural-language steps."""
     steps = value.get("steps")
     if steps is None:
         text = _word(value, "text") or _word(value, "program") or ""
@@ -130,15 +130,15 @@ def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[st
         return "".join(f"{line}\n" for line in print_lines(Program(steps=tuple(map(_step, steps))))), False
     else:
         raise TypeError(f"`steps` is {type(steps).__name__}, not a list")
-    is_spoken = bool(text.strip()) and not any(STEP.match(line) for line in listed)
-    if is_spoken and steps is not None:
+    in_sentences = bool(text.strip()) and not any(STEP.match(line) for line in listed)
+    if in_sentences and steps is not None:
         numbered = [f"Step {number}: {' '.join(step.split())}" for number, step in enumerate(listed, 1)]
         text = "\n".join([f"Task: {words['title'] or 'Untitled'}", words["description"] or "", *numbered])
-    return (text.rstrip("\n") + "\n" if text.strip() else ""), is_spoken
+    return (text.rstrip("\n") + "\n" if text.strip() else ""), in_sentences
 
 
 def _step(value: Mapping[str, Any]) -> Step:
-    """A step of a published row."""
+    """A step from a published row."""
     objects = tuple(
         ObjectRef(normal_name(str(ref["name"])), int(ref.get("instance") or 1), None)
         for ref in value.get("objects") or ()

@@ -1,4 +1,4 @@
-"""Steps in words: numbered text as language models write it, and planning papers' JSON lists of such texts."""
+"""Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 NAME = "spoken"
+"""This reader's name in ids of records and in the column `origin`."""
 
 _LONGEST_PROGRAM = 100_000
 
@@ -35,7 +36,7 @@ def scan_list(path: Place, place: str) -> Iterator[Item]:
         elif isinstance(text, Reject):
             yield refused(where, text, line=line)
         else:
-            message = f"entry {number} of the list is no text"
+            message = f"entry {number} of the list is not text"
             fault = Reject.of(
                 Code.BAD_JSON, message, file=where, line=line, suggestion="a list of texts, or of records"
             )
@@ -43,7 +44,7 @@ def scan_list(path: Place, place: str) -> Iterator[Item]:
 
 
 def checked(text: str, first: int, record_id: str, place: str) -> Item:
-    """The item of a text that begins at line `first`, refused where it is no text or too long."""
+    """The item of a text that begins at line `first`, refused if it is not text or too long."""
     fault = fault_of(text, place, first)
     if fault:
         return refused(place, Reject((fault,)), record_id, first)
@@ -57,22 +58,22 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
 
 
 def read(item: Item) -> IngestedRow:
-    """The record of an item: the words as they are; `validate` maps them to steps."""
+    """The record of an item with its text unchanged; `validate` maps it to steps."""
     top = header(item.value["text"])
     return record(item, "program", top.title, top.description, text=item.value["text"], line=item.value["line"])
 
 
-def looks_spoken(lines: list[str]) -> bool:
-    """Whether a text's first lines are steps in words: numbered ones, and none in brackets."""
+def has_numbered_steps(lines: list[str]) -> bool:
+    """Whether a text's first lines are natural-language steps: numbered lines, none of them in brackets."""
     numbered = [line for line in lines if NUMBERED.match(line)]
     bracketed = any(re.match(r"\s*(?:\[|<[^<>]*>\s*\[)", line) for line in lines)
     return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(TITLE.match(lines[0])))
 
 
 def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
-    """Split a text into its programs: (number of the first line, lines); of a longer one than `most` only so much.
+    """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
-    A program begins with a line that is not numbered, once steps were seen, or where the numbers begin again.
+    A program begins with a line that is not numbered after a step, or where the numbers begin again.
     """
     block: list[str] = []
     first, last, size = 0, 0, 0

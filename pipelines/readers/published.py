@@ -1,6 +1,6 @@
-"""A published dataset of ours: its original programs and the descriptions nobody wrote a program for.
+"""A published dataset of ours: its original programs and the descriptions without a program.
 
-Programs that a build made of others (augmented ones) are left to the next build to make.
+Augmented programs are not read; the next build makes them again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ COLUMNS = [
     "program_id", "origin", "description_id", "parent_id", "title", "description", "steps", "rooms", "props",
     "worker", "platform",
 ]  # fmt: skip
-TOLD = ["description_id", "title", "description", "scene", "origin", "worker", "platform", "programs"]
+DESCRIPTION_COLUMNS = ["description_id", "title", "description", "scene", "origin", "worker", "platform", "programs"]
 _ROWS = 1_000
 
 
@@ -44,7 +44,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
             empty = False
             row["scene"] = scenes.get(row["description_id"])
             yield Item(row["program_id"], NAME, f"{place}/programs", row)
-    for row in _rows(path, "descriptions", TOLD):
+    for row in _rows(path, "descriptions", DESCRIPTION_COLUMNS):
         if not row.pop("programs"):
             empty = False
             yield Item(row["description_id"], NAME, f"{place}/descriptions", row)
@@ -67,13 +67,13 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
                     yield from batch.to_pylist()
         except (pa.ArrowException, OSError, ValueError) as error:
             name = f"{table}/{file.name}"
-            message = f"not to be read as a table of a dataset: {error}"
-            suggestion = "`verify` says whether a dataset is whole; copy it again"
+            message = f"can't be read as a table of a dataset: {error}"
+            suggestion = "`verify` checks whether a dataset is complete; copy it again"
             raise DamagedError.of(Code.DAMAGED_FILE, message, file=name, suggestion=suggestion) from error
 
 
 def _check_text(schema: Any, columns: list[str]) -> None:
-    """ValueError where the rows' id, the first column, is not text, or anything is bytes."""
+    """Raise ValueError if the first column, the rows' id, is not text, or any column is bytes."""
     import pyarrow.types as kind
 
     for name in columns:
@@ -94,7 +94,7 @@ def read(item: Item) -> list[IngestedRow | Reject]:
             del value["steps"]
         rows = ours.read(Item(item.record_id, ours.NAME, item.place, value))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"no row of a dataset: {type(error).__name__} {error}"
+        message = f"not a row of a dataset: {type(error).__name__} {error}"
         suggestion = "copy it again"
         return [Reject.of(Code.DAMAGED_FILE, message, file=item.place, found=item.record_id, suggestion=suggestion)]
     return [row if isinstance(row, Reject) else {**row, "origin": origin} for row in rows]

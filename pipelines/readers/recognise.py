@@ -1,4 +1,4 @@
-"""What a path is, told by its content and not by its name."""
+"""The form of a source, recognised by its content."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ _MAGIC: dict[bytes, str] = {
 }
 
 _ASIDE = frozenset({".md", ".yaml", ".yml", ".rst"})
-"""Notes and settings that stand beside data; what a folder holds of them is not read as data."""
+"""Notes and settings, which are not read as data in a folder."""
 
 _PACKED = frozenset({".gz", ".zst"})
 _TABLES = frozenset({".csv", ".tsv"})
 _JSON = frozenset({".json", ".jsonl", ".ndjson"})
 _DATA = _TABLES | _JSON | {"", ".txt", ".text", ".prog"}
-"""Files that an archive is read for; what else it holds (pictures, notes) stands beside the data."""
+"""Files that are read in an archive; others, such as pictures and notes, are ignored."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
 
 FORMS = (
-    "a release (zip or folder), crowd-sourcing CSV, program text, numbered steps in words, JSON or JSON Lines of "
+    "a release (zip or folder), crowd-sourcing CSV, program text, natural-language steps, JSON or JSON Lines of "
     "records, sketches, a scene graph, or a dataset; packed as .zip, .gz or .zst or not"
 )
 
 
 class Recognised(NamedTuple):
-    """A file or folder and the reader it is for; `refusal` where there is none."""
+    """A file or folder with its reader; or with a refusal, if no reader takes it."""
 
     path: Place
     inside: str
@@ -59,10 +59,10 @@ class Recognised(NamedTuple):
 
 
 def recognise(path: Path, label: str) -> Iterator[Recognised]:
-    """What a source holds: one entry for each file or folder that one reader reads whole.
+    """One entry for each file or folder of a source that one reader reads whole.
 
     Raises:
-        HearthError: the path is missing, or nothing in it is of any known form.
+        HearthError: the path is missing, or nothing in it has a known form.
     """
     if not path.exists():
         raise HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path))
@@ -95,7 +95,7 @@ def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
 
 
 def _named_file(path: Path, label: str) -> Iterator[Recognised]:
-    """A file that was asked for by name: where nothing in it can be read, that is an error, not a reject."""
+    """A source that is a file: if nothing in it can be read, that is an error, not a reject."""
     found = list(_file(path, label))
     refused = [entry.refusal for entry in found if entry.refusal]
     if len(refused) == len(found) and path.stat().st_size:
@@ -114,37 +114,36 @@ def _file(path: Path, place: str) -> Iterator[Recognised]:
 
 
 def _text(path: Place, place: str) -> Recognised:
-    """What a text is, packed or not, by its first lines."""
+    """The form of a text, packed or not, by its first lines."""
     try:
-        return _told(path, place)
+        return _by_first_lines(path, place)
     except DamagedError as error:
         return Recognised(path, place, "", Reject.because(error.diagnostics, place))
 
 
-def _told(path: Place, place: str) -> Recognised:
-    first = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
-    told = [line for line in first if line.strip()]
-    line = told[0] if told else ""
+def _by_first_lines(path: Place, place: str) -> Recognised:
+    start = [line[:_LONGEST] for line, _ in itertools.islice(lines(path), _LOOKED_AT)]
+    first = [line for line in start if line.strip()]
+    line = first[0] if first else ""
     if crowd.header_of(line[:10_000]):
         return Recognised(path, place, crowd.NAME)
     if looks_like_json(line):
-        return _json(path, place, told)
+        return _json(path, place, first)
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
     if suffix in _TABLES:
         return _refused(path, place, "a table whose first line names none of a batch's columns", Code.BAD_TABLE)
-    if suffix in _JSON and told:
+    if suffix in _JSON and first:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
-    return Recognised(path, place, plans.NAME if told and plans.looks_spoken(told) else text.NAME)
+    return Recognised(path, place, plans.NAME if first and plans.has_numbered_steps(first) else text.NAME)
 
 
-def _json(path: Place, place: str, told: list[str]) -> Recognised:
-    """Which of the JSON forms it is: lines where the first is a whole value and others follow, else one document."""
-    first = parsed(told[0], place, 1)
-    several = len(told) > 1 and not isinstance(first, Reject)
-    if several or (not isinstance(first, Reject) and size_of(path) > LARGEST_FILE):
+def _json(path: Place, place: str, first: list[str]) -> Recognised:
+    """The form of a JSON file: JSON Lines if the first line is a whole value and others follow, else a document."""
+    is_value = not isinstance(parsed(first[0], place, 1), Reject)
+    if is_value and (len(first) > 1 or size_of(path) > LARGEST_FILE):
         return Recognised(path, place, ours.NAME)
-    if told[0].lstrip().startswith("["):
+    if first[0].lstrip().startswith("["):
         reader = _form_of_list(path, place)
     elif all(found == "[" for found in map(kinds(path).get, sketches.COLUMNS)):
         reader = sketches.NAME
@@ -153,11 +152,11 @@ def _json(path: Place, place: str, told: list[str]) -> Recognised:
         if isinstance(value, Reject):
             return Recognised(path, place, "", value)
         reader = _form_of(value)
-    return Recognised(path, place, reader) if reader else _refused(path, place, "JSON of no form that is known")
+    return Recognised(path, place, reader) if reader else _refused(path, place, "JSON of an unknown form")
 
 
 def _form_of_list(path: Place, place: str) -> str:
-    """By its first entry that can be read; a list without any is one of records."""
+    """The reader of a list, by its first entry that can be read; an empty list is a list of records."""
     for _, value in entries(path, place):
         if isinstance(value, str):
             return TEXTS
@@ -178,7 +177,7 @@ def _form_of(value: Any) -> str:
 TEXTS = "spoken list"
 LISTED = "records list"
 DOCUMENT = "records document"
-"""Readers' names for what is scanned otherwise and read alike."""
+"""Readers that scan another form and then read records as `plans` or `ours` do."""
 
 
 def _archive(path: Path, place: str) -> Iterator[Recognised]:

@@ -1,4 +1,4 @@
-"""The ActivityPrograms release, as a zip or a folder in its own layout, any of its folders missing."""
+"""The ActivityPrograms release, as a zip or a folder in its own layout; any of its folders may be missing."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ FOLDERS: dict[str, str] = {
     "init_and_final_graph": "graphs",
     "state_list": "states",
 }
-"""The release's folders, and what they hold."""
+"""The release's folders by the kind of their files."""
 
 _IN_HOMES = frozenset({"grounded", "graphs", "states"})
 JsonObject = dict[str, Any]
-"""What is known of a program: its files by folder and home, or what one of them holds as JSON."""
+"""A program's files by folder and home, or the JSON value of one of them."""
 
 _HOME = re.compile(r"(.*?)(_graph)?")
 _EDGE = itemgetter("from_id", "relation_type", "to_id")
@@ -51,7 +51,7 @@ def names_it(path: str) -> bool:
 
 
 def _located(path: str) -> tuple[str, str, str] | None:
-    """What a file holds, in which home, for which program (`batch/file`)."""
+    """The kind of a file, its home ("" for none), and its program (`batch/file`); None for a file of another layout."""
     parts = path.split("/")
     for number, part in enumerate(parts[:-1]):
         kind = FOLDERS.get(part)
@@ -67,7 +67,7 @@ def _located(path: str) -> tuple[str, str, str] | None:
 
 
 def scan(path: Path, place: str) -> Iterator[Item]:
-    """One item for each program that any of the folders names, in the order of their names.
+    """One item for each program of any of the folders, ordered by name.
 
     Raises:
         HearthError: the archive is damaged, or holds none of the folders.
@@ -91,7 +91,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         versions[key] = f"{versions.get(key, '')}{version} "
     if not programs:
         suggestion = f"it needs one of the folders {', '.join(sorted(FOLDERS))}"
-        raise HearthError.of(Code.BAD_ARCHIVE, "no release: no programs in it", file=place, suggestion=suggestion)
+        raise HearthError.of(Code.BAD_ARCHIVE, "not a release: no programs in it", file=place, suggestion=suggestion)
     for key in sorted(programs):
         yield _item(path, place, key, programs[key], versions[key])
 
@@ -106,7 +106,7 @@ def _item(path: Path, place: str, key: str, members: JsonObject, version: str) -
 
 
 def _listing(path: Path) -> Iterable[tuple[str, str]]:
-    """Names of files, and what tells versions of them apart."""
+    """The name and a checksum of each file."""
     if path.is_dir():
         for file in walk(path):
             yield file.relative_to(path).as_posix(), file_digest(file)[:16]
@@ -116,7 +116,7 @@ def _listing(path: Path) -> Iterable[tuple[str, str]]:
 
 
 def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
-    """A member's bytes, or why they can't be had."""
+    """A member's bytes, or the fault that prevents reading them."""
     path = Path(value["path"])
     place = f"{value['label']}/{name}"
     try:
@@ -135,13 +135,13 @@ def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
 
 
 def text_of(value: JsonObject, name: str) -> str | Diagnostic:
-    """A member of the release as text, or why it can't be had; `value` is an item's, with its path."""
+    """A member of the release as text, or its fault; `value` is an item's, with its path."""
     data = _bytes(value, name)
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
 def json_of(value: JsonObject, name: str) -> Any:
-    """A member of the release as the JSON it holds, or a Diagnostic."""
+    """A member of the release as a JSON value, or its fault."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
         return data
@@ -152,7 +152,7 @@ def json_of(value: JsonObject, name: str) -> Any:
 
 
 def read(item: Item) -> Iterator[IngestedRow | Reject]:
-    """The record of a program with all its groundings. A grounding that can't be read is refused alone."""
+    """The record of a program with all its groundings; a grounding that can't be read is refused alone."""
     value = {**item.value, "path": item.path}
     groundings: list[WrittenGroundingRow] = []
     faults: list[Diagnostic] = []
@@ -189,12 +189,12 @@ def _row(item: Item, text: str, groundings: list[WrittenGroundingRow], condition
 
 
 def _collected(value: JsonObject, groundings: list[WrittenGroundingRow]) -> str | Diagnostic:
-    """The text as collected, or failing that the first grounded one with its node ids left out."""
+    """The text as collected, or else the first grounded one without its node ids."""
     if "collected" in value:
         return text_of(value, value["collected"])
     if groundings:
         return re.sub(r"\((\d+)\.\d+\)", r"(\1)", groundings[0]["text"])
-    return Diagnostic(Code.MISSING_FILE, "no text of it can be read", f"{value['label']}/{value['key']}")
+    return Diagnostic(Code.MISSING_FILE, "none of its texts can be read", f"{value['label']}/{value['key']}")
 
 
 def _grounding(value: JsonObject, home: str) -> WrittenGroundingRow | Diagnostic | None:
@@ -215,7 +215,7 @@ def _grounding(value: JsonObject, home: str) -> WrittenGroundingRow | Diagnostic
 
 
 def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
-    """The start graph, and what the final graph changes of it."""
+    """The start graph, and the change to the final graph."""
     data = json_of(value, name)
     place = f"{value['label']}/{name}"
     if isinstance(data, Diagnostic):
@@ -235,7 +235,7 @@ def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] |
 
 
 def _edges(graph: JsonObject) -> set[Edge]:
-    """Plain tuples, which equal edges and are made faster."""
+    """Edges as plain tuples, which equal `Edge` and are made faster."""
     return set(map(_EDGE, graph["edges"]))
 
 
@@ -243,7 +243,7 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
     """Edges column by column.
 
     Raises:
-        TypeError: an id is no number, or a relation no word.
+        TypeError: an id is not a number, or a relation not a word.
     """
     sources, relations, targets = (list(map(itemgetter(place), edges)) for place in range(3))
     if not {*map(type, sources), *map(type, targets)} <= {int} or not {*map(type, relations)} <= {str}:
@@ -252,7 +252,7 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
 
 
 def _changed(edges: set[Edge], start: JsonObject, final: JsonObject) -> ChangeRow:
-    """What a final graph changes: edges, and states that are simulated."""
+    """The change to a final graph, in edges and in the states that are simulated."""
     new = _edges(final)
     _columns(sorted(new - edges))
     return change_row(difference(Parts(edges, _states(start)), Parts(new, _states(final))))
@@ -271,7 +271,7 @@ def _conditions(value: JsonObject) -> list[ConditionRow] | Diagnostic:
     try:
         return [_condition(name, objects) for entry in data for name, objects in entry.items()]
     except (AttributeError, TypeError, ValueError, IndexError, KeyError) as error:
-        message = f"no list of preconditions: {error}"
+        message = f"not a list of preconditions: {error}"
         return Diagnostic(Code.BAD_JSON, message, f"{value['label']}/{value['conditions']}")
 
 

@@ -1,4 +1,4 @@
-"""Scene graphs alone: a home as the release writes it, without any program."""
+"""Scene graphs: a home in the release's layout, without a program."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a scene: the graph, under the file's name as that of a home."""
+    """The record of a scene: the graph of a home that is named by the file."""
     try:
         graph = graph_row(from_release(item.value, item.place))
     except HearthError as error:
@@ -45,13 +45,13 @@ def read(item: Item) -> IngestedRow | Reject:
 
 
 def _state_faults(nodes: list[NodeRow], place: str) -> Iterator[Diagnostic]:
-    """Nodes that have a state twice, or two that exclude each other."""
+    """Nodes with a state twice, or with two states that exclude each other."""
     for node in nodes:
         states = node["states"]
         twice = sorted({state for state in states if states.count(state) > 1})
         both = sorted(state for state in set(states) if OPPOSITE.get(state) in states)
-        for found, message in ((twice, "the same state twice"), (both, "states that exclude each other")):
+        for found, fault in ((twice, "the same state twice"), (both, "states that exclude each other")):
             if found:
-                said = ", ".join(found)
-                told = f"node {node['id']} ({node['class_name']}) has {message}: {said}"
-                yield Diagnostic(Code.BAD_GRAPH, told, place, found=said, suggestion="keep one")
+                names = ", ".join(found)
+                message = f"node {node['id']} ({node['class_name']}) has {fault}: {names}"
+                yield Diagnostic(Code.BAD_GRAPH, message, place, found=names, suggestion="keep one")

@@ -1,4 +1,4 @@
-"""Sketches: which steps of a program a person kept as its gist (thesis 4.2), in the release's annotation file."""
+"""Sketches: the steps of a program that a person kept as its gist (thesis 4.2), in the release's annotation file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hearth.storage.rejects import Reject
 NAME = "sketches"
 
 COLUMNS = ("answer", "input")
-"""What tells the file from other JSON: columns of equal length."""
+"""Columns of equal length, by which the file is recognised."""
 
 
 def scan(path: Place, place: str) -> Iterator[Item]:
@@ -26,20 +26,20 @@ def scan(path: Place, place: str) -> Iterator[Item]:
         where = f"{place}[{number}]"
         fault = next((value for value in (keep, given) if isinstance(value, Reject)), None)
         if keep is None or given is None:
-            message = "no sketches: `answer` and `input` are not lists of one length"
+            message = "not sketches: `answer` and `input` are not lists of one length"
             fault = fault or Reject.of(Code.BAD_JSON, message, file=place, line=line)
         if fault:
             yield refused(where, fault)
             return
-        told = {"keep": keep, "input": given, "represent": 1 if fits is None or isinstance(fits, Reject) else fits}
-        yield Item(f"{NAME}:{where}", NAME, where, told)
+        value = {"keep": keep, "input": given, "represent": 1 if fits is None or isinstance(fits, Reject) else fits}
+        yield Item(f"{NAME}:{where}", NAME, where, value)
 
 
 _ABSENT = (0, None)
 
 
 def read(item: Item) -> IngestedRow | Reject:
-    """The record of a sketch: the program it is of, which of its steps it keeps, and these steps."""
+    """The record of a sketch: its program, a flag for each step that it keeps, and the steps."""
     keep, given = item.value["keep"], item.value["input"]
     try:
         flags = [bool(flag) for flag in keep]
@@ -49,6 +49,6 @@ def read(item: Item) -> IngestedRow | Reject:
         message = f"not a sketch: {type(error).__name__} {error}"
         return Reject.of(Code.BAD_JSON, message, file=item.place, suggestion="it needs title, descr, prog and prefix")
     if not flags:
-        return Reject.of(Code.EMPTY, "a sketch of no steps", file=item.place)
+        return Reject.of(Code.EMPTY, "a sketch without steps", file=item.place)
     described = f"{release.NAME}:{program_id}"
     return record(item, "sketch", title, description, description_id=described, text=text, line=0, keep=flags)

@@ -1,4 +1,4 @@
-"""Plain program text: a title, a description, then one step a line; several programs a file, files in folders."""
+"""Program text: a title, a description, then one step a line; several programs in a file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FIRST_STEP = re.compile(r"^[^\S\n]*+[\[<(|]", re.MULTILINE)
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a file.
 
-    What begins the next program is told by `hearth.schemas.blocks`; a title without steps is a record of its own.
+    `hearth.schemas.blocks` decides where the next program begins; a title without steps is a record of its own.
     """
     number = 0
     for number, block in enumerate(blocks(pieces(path)), 1):
@@ -45,11 +45,11 @@ def _item(block: Block, record_id: str, place: str) -> Item:
 
 
 def _too_long(block: Block, place: str) -> Diagnostic | None:
-    """A line, or else a program, that is longer than any that people write."""
+    """The fault of a line, or else of a program, that is too long."""
     for number, line in enumerate(block.text.split("\n"), block.first):
         if len(line) > MAX_LINE:
-            told = f"more than {MAX_LINE:,}" if block.cut else f"{len(line):,}"
-            message, found, suggestion = f"a line of {told} characters", line[:60], f"at most {MAX_LINE:,}"
+            length = f"more than {MAX_LINE:,}" if block.cut else f"{len(line):,}"
+            message, found, suggestion = f"a line of {length} characters", line[:60], f"at most {MAX_LINE:,}"
             return Diagnostic(
                 Code.LINE_TOO_LONG, message, place, number, 1, len(found), found, suggestion, source=line[:200]
             )

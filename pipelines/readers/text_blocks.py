@@ -1,4 +1,4 @@
-"""The programs of a text, found a piece at a time: memory does not grow with the file, nor with a program too long."""
+"""The programs of a text, found piece by piece in constant memory."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from hearth.schemas.blocks import Splitter
 from hearth.schemas.syntax import MAX_LINE
 
 LONGEST_PROGRAM = 1_000_000
-"""Characters that a program of text may have; of a longer one only the beginning is kept."""
+"""Characters of a program at most; of a longer one only the beginning is kept."""
 
-# Possessive, so that blank lines without end take no more time than others: nothing is tried twice.
+# Possessive quantifiers never backtrack, so that many blank lines take linear time.
 _LEADING = re.compile(r"(?:[^\S\n]*+\n)*+")
 _GAP = re.compile(r"\n[^\S\n]*+\n\s*+")
 _NO_TITLE = frozenset(["", "[", "<", "(", "|"])
-"""What stands behind a gap where no title does: nothing yet, or a step."""
+"""Characters after a gap that do not begin a title: the end of the buffer, or a step."""
 
 _STEP = re.compile(r"^[^\S\n]*[\[<(|]", re.MULTILINE)
 
@@ -30,7 +30,7 @@ class Block(NamedTuple):
 
 
 def blocks(pieces: Iterable[str]) -> Iterator[Block]:
-    """Split a text into programs exactly as `hearth.schemas.blocks` tells, by looking only where blank lines are."""
+    """Split a text into programs as `hearth.schemas.blocks` does, looking only at blank lines."""
     cutter = _Cutter()
     for piece in pieces:
         yield from cutter.take(piece)
@@ -38,7 +38,7 @@ def blocks(pieces: Iterable[str]) -> Iterator[Block]:
 
 
 class _Cutter:
-    """What is left of the text: the program that is being read begins `_buffer`, unless its beginning is in `_kept`."""
+    """Splits a text; the current program is in `_buffer`, or its beginning in `_kept` if it is too long."""
 
     def __init__(self) -> None:
         self._buffer = ""
@@ -48,7 +48,7 @@ class _Cutter:
         self._splitter = _started()
 
     def take(self, piece: str, final: bool = False) -> Iterator[Block]:
-        """The programs that end in another piece of the text."""
+        """The programs that end in the next piece of the text."""
         self._buffer += piece
         if self._kept is None and self._seen == 0:
             self._drop(_LEADING.match(self._buffer).end())  # type: ignore[union-attr]
@@ -76,7 +76,7 @@ class _Cutter:
             self._shorten()
 
     def _begins(self, end: int, start: int, final: bool) -> bool | None:
-        """Whether the line at `start`, after a gap from `end`, begins a program; None where that can't be told yet."""
+        """Whether the line at `start`, after a gap from `end`, begins a program; None while that is undecided."""
         buffer, splitter = self._buffer, self._splitter
         if not splitter.has_steps and self._has_steps(end):
             splitter.has_steps = True
@@ -97,7 +97,7 @@ class _Cutter:
         return splitter.begins(buffer[start : stop if stop >= 0 else len(buffer)][: MAX_LINE + 1], is_step=long)
 
     def _has_steps(self, end: int) -> bool:
-        """Whether there is a step before `end`, or a line so long that it counts as one."""
+        """Whether there is a step before `end`; a line that is too long counts as one."""
         if _STEP.search(self._buffer, self._seen, end):
             return True
         if end - self._seen <= MAX_LINE:
@@ -111,7 +111,7 @@ class _Cutter:
         return kept or Block(self._line, self._buffer[start:end], False)
 
     def _shorten(self) -> None:
-        """Of a program that is too long keep the beginning, and what is needed to see its end: its last line."""
+        """Keep the beginning of a program that is too long, and its last line, by which its end is found."""
         body = self._buffer.rstrip()
         if not body:
             self._drop(len(self._buffer) - 1)
@@ -139,5 +139,5 @@ def _started() -> Splitter:
 
 
 def _squeezed(blank: str) -> str:
-    """Blank lines, no more of them than tell apart programs; what stands behind the last line end stays."""
+    """At most three blank lines, as many as can separate programs; the text after the last line end is kept."""
     return "\n" * min(blank.count("\n"), 3) + blank[blank.rfind("\n") + 1 :][-MAX_LINE:]

@@ -15,7 +15,7 @@ def run(*words):
     return CliRunner().invoke(cli.app, [str(word) for word in words], catch_exceptions=True)
 
 
-def told(*words):
+def answer(*words):
     result = run(*words, "--json")
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout)
@@ -32,7 +32,7 @@ def changed(dataset, tmp_path):
 
 
 def test_a_question_is_answered_as_a_table_and_for_machines(dataset):
-    rows = told("query", dataset, SQL)
+    rows = answer("query", dataset, SQL)
     assert {row["origin"] for row in rows} >= {"crowd", "augmented"}
     shown = run("query", dataset, SQL)
     assert shown.exit_code == 0
@@ -57,7 +57,7 @@ def test_a_wrong_or_a_writing_question_is_refused(dataset, tmp_path, sql, why):
 
 
 def test_a_dataset_is_as_it_says(dataset):
-    assert told("verify", dataset, "-j", "1")["faults"] == []
+    assert answer("verify", dataset, "-j", "1")["faults"] == []
     assert run("verify", dataset, "-j", "1").exit_code == 0
 
 
@@ -73,12 +73,12 @@ def test_a_changed_byte_is_named(changed):
 
 def test_two_datasets_that_are_the_same_differ_in_nothing(dataset, changed):
     assert run("diff", dataset, changed).exit_code == 0
-    assert not any(table["changed"] or table["added"] or table["removed"] for table in told("diff", dataset, changed))
+    assert not any(table["changed"] or table["added"] or table["removed"] for table in answer("diff", dataset, changed))
 
 
 def test_what_was_augmented_is_told_beside_the_thesis(dataset, tmp_path):
-    figures = told("augmented", dataset)
-    counted = {row["origin"]: row["n"] for row in told("query", dataset, SQL)}
+    figures = answer("augmented", dataset)
+    counted = {row["origin"]: row["n"] for row in answer("query", dataset, SQL)}
     assert figures["table"]["augmented"]["ours"]["programs"] == counted["augmented"]
     shown = run("augmented", dataset, "--out", tmp_path / "figures")
     assert shown.exit_code == 0

@@ -29,11 +29,11 @@ def watching(tmp_path):
 
 
 def test_conditions_say_which_step_needs_them(watching):
-    told = json.loads(run("conditions", watching, "--json").stdout)
-    assert {"step": 2, "condition": "is_off(television (1))", "needed": True} in told["conditions"]
-    rules = {c["condition"]: c for c in told["release_rules"]}
+    found = json.loads(run("conditions", watching, "--json").stdout)
+    assert {"step": 2, "condition": "is_off(television (1))", "needed": True} in found["conditions"]
+    rules = {c["condition"]: c for c in found["release_rules"]}
     assert rules["free(sofa (1))"]["ours"]
-    assert all(c["ours"] or c["why"] for c in told["release_rules"])
+    assert all(c["ours"] or c["why"] for c in found["release_rules"])
     assert "the step needs it" in run("conditions", watching).stdout
 
 
@@ -46,15 +46,15 @@ def test_two_steps_at_odds_are_shown(tmp_path):
 
 
 def test_samples_of_one_program_differ(watching):
-    told = json.loads(run("diversity", watching, "--samples", 20, "--json").stdout)
-    assert told["samples"] == told["distinct"] == 20 and told["failed"] == {}
-    assert told["preconditions"]["television"] == {"facing": 1, "is_off": 1, "plugged": 1, "together": 1}
+    found = json.loads(run("diversity", watching, "--samples", 20, "--json").stdout)
+    assert found["samples"] == found["distinct"] == 20 and found["failed"] == {}
+    assert found["preconditions"]["television"] == {"facing": 1, "is_off": 1, "plugged": 1, "together": 1}
     assert run("diversity", watching, "--home", "mapel").exit_code == 2
 
 
 def test_bars_count_what_is_about_a_class(watching):
-    told = json.loads(run("preconditions", watching, "--class", "television", "--json").stdout)
-    assert told == {"programs": {"television": {"facing": 1, "is_off": 1, "plugged": 1, "together": 1}}}
+    found = json.loads(run("preconditions", watching, "--class", "television", "--json").stdout)
+    assert found == {"programs": {"television": {"facing": 1, "is_off": 1, "plugged": 1, "together": 1}}}
     assert "#" in run("preconditions", watching, "--class", "television").stdout
 
 
@@ -70,8 +70,8 @@ def test_realism_reads_a_release_and_draws_heat_maps(real_data, tmp_path):
     release = real_data / "activityprograms-sample.zip"
     result = run("realism", release, "--limit", 6, "--home", "maple", "--out", tmp_path, "--json")
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    assert 0 <= told["states"] <= told["places"] < 1
+    found = json.loads(result.stdout)
+    assert 0 <= found["states"] <= found["places"] < 1
     assert (tmp_path / "release.svg").read_text().count("<rect") > 5
     assert (tmp_path / "sampled.svg").read_text().startswith("<svg")
 
@@ -83,10 +83,10 @@ def test_each_help_has_an_example():
 
 def test_one_environment_is_drawn_for_a_program_a_goal_or_nothing(watching, tmp_path):
     out = tmp_path / "tv.json"
-    told = json.loads(run("sample", watching, "--nodes", 290, "--out", out, "--json").stdout)
+    found = json.loads(run("sample", watching, "--nodes", 290, "--out", out, "--json").stdout)
     nodes = {node["id"]: node["class_name"] for node in json.loads(out.read_text())["nodes"]}
-    objects = {row["object"]: row["node"] for row in told["objects"]}
-    assert 275 <= told["nodes"] == len(nodes) <= 305
+    objects = {row["object"]: row["node"] for row in found["objects"]}
+    assert 275 <= found["nodes"] == len(nodes) <= 305
     assert "television" in nodes[objects["television (1)"]]
     goal = json.loads(run("sample", "--goal", "ON(plate, kitchen_table): 9", "--json").stdout)["goal"]
     assert goal[0]["wanted"] == 9 > goal[0]["met"]
@@ -108,8 +108,8 @@ def test_a_program_and_a_goal_exclude_each_other(watching):
 
 
 def test_rules_are_counted_over_a_source(watching):
-    told = json.loads(run("rules", watching.parent, "--json").stdout)
-    counts = {row["condition"]: row for row in told["conditions"]}
-    assert told["programs"] == 1 and counts["free"]["ours"] == 1
-    for row in told["conditions"]:
+    found = json.loads(run("rules", watching.parent, "--json").stdout)
+    counts = {row["condition"]: row for row in found["conditions"]}
+    assert found["programs"] == 1 and counts["free"]["ours"] == 1
+    for row in found["conditions"]:
         assert row["by_rules"] == row["ours"] + row["not needed"] + row["refused"]

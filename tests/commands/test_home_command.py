@@ -134,9 +134,9 @@ def test_a_graph_is_laid_out(tmp_path):
         node.pop("bounding_box"), node.pop("yaw", None)
     bare = tmp_path / "bare.json"
     bare.write_text(json.dumps(graph))
-    told = json.loads(run("lint", bare, "--layout", "--json").stdout)
-    assert {row["what"] for row in told["met"]} == {"things", "ON", "INSIDE", "CLOSE", "FACING"}
-    assert all(row["shown"] > 0.6 * row["all"] for row in told["met"])
+    found = json.loads(run("lint", bare, "--layout", "--json").stdout)
+    assert {row["what"] for row in found["met"]} == {"things", "ON", "INSIDE", "CLOSE", "FACING"}
+    assert all(row["shown"] > 0.6 * row["all"] for row in found["met"])
     assert run("convert", bare, tmp_path / "laid.json", "--layout").exit_code == 0
     laid = json.loads((tmp_path / "laid.json").read_text())
     assert all("bounding_box" in node for node in laid["nodes"])
@@ -145,18 +145,18 @@ def test_a_graph_is_laid_out(tmp_path):
 
 def test_statistics_stand_beside_each_other(tmp_path):
     _copied(tmp_path)
-    told = json.loads(run("stats", "--generated", 2, "--homes", tmp_path, "--json").stdout)
-    assert list(told) == ["ours", "generated", "theirs"]
-    assert told["ours"]["homes"] == 7 and told["ours"]["pass lint"] == 7 and told["ours"]["nodes"] >= 350
-    assert told["generated"]["homes"] == told["generated"]["pass lint"] == 2 and told["generated"]["rooms"] == 3.5
-    assert told["theirs"]["homes"] == 1 and told["theirs"]["edges a node"] > 10
-    assert told["theirs"]["smallest room, m2"] < told["theirs"]["room area, m2"] < told["theirs"]["largest room, m2"]
-    assert told["ours"]["have the furniture of the thesis"] == 7 and told["ours"]["objects"] >= 350
-    assert told["ours"]["fewest rooms"] >= 4 and told["ours"]["most rooms"] <= 7
-    wanted = 100 * (told["ours"]["edges a node"] / told["theirs"]["edges a node"] - 1)
-    assert told["ours"]["density beside theirs, %"] == pytest.approx(wanted, abs=0.06)
-    degrees = sum(told["theirs"][f"{name} a node"] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"))
-    assert degrees == pytest.approx(told["theirs"]["edges a node"], abs=0.05)
+    found = json.loads(run("stats", "--generated", 2, "--homes", tmp_path, "--json").stdout)
+    assert list(found) == ["ours", "generated", "theirs"]
+    assert found["ours"]["homes"] == 7 and found["ours"]["pass lint"] == 7 and found["ours"]["nodes"] >= 350
+    assert found["generated"]["homes"] == found["generated"]["pass lint"] == 2 and found["generated"]["rooms"] == 3.5
+    assert found["theirs"]["homes"] == 1 and found["theirs"]["edges a node"] > 10
+    assert found["theirs"]["smallest room, m2"] < found["theirs"]["room area, m2"] < found["theirs"]["largest room, m2"]
+    assert found["ours"]["have the furniture of the thesis"] == 7 and found["ours"]["objects"] >= 350
+    assert found["ours"]["fewest rooms"] >= 4 and found["ours"]["most rooms"] <= 7
+    wanted = 100 * (found["ours"]["edges a node"] / found["theirs"]["edges a node"] - 1)
+    assert found["ours"]["density beside theirs, %"] == pytest.approx(wanted, abs=0.06)
+    degrees = sum(found["theirs"][f"{name} a node"] for name in ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN"))
+    assert degrees == pytest.approx(found["theirs"]["edges a node"], abs=0.05)
 
 
 def _nodes(path):

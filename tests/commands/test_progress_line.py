@@ -28,14 +28,14 @@ def shown(script):
     command = [sys.executable, "-c", script]
     done = subprocess.run(command, check=True, stderr=theirs, stdout=subprocess.PIPE, env=environment)
     os.close(theirs)
-    told = b""
+    seen = b""
     try:
         while part := os.read(ours, 4096):
-            told += part
+            seen += part
     except OSError:  # the end of a terminal
         pass
     os.close(ours)
-    return told.decode(), done.stdout.decode()
+    return seen.decode(), done.stdout.decode()
 
 
 def test_a_terminal_sees_how_far_it_is():
@@ -51,12 +51,12 @@ def test_nobody_is_told_where_there_is_no_terminal(capsys):
 
 
 def test_jobs_are_counted_as_they_are_done():
-    told = []
-    assert list(spread(abs, [-1, 2, -3], 1, lambda done, total: told.append((done, total)))) == [1, 2, 3]
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    seen = []
+    assert list(spread(abs, [-1, 2, -3], 1, lambda done, total: seen.append((done, total)))) == [1, 2, 3]
+    assert seen == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_items_are_counted_as_they_come_by():
-    told = []
-    assert list(watched("ab", lambda done, total: told.append((done, total)))) == ["a", "b"]
-    assert told == [(1, None), (2, None)]
+    seen = []
+    assert list(watched("ab", lambda done, total: seen.append((done, total)))) == ["a", "b"]
+    assert seen == [(1, None), (2, None)]

@@ -32,9 +32,9 @@ def test_a_program_becomes_a_video_that_a_page_plays(tmp_path):
     command = ["program", str(file), "--out", str(tmp_path / "out"), "--width", "48", "--mode", "video", "--fps", "5"]
     result = CliRunner().invoke(app, [*command, "--cameras", "top", "--json"])
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    (video,) = told["videos"]
-    assert told["pictures"] == video["frames"]
+    found = json.loads(result.stdout)
+    (video,) = found["videos"]
+    assert found["pictures"] == video["frames"]
     assert [step["tick"] for step in video["steps"]] == [0, 1, 2]
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"top.webm", "top.mp4", "top.html", "steps.json", "sheet.png"}

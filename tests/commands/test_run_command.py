@@ -61,7 +61,7 @@ def test_a_program_that_contradicts_itself_ends_with_status_1(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("Fly\n\n\n[Fly] <bed> (1)\n", "UNKNOWN_ACTION"),
         ("TV\n\n\n[Watch] <televison> (1)\n", "did you mean `television`"),
@@ -71,12 +71,12 @@ def test_a_program_that_contradicts_itself_ends_with_status_1(tmp_path):
         ("a\x00b", "NOT_TEXT"),
     ],
 )
-def test_a_bad_file_is_explained(tmp_path, text, said):
+def test_a_bad_file_is_explained(tmp_path, text, message):
     file = tmp_path / "bad.txt"
     file.write_text(text)
     result = call("run", file)
     assert result.exit_code == 1
-    assert said in result.output and "Traceback" not in result.output
+    assert message in result.output and "Traceback" not in result.output
 
 
 def test_replay_reproduces_the_release_sample(real_data):

@@ -16,8 +16,8 @@ def run(*words):
 
 
 def drawn(tmp_path, title):
-    told = {"title": title, "descr": "I read.", "prog": ["read novel "], "prefix": "batch/file1_1"}
-    (tmp_path / "drawn.json").write_text(json.dumps({"answer": [[0, 1, 1]], "represent": [1], "input": [told]}))
+    program = {"title": title, "descr": "I read.", "prog": ["read novel "], "prefix": "batch/file1_1"}
+    (tmp_path / "drawn.json").write_text(json.dumps({"answer": [[0, 1, 1]], "represent": [1], "input": [program]}))
     return tmp_path / "drawn.json"
 
 

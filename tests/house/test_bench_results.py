@@ -21,8 +21,8 @@ def section(*figures):
 def test_a_ratio_that_fell_by_a_third_is_named(results):
     stored = {"engine": section(row("run", 9.0), row("kept", 9.0), row("rate")), "other": section(row("x", 5.0))}
     found = {"engine": section(row("run", 6.1), row("kept", 5.9), row("rate", value=0.1))}
-    (told,) = results.fallen(found, stored)
-    assert "kept" in told and "9.0" in told and "5.9" in told
+    (message,) = results.fallen(found, stored)
+    assert "kept" in message and "9.0" in message and "5.9" in message
 
 
 def test_a_ratio_that_a_figure_has_no_more_has_fallen(results):
@@ -34,8 +34,8 @@ def test_a_ratio_that_a_figure_has_no_more_has_fallen(results):
 def test_what_was_not_measured_is_named_and_has_not_fallen(results):
     stored = {"engine": section(row("run", 9.0)), "other": section(row("x", 5.0))}
     assert not results.fallen({"engine": section()}, stored)
-    (told,) = results.unmeasured({"engine": section()}, stored)
-    assert "run" in told and "not measured" in told
+    (message,) = results.unmeasured({"engine": section()}, stored)
+    assert "run" in message and "not measured" in message
 
 
 def test_the_document_says_target_ratio_and_spread(results):

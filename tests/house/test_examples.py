@@ -55,12 +55,12 @@ def test_an_example_does_what_it_says(page, tmp_path):
     if "python cli.py" in page.read_text("utf-8"):
         checkout = shutil.copytree(ROOT, folder, ignore=APART)
     folder.mkdir(exist_ok=True)
-    said = ""
+    printed = ""
     for language, title, text in blocks(page):
         if title:
             (folder / title).write_text(text, "utf-8")
         elif language == "bash":
-            said = ran(text, folder, checkout)
+            printed = ran(text, folder, checkout)
         elif language == "text":
-            lacking = [line for line in text.splitlines() if line.strip() and line.strip() not in said]
-            assert not lacking, said
+            lacking = [line for line in text.splitlines() if line.strip() and line.strip() not in printed]
+            assert not lacking, printed

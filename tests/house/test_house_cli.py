@@ -61,7 +61,7 @@ def test_version():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["chekc"], "Did you mean `check`?"),
         (["nothing-like-it"], "There is no command `nothing-like-it`."),
@@ -70,10 +70,10 @@ def test_version():
         (["run", "x", "--seed", "many"], "--seed"),
     ],
 )
-def test_wrong_usage_is_status_2(arguments, said):
+def test_wrong_usage_is_status_2(arguments, message):
     result = call(*arguments)
     assert result.exit_code == 2
-    assert said in result.output
+    assert message in result.output
     assert "Traceback" not in result.output
 
 

@@ -9,7 +9,7 @@ WORDS = "Walk to the kitchen and open the fridge. Take the milk out and pour you
 STEPS = [f"[Walk] <thing_{number}> (1)" for number in range(10)]
 
 
-def told(number, description, worker="W"):
+def answer(number, description, worker="W"):
     cells = {"WorkerId": worker, "Answer.description": description}
     return Item(f"d{number}", "crowd", "a.csv", {"stage": 1, "cells": cells}, line=number)
 
@@ -36,7 +36,7 @@ def refused(items):
     ],
 )
 def test_words(other, is_copy):
-    assert refused([told(1, WORDS), told(2, other, worker="V")]) == (["d2"] if is_copy else [])
+    assert refused([answer(1, WORDS), answer(2, other, worker="V")]) == (["d2"] if is_copy else [])
 
 
 def test_programs_of_one_worker_for_one_description():
@@ -54,4 +54,4 @@ def test_one_answer_for_many_descriptions_is_refused_every_time():
 def test_answers_that_are_no_text_are_compared_too():
     broken = [*STEPS, "[Find] <caf\udce9> (1)"]
     assert refused([written(number, broken, described=f"D{number}") for number in range(1, 4)]) == ["p1", "p2", "p3"]
-    assert refused([told(1, f"{WORDS} \udce9"), told(2, f"{WORDS} \udce9", worker="V")]) == ["d2"]
+    assert refused([answer(1, f"{WORDS} \udce9"), answer(2, f"{WORDS} \udce9", worker="V")]) == ["d2"]

@@ -90,12 +90,13 @@ def elsewhere(tmp_path, monkeypatch):
 
 
 def test_it_says_which_and_has_the_files(moved):
-    said = hearth.load(moved).manifest
-    assert said["knowledge"] == {
+    manifest = hearth.load(moved).manifest
+    assert manifest["knowledge"] == {
         "base": digest(),
         "overlay": {"sha256": digest(moved / "knowledge"), "path": "knowledge"},
     }
-    assert {f"knowledge/{name}" for name in OVERLAY} == {name for name in said["files"] if name.startswith("knowledge")}
+    copied = {name for name in manifest["files"] if name.startswith("knowledge")}
+    assert copied == {f"knowledge/{name}" for name in OVERLAY}
     assert {path.name: path.read_text() for path in (moved / "knowledge").iterdir()} == OVERLAY
 
 
@@ -162,21 +163,21 @@ def test_what_it_is_without_the_overlay(moved):
 
 
 def test_one_made_before_was_made_with_ours(copy):
-    said(copy, None)
+    store_knowledge(copy, None)
     assert hearth.load(copy).knowledge is default()
 
 
-def said(folder, knowledge):
+def store_knowledge(folder, knowledge):
     """Make the manifest say something else of the knowledge."""
     manifest = orjson.loads((folder / "manifest.json").read_bytes())
     del manifest["knowledge"]
-    told = {} if knowledge is None else {"knowledge": knowledge}
-    (folder / "manifest.json").write_bytes(orjson.dumps({**manifest, **told}))
+    stored = {} if knowledge is None else {"knowledge": knowledge}
+    (folder / "manifest.json").write_bytes(orjson.dumps({**manifest, **stored}))
 
 
 def test_another_base_is_noted(copy):
     manifest = hearth.load(copy).manifest
-    said(copy, {**manifest["knowledge"], "base": "0" * 64})
+    store_knowledge(copy, {**manifest["knowledge"], "base": "0" * 64})
     found = verify(copy)
     assert found.faults == () and "(00000000), which differs from ours" in found.note
 
@@ -193,7 +194,7 @@ def test_another_base_is_noted(copy):
     ],
 )
 def test_a_manifest_that_does_not_say_which(copy, knowledge):
-    said(copy, knowledge)
+    store_knowledge(copy, knowledge)
     assert [fault.code for fault in verify(copy).faults] == [Code.BAD_JSON]
 
 
@@ -208,12 +209,12 @@ def test_what_it_carries_is_looked_after(copy):
     assert codes() == ["DAMAGED_FILE"]
     (copy / "knowledge/limits.yaml").unlink()
     assert verify(copy).faults == ()
-    said(copy, {"base": "", "overlay": {"path": "../elsewhere", "sha256": ""}})
+    store_knowledge(copy, {"base": "", "overlay": {"path": "../elsewhere", "sha256": ""}})
     assert codes() == ["DAMAGED_FILE"]
-    said(copy, {"base": "", "overlay": {"path": "nowhere", "sha256": ""}})
+    store_knowledge(copy, {"base": "", "overlay": {"path": "nowhere", "sha256": ""}})
     assert codes() == ["MISSING_FILE"]
     (copy / "knowledge/aliases.csv").write_text("not a table\n")
-    said(copy, {"base": "", "overlay": {"path": "knowledge", "sha256": digest(copy / "knowledge")}})
+    store_knowledge(copy, {"base": "", "overlay": {"path": "knowledge", "sha256": digest(copy / "knowledge")}})
     assert codes() == ["BAD_TABLE"]
 
 

@@ -9,7 +9,7 @@ from collections import namedtuple
 import pytest
 
 from hearth.pipelines.build import build
-from hearth.pipelines.engine.estimates import estimate, foretold
+from hearth.pipelines.engine.estimates import estimate, forecast
 from hearth.pipelines.engine.progress import JsonLines
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.diagnostics import HearthError
@@ -30,8 +30,8 @@ def test_more_workers_take_less_time():
 
 
 def test_short_builds_are_not_worth_a_word(tmp_path):
-    assert foretold(10, Settings(out=str(tmp_path), pictures=0), 2) == ""
-    assert "executions" in foretold(100_000, Settings(out=str(tmp_path), pictures=0), 2, force=True)
+    assert forecast(10, Settings(out=str(tmp_path), pictures=0), 2) == ""
+    assert "executions" in forecast(100_000, Settings(out=str(tmp_path), pictures=0), 2, force=True)
 
 
 def test_a_disk_that_is_too_small_is_said_before_the_work(built, inputs, monkeypatch, tmp_path):

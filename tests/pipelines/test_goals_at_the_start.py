@@ -3,7 +3,7 @@
 import pytest
 
 from hearth.kb.loading.load import default
-from hearth.pipelines.checks.programs import already
+from hearth.pipelines.checks.programs import met_at_start
 from hearth.schemas.syntax import parse_program
 
 TELEVISION = {"name": "television", "instance": 1}
@@ -14,12 +14,12 @@ def grounding(*states, home="h"):
     return {"home": home, "bindings": [TELEVISION | {"node": 7}], "start": start}
 
 
-def told(steps, groundings=(), conditions=()):
+def warned(steps, groundings=(), conditions=()):
     program, faults = parse_program(steps)
     assert not faults
     return [
         (one.code, one.step, one.message.partition("already, ")[2])
-        for one in already(program, groundings, conditions, default())
+        for one in met_at_start(program, groundings, conditions, default())
     ]
 
 
@@ -36,7 +36,7 @@ ON = "[Walk] <television> (1)\n[SwitchOn] <television> (1)\n"
     ],
 )
 def test_in_a_graph(steps, states, expected):
-    assert told(steps, [grounding(*states)]) == expected
+    assert warned(steps, [grounding(*states)]) == expected
 
 
 def test_by_conditions_and_without_any_start():
@@ -44,7 +44,7 @@ def test_by_conditions_and_without_any_start():
         {"name": "is_on", "objects": [TELEVISION]},
         {"name": "sitting", "objects": [{"name": "character", "instance": 1}]},
     ]
-    assert told(ON, [grounding("ON"), grounding("OFF", home="g")], conditions) == [
+    assert warned(ON, [grounding("ON"), grounding("OFF", home="g")], conditions) == [
         ("NO_EFFECT", 1, "by its own conditions, in h")
     ]
-    assert told(ON, [{"home": "h", "bindings": [], "start": None}]) == []
+    assert warned(ON, [{"home": "h", "bindings": [], "start": None}]) == []

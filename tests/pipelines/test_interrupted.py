@@ -73,12 +73,12 @@ if __name__ == "__main__":
 
 def test_workers_end_with_a_build_that_is_killed(tmp_path):
     (tmp_path / "orphans.py").write_text(ORPHANS)
-    told = [tmp_path / "one", tmp_path / "two"]
-    build = subprocess.Popen([sys.executable, str(tmp_path / "orphans.py"), *map(str, told)])
-    assert soon(lambda: all(path.exists() and path.read_text() for path in told))
+    files = [tmp_path / "one", tmp_path / "two"]
+    build = subprocess.Popen([sys.executable, str(tmp_path / "orphans.py"), *map(str, files)])
+    assert soon(lambda: all(path.exists() and path.read_text() for path in files))
     build.kill()
     build.wait()
-    assert soon(lambda: not any(alive(int(path.read_text())) for path in told))
+    assert soon(lambda: not any(alive(int(path.read_text())) for path in files))
 
 
 def soon(holds):
@@ -105,9 +105,9 @@ def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
             break
         time.sleep(0.01)
     os.killpg(build.pid, signal.SIGINT)
-    told = build.communicate(timeout=120)[1]
-    assert build.returncode == 130, told
-    assert "goes on from there" in told and "Traceback" not in told
+    message = build.communicate(timeout=120)[1]
+    assert build.returncode == 130, message
+    assert "continues from there" in message and "Traceback" not in message
     assert not (tmp_path / "publish/manifest.json").exists()
     assert subprocess.run(command, check=False, capture_output=True).returncode in (0, 1)
     assert module("benchmarks/kills.py").differing(made.out, tmp_path) == []

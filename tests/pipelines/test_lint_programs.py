@@ -32,8 +32,8 @@ def test_switched_on_twice():
         ("[Find] <cup> (1)\n[Grab] <cup> (1)\n[PutBack] <cup> (1) <sofa> (1)\n", [(2, "[Walk] <sofa> (1)")]),
     ],
 )
-def test_used_from_afar(knowledge, steps, missing):
-    found = list(programs.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
+def test_used_without_a_walk(knowledge, steps, missing):
+    found = list(programs.not_close(grammar.check(program(steps), knowledge)[0], knowledge))
     assert [(one.step, print_step(one.before[0])) for one in found] == missing
 
 
@@ -71,7 +71,7 @@ def test_words_that_tell_of_a_thing_without_naming_it(knowledge, steps, title, d
     ("text", "kind"),
     [
         ("Order now and get 15% off! Visit our store.", "advertising"),
-        ("Very good HIT, thanks!", "words to whoever gave the task"),
+        ("Very good HIT, thanks!", "a message to the requester"),
         ("Order a pizza by phone and thank the man who brings it.", None),
         ("I do my homework. The task is easy. Then I visit my friend's web site.", None),
         ("Save the leftovers in the fridge, click the light off.", None),
@@ -88,15 +88,15 @@ def test_going_is_an_effect_where_the_title_says_so():
 
 def test_lamps_and_what_hardly_goes_without_are_within_reach(knowledge):
     for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
-        assert not list(programs.from_afar(grammar.check(program(steps), knowledge)[0], knowledge))
+        assert not list(programs.not_close(grammar.check(program(steps), knowledge)[0], knowledge))
 
 
 def test_what_was_declared(knowledge):
     given = program("[Walk] <kitchen> (1)\n[Walk] <table> (1)\n[Grab] <cup> (1)\n[Wash] <teeth> (1)\n")
     row = {"rooms": [{"name": "bedroom", "quantity": 1}], "props": [{"name": "cup", "quantity": 2}]}
-    told = [one.message for one in programs.undeclared(given, row, knowledge)]
-    assert len(told) == 3
-    assert "table" in told[0] and "cup" in told[1] and "kitchen" in told[2]
+    messages = [one.message for one in programs.undeclared(given, row, knowledge)]
+    assert len(messages) == 3
+    assert "table" in messages[0] and "cup" in messages[1] and "kitchen" in messages[2]
     assert not list(programs.undeclared(given, {"rooms": [], "props": None}, knowledge))
 
 

@@ -112,14 +112,14 @@ def test_stage(out, inputs, stage, what):
 
 
 def test_the_ledger_adds_up_from_stage_to_stage(out):
-    told = {stage: counts(out / stage) for stage in STAGES}
-    for stage, one in told.items():
+    found = {stage: counts(out / stage) for stage in STAGES}
+    for stage, one in found.items():
         assert one["records_in"] == one["through"] + one["rejected"], stage
         assert one["rejected"] == sum(one["codes"].values()), stage
-    assert told["validate"]["records_in"] == told["ingest"]["tally"]["program"]
-    assert told["sample"]["records_in"] == told["validate"]["through"]
-    assert told["augment"]["records_in"] == told["sample"]["tally"]["executable"]
-    assert told["publish"]["records_in"] == sum(told["sample"]["rows"].values()) + told["augment"]["rows"][""]
+    assert found["validate"]["records_in"] == found["ingest"]["tally"]["program"]
+    assert found["sample"]["records_in"] == found["validate"]["through"]
+    assert found["augment"]["records_in"] == found["sample"]["tally"]["executable"]
+    assert found["publish"]["records_in"] == sum(found["sample"]["rows"].values()) + found["augment"]["rows"][""]
 
 
 def test_augment_keeps_sketches_and_what_was_tried_in_vain(out):

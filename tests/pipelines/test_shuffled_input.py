@@ -19,9 +19,9 @@ def test_sources_are_taken_by_name(tmp_path):
     for name in ("b/x.txt", "a/x.txt", "c/m.txt"):
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).touch()
-    told = [str(tmp_path / name) for name in ("b/x.txt", "c/m.txt", "a/x.txt")]
-    assert labelled(told) == labelled(reversed(told))
-    assert [source.label for source in labelled(told)] == ["m.txt", "x.txt", "x.txt~2"]
+    paths = [str(tmp_path / name) for name in ("b/x.txt", "c/m.txt", "a/x.txt")]
+    assert labelled(paths) == labelled(reversed(paths))
+    assert [source.label for source in labelled(paths)] == ["m.txt", "x.txt", "x.txt~2"]
 
 
 @pytest.mark.slow
@@ -38,7 +38,7 @@ def test_records_in_another_order_give_the_same_rows(build_folder, tmp_path):
     records = [{"id": f"r{n}", "title": f"Evening {n}", "steps": steps[: 2 + n % 3]} for n in range(6)]
     shuffled = random.Random(1).sample(records, len(records))
     one, other = (
-        build_folder(tmp_path / name, [told(tmp_path / f"{name}-in/a.jsonl", entries)]).run_all()
+        build_folder(tmp_path / name, [lines(tmp_path / f"{name}-in/a.jsonl", entries)]).run_all()
         for name, entries in (("one", records), ("other", shuffled))
     )
     tables = {path.parts[1] for path in published(one)}
@@ -46,7 +46,7 @@ def test_records_in_another_order_give_the_same_rows(build_folder, tmp_path):
     assert [table for table in sorted(tables) if rows(one, table) != rows(other, table)] == []
 
 
-def told(file, entries):
+def lines(file, entries):
     file.parent.mkdir()
     file.write_text("".join(json.dumps(entry) + "\n" for entry in entries))
     return file

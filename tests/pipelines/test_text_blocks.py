@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hearth.pipelines.crowd.repeated import Repeated
-from hearth.pipelines.crowd.seen import Tally, digest
+from hearth.pipelines.crowd.seen import SeenSet, digest
 from hearth.pipelines.readers import text_blocks as subject
 from hearth.pipelines.readers.item import Item
 from hearth.schemas.blocks import STEP, Splitter
@@ -71,12 +71,12 @@ def test_blank_lines_without_end_and_one_line_without_end_are_not_kept():
     assert (last.first, last.text) == (2_000_005, "Next\n[Sleep]\n")
 
 
-def test_a_tally_counts_and_grows():
-    tally = Tally()
+def test_a_seen_set_counts_and_grows():
+    seen = SeenSet()
     keys = [digest(number) for number in range(5_000)]
-    assert [tally.add(key) for key in keys] == [0] * 5_000
-    assert [tally.add(key) for key in keys[:3]] == [1, 1, 1]
-    assert keys[4_999] in tally and digest("other") not in tally and len(tally) == 5_000
+    assert [seen.add(key) for key in keys] == [0] * 5_000
+    assert [seen.add(key) for key in keys[:3]] == [1, 1, 1]
+    assert keys[4_999] in seen and digest("other") not in seen and len(seen) == 5_000
     assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
 
 
@@ -98,11 +98,11 @@ def test_only_recent_answers_are_kept_to_compare_with():
     words = "Walk to the kitchen and open the fridge. Take the milk out and pour a glass of it."
     others = [f"{'other words said here'.replace(' ', f' {n} ')} and some more of them {n}" for n in range(4)]
 
-    def told(number, text):
+    def answer(number, text):
         cells = {"WorkerId": "W", "Answer.description": text}
         return Item(f"d{number}", "crowd", "a.csv", {"stage": 1, "cells": cells})
 
-    items = [told(number, text) for number, text in enumerate([words, *others, words])]
+    items = [answer(number, text) for number, text in enumerate([words, *others, words])]
     assert [Copies(recent=9).checked(item).reader for item in items][-1] == "crowd"
     for recent, expected in ((9, "refused"), (2, "crowd")):
         copies = Copies(recent=recent)

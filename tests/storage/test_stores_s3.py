@@ -63,7 +63,7 @@ def test_built_verified_and_queried(run, bucket, made, engine):
     for name in files:
         assert bucket.cat(f"homes/evening/{name}") == (made.out / name).read_bytes(), name
     assert not bucket.exists("homes/evening/.lock")
-    assert "all as it says" in run("verify", "s3://homes/evening")
+    assert ": no faults" in run("verify", "s3://homes/evening")
     assert str(len(made.rows("publish/programs"))) in run(
         "query", "s3://homes/evening", "SELECT count(*) AS programs FROM programs"
     )
@@ -72,5 +72,5 @@ def test_built_verified_and_queried(run, bucket, made, engine):
 
 
 def test_a_bucket_that_is_not_there_is_said(run, made):
-    told = run("build", made.settings.sources[1], "--out", "s3://nowhere/x", status=1)
-    assert "s3://nowhere/x" in told and "Traceback" not in told
+    printed = run("build", made.settings.sources[1], "--out", "s3://nowhere/x", status=1)
+    assert "s3://nowhere/x" in printed and "Traceback" not in printed
