@@ -191,7 +191,8 @@ def test_a_reader_that_breaks_while_it_looks_for_records(built, write, monkeypat
     assert "test_any_record.py:" in refused[0]["message"]
 
 
-@pytest.mark.parametrize("value", [{"a": "\ud800"}, {"a": object()}, {"a": 2**70}, {"a": {1: 2}}], ids=repr)
+@pytest.mark.parametrize("value", [{"a": "\ud800"}, {"a": object()}, {"a": 2**70}, {"a": {1: 2}}],
+                         ids=("surrogate", "object", "large", "key"))  # fmt: skip
 def test_an_item_that_cannot_be_stored(built, write, monkeypatch, value):
     def scan(path, place):
         yield ours._item(GOOD, place, 1, "one")
