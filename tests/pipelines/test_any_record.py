@@ -117,7 +117,9 @@ def test_whatever_a_function_does_costs_only_its_record(settings, name):
     assert "�" not in refused["message"] and refused["message"]
 
 
-@pytest.mark.parametrize("record", [None, 7, "text", Explosive(), SimpleNamespace()], ids=repr)
+@pytest.mark.parametrize(
+    "record", [None, 7, "text", Explosive(), SimpleNamespace()], ids=lambda value: type(value).__name__
+)
 def test_a_record_of_any_type_is_refused(settings, record):
     stage = replace(
         STAGE,
