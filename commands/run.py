@@ -87,8 +87,8 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
             return
         change = execution.worlds[number + 1].changes(before)
         print(f"{number + 1:3}  {_tick(tick)}\n     {_summary(change, before)}")
-        for stance in poses[number] if poses else ():
-            print(f"       {_stance(stance)}")
+        for pose in poses[number] if poses else ():
+            print(f"       {_pose(pose)}")
         if explain:
             _print_checks(before, tick, DEFAULT)
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
@@ -105,10 +105,10 @@ def _poses(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[HandAnd
     return hand_and_base_poses(trial.execution, Ways(library.load_layout(place.name, place.knowledge, homes).floor))
 
 
-def _stance(stance: HandAndBasePose) -> str:
-    x, z, yaw = stance.pose
-    hand = f", {stance.hand} hand" if stance.hand else ""
-    return f"character {stance.agent} at ({x:.2f}, {z:.2f}) m, facing {yaw:.0f} degrees{hand}"
+def _pose(found: HandAndBasePose) -> str:
+    x, z, yaw = found.pose
+    hand = f", {found.hand} hand" if found.hand else ""
+    return f"character {found.agent} at ({x:.2f}, {z:.2f}) m, facing {yaw:.0f} degrees{hand}"
 
 
 def _tick(tick: tuple[Any, ...]) -> str:
