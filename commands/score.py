@@ -222,7 +222,9 @@ def dataset(
     file: File,
     *,
     split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
-    part: Annotated[str, typer.Option("--part", metavar="NAME", help="A part of the split; `test` takes all tests.")] = "test",
+    part: Annotated[
+        str, typer.Option("--part", metavar="NAME", help="A part of the split; `test` takes all tests.")
+    ] = "test",
     match: Match = "best",
     scope: Scope = "either",
     instances: Instances = False,

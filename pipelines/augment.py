@@ -55,8 +55,8 @@ class Context:
 
     def __init__(self, settings: Settings, plan: Plan) -> None:
         self.homes = Homes(settings)
-        # The catalog's homes are given at rest, so that environments are told by what differs; derived ones are not.
-        self.is_at_rest = cache(self.homes.in_catalog)
+        # Homes of the catalog are built in their default state; derived homes keep their stored states.
+        self.in_default_state = cache(self.homes.in_catalog)
         self.seed = settings.seed
         chances = scaled(default_chances(), settings.probability / THESIS)
         self.options = Options(settings.variants, settings.tries, chances)
