@@ -202,15 +202,8 @@ class Knowledge:
         thing = self.object_class(name)
         return thing is not None and thing.category == "Rooms"
 
-    def is_seat(self, name: str) -> bool:
-        """Whether one can sit on it."""
-        return self._has(name, "SITTABLE")
-
-    def is_bed(self, name: str) -> bool:
-        """Whether one can lie on it."""
-        return self._has(name, "LIEABLE")
-
-    def _has(self, name: str, prop: str) -> bool:
+    def has(self, name: str, prop: str) -> bool:
+        """Whether things of a class have a property; those of an unknown class have none."""
         thing = self.object_class(name)
         return thing is not None and prop in thing.properties
 

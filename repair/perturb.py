@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from itertools import islice
 from random import Random
 
-from hearth.grounding.environments.classes import has
 from hearth.grounding.environments.default_state import Base
 from hearth.grounding.environments.violating import closes
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
@@ -172,7 +171,7 @@ def _plugged(case: Case) -> Iterator[Perturbation]:
         home = case.base.home
         lacking = (i for i in case.base.instances(one.about.objects[0][0]) if not home.able("PlugIn") >> i & 1)
         runs = one.added[0].name == "unplugged" and case.conditions.has("is_on", *one.about.objects)
-        if not runs and next(lacking, -1) < 0 and has(case.knowledge, one.about.objects[0][0], "HAS_PLUG"):
+        if not runs and next(lacking, -1) < 0 and case.knowledge.has(one.about.objects[0][0], "HAS_PLUG"):
             yield one
 
 
@@ -233,7 +232,7 @@ def _placing(case: Case, key: Key) -> list[Condition]:
 def _is_portable(case: Case, key: Key) -> bool:
     """Whether things of its class can be carried, and no other object of the program is placed by this one."""
     leads = any(c.name in _BY_OTHERS and c.name != "location" and c.objects[1] == key for c in case.conditions)
-    return has(case.knowledge, key[0], "GRABBABLE") and not leads
+    return case.knowledge.has(key[0], "GRABBABLE") and not leads
 
 
 def _full_hands(case: Case) -> Iterator[Perturbation]:

@@ -107,15 +107,10 @@ def _occupied(partial: PartialEnvironment, condition: Condition) -> None:
     kind = home.classes[i] if i >= 0 else name
     limit = max(knowledge.seat_limit(kind), knowledge.bed_limit(kind))
     belongs = [p.object for p in knowledge.holds(name) if p.relation == "ON"] or ["book", "cat", "pillow"]
-    small = [n for n in belongs if _graspable(partial, n)] or ["book"]
+    small = [n for n in belongs if knowledge.has(n, "GRABBABLE")] or ["book"]
     for _ in range(limit - partial.crowd(seat) + fixed):
         node_id = partial.add(partial.rng.choice(small), partial.room_of(seat))
         partial.put(node_id, "ON", seat)
-
-
-def _graspable(partial: PartialEnvironment, name: str) -> bool:
-    thing = partial.base.knowledge.object_class(name)
-    return thing is not None and "GRABBABLE" in thing.properties
 
 
 def _resting(partial: PartialEnvironment, condition: Condition) -> None:

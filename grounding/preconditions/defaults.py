@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hearth.grounding.environments.classes import has
 from hearth.grounding.preconditions.conditions import Condition
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key, Literal
@@ -33,7 +32,7 @@ def _locations(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
                 room = ref.key if step.action in knowledge.group("goes") else room
             elif ref.key not in seen:
                 seen.add(ref.key)
-                if room is not None and not has(knowledge, ref.name, "BODY_PART"):
+                if room is not None and not knowledge.has(ref.name, "BODY_PART"):
                     yield Condition(Literal("location", (ref.key, room)), number, hard=False)
 
 
@@ -70,7 +69,7 @@ def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         for ref in step.objects:
             new = ref.key not in seen
             seen.add(ref.key)
-            movable = new and has(knowledge, ref.name, "GRABBABLE")
+            movable = new and knowledge.has(ref.name, "GRABBABLE")
             if movable and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
                 yield Condition(Literal("in", (ref.key, last)), number, hard=False)
             elif movable and last is not None and last[0] == "chair":
@@ -104,5 +103,5 @@ def _plugs(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             plugged.add(key)
         elif step.action in knowledge.achieving("ON", "OFF") and key not in plugged:
             plugged.add(key)
-            if has(knowledge, key[0], "HAS_PLUG"):
+            if knowledge.has(key[0], "HAS_PLUG"):
                 yield Condition(Literal("plugged", (key,)), number)

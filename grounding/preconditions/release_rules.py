@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from hearth.grounding.environments.classes import has
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.minimal_home import sketch
 from hearth.kb.knowledge import Knowledge
@@ -93,7 +92,7 @@ def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         if key[0] != "eyes":
             yield _soft(NAME_OF[before], number, key)
         switched = before in ("ON", "OFF")
-        if switched and has(knowledge, key[0], "HAS_PLUG") and (knowledge.group_of("PLUGGED_IN"), key) not in seen:
+        if switched and knowledge.has(key[0], "HAS_PLUG") and (knowledge.group_of("PLUGGED_IN"), key) not in seen:
             yield _soft("plugged", number, key)
 
 
@@ -122,7 +121,7 @@ def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         keys = [ref.key for ref in step.objects]
         for key in keys:
             used = step.action not in goes and step.action != "PutOff" and key not in held
-            if not used or knowledge.is_room(key[0]) or has(knowledge, key[0], "BODY_PART"):
+            if not used or knowledge.is_room(key[0]) or knowledge.has(key[0], "BODY_PART"):
                 continue
             if seat is not None and key != seat:
                 yield _soft("atreach", number, seat, key)

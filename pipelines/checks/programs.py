@@ -149,7 +149,7 @@ def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> It
         return
     used = _used(program, known)
     missing = sorted(name for name in used if name not in props)
-    idle = sorted(name for name in props if name not in used and not _is_body(known, name))
+    idle = sorted(name for name in props if name not in used and not known.has(name, "BODY_PART"))
     wrong = sorted(name for name in used if name in props and used[name] > (props[name] or 1))
     more = sorted(name for name in used if name in props and used[name] < (props[name] or 1))
     walked = sorted({r.name for s in program.steps for r in s.objects if known.is_room(r.name)} - rooms.keys())
@@ -165,17 +165,12 @@ def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> It
             yield Finding(Code.UNDECLARED, -1, f"{message}: {shown}", found=shown)
 
 
-def _is_body(known: Knowledge, name: str) -> bool:
-    thing = known.object_class(name)
-    return thing is not None and "BODY_PART" in thing.properties
-
-
 def _used(program: Program, known: Knowledge) -> dict[str, int]:
     """The number of objects of each class in a program, without rooms and parts of the body, which are not props."""
     instances: dict[str, set[int]] = {}
     for ref in program.objects():
         thing = known.object_class(ref.name)
-        if thing and thing.category != "Rooms" and not _is_body(known, ref.name):
+        if thing and thing.category != "Rooms" and not known.has(ref.name, "BODY_PART"):
             instances.setdefault(ref.name, set()).add(ref.instance)
     return {name: len(found) for name, found in instances.items()}
 

@@ -6,11 +6,6 @@ from hearth.repair.handlers.common import Edit, RepairContext, before, removed
 from hearth.repair.handlers.locomotion import walked_to
 
 
-def is_open(context: RepairContext) -> Edit | None:
-    """Leave the Open out."""
-    return removed(context, "already_open")
-
-
 def is_closed(context: RepairContext) -> Edit | None:
     """Leave the Close out; before putting something into it, open it."""
     action = context.step.action
@@ -18,11 +13,6 @@ def is_closed(context: RepairContext) -> Edit | None:
         return removed(context, "already_closed")
     name = "closed_to_put_back" if action == "PutObjBack" else "closed_to_put_in"
     return before(context, name, context.does("Open", context.object()))
-
-
-def neither(context: RepairContext) -> Edit | None:
-    """Leave out opening or closing what is neither open nor closed."""
-    return removed(context, "neither_open_nor_closed")
 
 
 def inside_closed(context: RepairContext) -> Edit | None:
@@ -46,11 +36,6 @@ def is_off(context: RepairContext) -> Edit | None:
     if context.step.action == "SwitchOff":
         return removed(context, "already_off")
     return before(context, "off_to_watch", context.does("SwitchOn", context.object()))
-
-
-def is_plugged(context: RepairContext) -> Edit | None:
-    """Leave the PlugIn out."""
-    return removed(context, "already_plugged")
 
 
 def is_unplugged(context: RepairContext) -> Edit | None:

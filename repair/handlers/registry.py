@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hearth.repair.handlers import agents, appliances, clothes, food, goals, hands, locomotion, posture, senses
-from hearth.repair.handlers.common import Handler
+from hearth.repair.handlers import agents, appliances, food, goals, hands, locomotion, posture, senses
+from hearth.repair.handlers.common import Handler, leaving_out
 from hearth.schemas.failures import Code
 
 HANDLERS: dict[Code, Handler] = {
@@ -15,8 +15,8 @@ HANDLERS: dict[Code, Handler] = {
     Code.IS_CLOSED: appliances.is_closed,
     Code.IS_OFF: appliances.is_off,
     Code.IS_ON: appliances.is_on,
-    Code.IS_OPEN: appliances.is_open,
-    Code.IS_PLUGGED: appliances.is_plugged,
+    Code.IS_OPEN: leaving_out("already_open"),
+    Code.IS_PLUGGED: leaving_out("already_plugged"),
     Code.IS_UNPLUGGED: appliances.is_unplugged,
     Code.LYING: posture.lying,
     Code.NOTHING_TO_EAT: food.nothing_to_eat,
@@ -24,9 +24,9 @@ HANDLERS: dict[Code, Handler] = {
     Code.NOT_FACING: senses.not_facing,
     Code.NOT_HOLDING: hands.not_holding,
     Code.NOT_IN_ROOM: locomotion.not_in_room,
-    Code.NOT_OPENABLE_STATE: appliances.neither,
+    Code.NOT_OPENABLE_STATE: leaving_out("neither_open_nor_closed"),
     Code.NOT_SITTING_OR_LYING: posture.not_resting,
-    Code.NOT_WORN: clothes.not_worn,
+    Code.NOT_WORN: leaving_out("not_worn"),
     Code.NO_FREE_HAND: hands.no_free_hand,
     Code.NO_ORIGIN: hands.no_origin,
     Code.OCCUPIED: posture.occupied,

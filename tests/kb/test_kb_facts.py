@@ -192,7 +192,8 @@ def test_places_say_what_they_hold_most_usual_first(knowledge):
 def test_limits_rooms_and_defaults(knowledge):
     assert [knowledge.seat_limit(name) for name in ("couch", "sofa", "bench", "chair", "stove")] == [4, 4, 2, 1, 1]
     assert [knowledge.bed_limit(name) for name in ("bed", "bathtub", "bench", "mat")] == [3, 2, 1, 1]
-    assert knowledge.is_seat("sofa") and knowledge.is_bed("bed") and not knowledge.is_seat("table")
+    assert knowledge.has("sofa", "SITTABLE") and knowledge.has("bed", "LIEABLE")
+    assert not knowledge.has("table", "SITTABLE")
     assert len(knowledge.rooms) == 8 and knowledge.is_room("Home Office") and not knowledge.is_room("bed")
     assert knowledge.room_standins["kitchen"] == "dining_room" and knowledge.room_standins["dining_room"] == "kitchen"
     assert knowledge.default_states("fridge") == ("CLEAN", "CLOSED", "OFF", "PLUGGED_IN")
