@@ -11,6 +11,7 @@ import numpy as np
 from hearth.analysis import corpus_statistics as numbers
 from hearth.analysis.corpus_statistics import Corpus, Similarities
 from hearth.storage.files import replacing
+from hearth.storage.names import inside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,7 +81,7 @@ def _tables(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
     }
     files = []
     for name, table in rows.items():
-        path = folder / f"{name}.parquet"
+        path = inside(folder, f"{name}.parquet")
         with replacing(path) as temporary:
             pq.write_table(pa.Table.from_pylist(table or [{"empty": None}][:0]), temporary, compression="zstd")
         files.append(path)

@@ -165,6 +165,7 @@ def _videos(
     from hearth.rendering.film.snapshots import trajectory_of
     from hearth.rendering.film.video import record
     from hearth.rendering.scene.variation import drawn
+    from hearth.storage.names import inside
 
     variation = drawn(shooting.seed, shooting.title) if shooting.vary else None
     trajectory = trajectory_of(execution, graph, known, seed=shooting.seed, hour=shooting.hour, variation=variation)
@@ -172,8 +173,8 @@ def _videos(
     for name in names:
         done = record(trajectory, graph, out, name, size=shooting.size, fps=fps)
         files = [path.name for path in done.files]
-        (out / f"{name}.html").write_text(page(shooting.title, files, done.steps), encoding="utf-8")
-        pages.append(str(out / f"{name}.html"))
+        pages.append(str(inside(out, f"{name}.html")))
+        Path(pages[-1]).write_text(page(shooting.title, files, done.steps), encoding="utf-8")
         made = {"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps}
         videos.append({**made, "variation": trajectory.variation.row()})
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.damage import reading
 from hearth.datasets.format.catalog import absent_tables, attach
+from hearth.datasets.questions import check_question
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
     from hearth.datasets.tensors import Tensors
     from hearth.kb.knowledge import Knowledge
-
-_READING = frozenset({"SELECT", "EXPLAIN"})
 
 
 class Dataset:
@@ -139,12 +138,7 @@ class Dataset:
         import duckdb
 
         try:
-            statements = self.connection.extract_statements(query)
-            wrong = next((s.type.name for s in statements if s.type.name not in _READING), None)
-            if wrong or len(statements) != 1:
-                what = f"{wrong} is no question" if wrong else f"{len(statements)} statements where one is expected"
-                suggestion = "ask with SELECT, FROM, DESCRIBE, SHOW or EXPLAIN"
-                raise HearthError.of(Code.SYNTAX, f"a dataset can only be read: {what}", suggestion=suggestion)
+            check_question(self.connection, query, parameters)
             return self.connection.sql(query, params=parameters or None)
         except duckdb.Error as error:
             raise _refused(error) from error

@@ -31,6 +31,7 @@ from hearth.simulation.rules import REPLAY, RULES, Rules
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.manifest import read_manifest
+from hearth.storage.names import inside
 from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
 
@@ -183,7 +184,7 @@ def derive_homes(job: Job) -> None:
         if stale.stem not in derived:
             stale.unlink()
     for name, parts in derived.items():
-        write_home(folder / f"{name}.json", common(_starts(name, (path for _, path in parts))))
+        write_home(inside(folder, f"{name}.json"), common(_starts(name, (path for _, path in parts))))
 
 
 def _starts(name: str, parts: Iterable[Path]) -> Iterator[GraphRow]:

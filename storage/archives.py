@@ -14,6 +14,7 @@ from typing import IO, BinaryIO, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.names import leaves
 from hearth.storage.rejects import Reject
 
 GZIP = b"\x1f\x8b"
@@ -77,12 +78,6 @@ def archive(path: Path) -> zipfile.ZipFile:
 def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
     """What an archive holds, folders left out; `is_dir` itself breaks at a name that is empty."""
     return [info for info in found.infolist() if not info.filename.endswith("/")]
-
-
-def leaves(name: str) -> bool:
-    """Whether a member's name points outside the archive."""
-    path = PurePosixPath(name.replace("\\", "/"))
-    return path.is_absolute() or ".." in path.parts or (len(name) > 1 and name[1] == ":")
 
 
 def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:

@@ -2,7 +2,8 @@
 
 A build into a store works in a local copy of it. Complete parts go to the store at once, a stage's manifest last, so
 that the store, too, only ever holds what is whole; a build on another machine takes up what it finds there. Datasets
-and sources in a store are fetched before they are read, and only what changed is fetched again.
+and sources in a store are fetched before they are read, into a folder that is removed when the process ends; within a
+process only what changed is fetched again. What a store lists is never written outside the copy.
 
 fsspec's own caching does not serve here: it keeps files under hashes of their names, or all in one folder, where a
 dataset is read by the names of its tables and parts.
@@ -10,16 +11,18 @@ dataset is read by the names of its tables and parts.
 
 from __future__ import annotations
 
+import atexit
 import os
 import re
 import shutil
 import socket
+import stat
 import tempfile
 import uuid
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import lru_cache
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import orjson
@@ -28,6 +31,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.exchange import beside
 from hearth.storage.files import TEMPORARY, is_temporary, read_json, value_digest, write_bytes, write_json
+from hearth.storage.names import inside, leaves
 
 MANIFEST = "manifest.json"
 _LOCK = ".lock"
@@ -47,12 +51,12 @@ class Store:
 
     Attributes:
         url: of the folder.
-        work: the local copy; the same for everybody on this machine.
+        work: the local copy; the same for all processes of a user on this machine, and closed to others.
     """
 
     def __init__(self, url: str) -> None:
         self.url = url
-        self.work = Path(tempfile.gettempdir()) / f"hearth-{os.getuid()}-{value_digest(url)[:16]}"
+        self.work = _own_folder() / value_digest(url)[:16]
         self._fs, self._root = _filesystem(url)
 
     @contextmanager
@@ -81,7 +85,7 @@ class Store:
         """Take a lock whose holder on this machine is no more."""
         self._fs.invalidate_cache()
         held = orjson.loads(self._fs.cat_file(path))
-        if held["host"] != me["host"] or Path(f"/proc/{held['pid']}").exists():
+        if held["host"] != me["host"] or Path(f"/proc/{int(held['pid'])}").exists():
             raise HearthError.of(
                 Code.LOCKED,
                 f"process {held['pid']} of {held['host']} is building here",
@@ -188,7 +192,7 @@ class Store:
             found = self._fs.find(self._root, detail=True)
         except FileNotFoundError:
             return {}
-        return {path[len(self._root) + 1 :]: info for path, info in sorted(found.items())}
+        return _listed(self._root, found)
 
     def _names(self) -> list[str]:
         return [name for name in self._found() if not is_temporary(name)]
@@ -198,7 +202,7 @@ class Store:
 
     def _get(self, names: Iterable[str]) -> None:
         for name in names:
-            _get(self._fs, self._path(name), self.work / name)
+            _get(self._fs, self._path(name), inside(self.work, name))
 
 
 @lru_cache(maxsize=8)
@@ -235,16 +239,64 @@ def fetched(path: str | Path) -> Path:
     with _told(url):
         fs, root = _filesystem(url)
         fs.invalidate_cache()
-        copy = Path(tempfile.gettempdir()) / f"hearth-{os.getuid()}-read-{value_digest(url)[:16]}"
+        copy = _temporary_folder(os.getpid()) / f"hearth-{os.getuid()}-read-{value_digest(url)[:16]}"
         if fs.isfile(root):
-            return _updated(fs, {Path(root).name: fs.info(root)}, copy) / Path(root).name
+            name = PurePosixPath(root).name
+            return inside(_updated(fs, {name: fs.info(root)}, copy), name)
         folder = root
         if not fs.exists(f"{root}/{MANIFEST}") and fs.exists(f"{root}/publish/{MANIFEST}"):
             folder = f"{root}/publish"
-        infos = {name[len(folder) + 1 :]: info for name, info in fs.find(folder, detail=True).items()}
+        infos = _listed(folder, fs.find(folder, detail=True))
         if not infos:
             raise FileNotFoundError(url)
         return _updated(fs, infos, copy)
+
+
+def _listed(root: str, found: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """What a store lists below a folder, by names within it, sorted.
+
+    Raises:
+        HearthError: DAMAGED_FILE: a name leaves the folder, or a link leads out of it.
+    """
+    infos = {}
+    for path, info in sorted(found.items()):
+        name = path.removeprefix(f"{root}/")
+        destination = info.get("destination")
+        outside = destination is not None and not Path(path).resolve().is_relative_to(Path(root).resolve())
+        if name == path or leaves(name) or outside:
+            raise HearthError.of(Code.DAMAGED_FILE, f"`{path[:200]!a}` leaves the folder", file=root)
+        infos[name] = info
+    return infos
+
+
+def _own_folder() -> Path:
+    """A folder of this user's for copies that builds work in.
+
+    Raises:
+        HearthError: UNWRITABLE: somebody else made it, or it is open to others.
+    """
+    folder = Path(tempfile.gettempdir()) / f"hearth-{os.getuid()}"
+    with suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
+        message = "it is not a folder of yours that is closed to others"
+        suggestion = f"remove it, or set TMPDIR to a folder of your own; then `chmod 700 {folder}`"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(folder), suggestion=suggestion)
+    return folder
+
+
+@lru_cache(maxsize=1)
+def _temporary_folder(process: int) -> Path:
+    """A folder of this process, closed to others and removed when it ends, for copies that are only read."""
+    folder = Path(tempfile.mkdtemp(prefix="hearth-"))
+    atexit.register(_remove, folder, process)
+    return folder
+
+
+def _remove(folder: Path, process: int) -> None:
+    if os.getpid() == process:  # a process forked from it runs the same exit
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _updated(fs: Any, infos: dict[str, dict[str, Any]], copy: Path) -> Path:
@@ -255,8 +307,9 @@ def _updated(fs: Any, infos: dict[str, dict[str, Any]], copy: Path) -> Path:
         if path.relative_to(copy).as_posix() not in now:
             path.unlink()
     for name, version in now.items():
-        if known.get(name) != version or not (copy / name).exists():
-            _get(fs, infos[name]["name"], copy / name)
+        target = inside(copy, name)
+        if known.get(name) != version or not target.exists():
+            _get(fs, infos[name]["name"], target)
     copy.mkdir(parents=True, exist_ok=True)
     write_json(copy / _FETCHED, now)
     return copy

@@ -60,12 +60,6 @@ def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]
             yield from batch.to_pylist()
 
 
-def file_name(text: str) -> str:
-    """An id as the name of a file on every system, still readable: other characters become `%` and their code."""
-    return "".join(char if char.isascii() and (char.isalnum() or char in "-_.+@") else f"%{ord(char):02x}"
-                   for char in text)  # fmt: skip
-
-
 def write(path: Path, data: bytes) -> None:
     """Write a file, making its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import keyword
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from unicodedata import category
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, programs, write
@@ -34,20 +35,32 @@ def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def call_name(action: str) -> str:
-    """`SwitchOn` -> `switch_on`; Python's own words get an underscore."""
+    """`SwitchOn` -> `switch_on`; Python's own words get an underscore, and what is not a name becomes one."""
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", action).lower()
+    if not (name.isascii() and name.isidentifier()):
+        return _identifier(name)
     return f"{name}_" if keyword.iskeyword(name) else name
 
 
 def _function(row: ProgramRow, program: Program, name: str) -> Iterator[str]:
     yield f"def {name}():"
-    yield f"    # {row['program_id']}"
-    for line in f"{program.title}. {program.description}".strip().splitlines():
-        yield f"    # {line}".rstrip()
+    yield from _comment(row["program_id"])
+    yield from _comment(f"{program.title}. {program.description}")
     for step in program.steps:
         yield f"    {_call(step)}"
     if not program.steps:
         yield "    pass"
+
+
+def _comment(text: str) -> Iterator[str]:
+    """A comment, whose every line is one to Python too; characters that can't be seen are written as escapes."""
+    for line in text.strip().splitlines():
+        shown = "".join(ascii(char)[1:-1] if category(char) in _UNSEEN else char for char in line)
+        yield f"    # {shown}".rstrip()
+
+
+_UNSEEN = frozenset({"Cc", "Cf", "Cs"})
+"""Control characters, marks that change in which direction text runs, halves of characters."""
 
 
 def _call(step: Step) -> str:

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.export.batches import Wanted, file_name, runs, write
+from hearth.datasets.export.batches import Wanted, runs, write
+from hearth.storage.names import file_name, inside
 
 if TYPE_CHECKING:
     import networkx
@@ -57,6 +58,6 @@ def _each(
     number = 0
     for number, (_, run) in enumerate(runs(dataset, wanted), 1):  # noqa: B007 - the last number is the count
         name = file_name(run.row["execution_id"])
-        write(to / f"{name}.start.{suffix}", written(run.networkx(0)))
-        write(to / f"{name}.final.{suffix}", written(run.networkx(len(run.row["ticks"]))))
+        write(inside(to, f"{name}.start.{suffix}"), written(run.networkx(0)))
+        write(inside(to, f"{name}.final.{suffix}"), written(run.networkx(len(run.row["ticks"]))))
     return number

@@ -9,6 +9,7 @@ import orjson
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, stream
 from hearth.schemas.tables import TABLES
+from hearth.storage.names import inside
 
 _OF_PROGRAMS = ("programs", "environments", "executions", "repairs", "sketches")
 
@@ -25,7 +26,7 @@ def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     for table in TABLES:
         some = table in _OF_PROGRAMS
         query = f"SELECT * FROM {table}" + (f" WHERE program_id IN ({chosen})" if some else "") + " ORDER BY ALL"
-        with (to / f"{table}.jsonl").open("wb") as file:
+        with inside(to, f"{table}.jsonl").open("wb") as file:
             for row in stream(dataset, query, asked if some else {}):
                 file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
                 lines += 1

@@ -18,7 +18,7 @@ from itertools import combinations
 from pathlib import Path
 
 from hearth.datasets.dataset import Dataset, Run
-from hearth.datasets.export.batches import Wanted, file_name, runs, write
+from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.datasets.export.planning_domain import planning_domain, relation_predicate
 from hearth.datasets.format.codecs import change_of
 from hearth.datasets.verify import StoredHomes
@@ -30,6 +30,7 @@ from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
+from hearth.storage.names import file_name, inside
 
 WANTED = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
 """Relations that a goal is about."""
@@ -72,7 +73,7 @@ def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     write(to / "domain.pddl", planning_domain(dataset.knowledge).encode())
     number = 0
     for task in tasks(dataset, wanted):
-        write(to / "problems" / f"{file_name(task.name)}.pddl", problem(task).encode())
+        write(inside(to / "problems", f"{file_name(task.name)}.pddl"), problem(task).encode())
         number += 1
     return number
 

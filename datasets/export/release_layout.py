@@ -8,12 +8,12 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import Dataset, Run
-from hearth.datasets.export.batches import Wanted, file_name, programs, runs, write
+from hearth.datasets.export.batches import Wanted, programs, runs, write
 from hearth.datasets.format.codecs import program_of
 from hearth.schemas.graph import to_release
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_object, print_program
-from hearth.storage.archives import leaves
+from hearth.storage.names import file_name, inside, leaves
 
 ROOT = "programs_processed_precond_nograb_morepreconds"
 
@@ -28,22 +28,23 @@ def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     """
     root = to / ROOT
     for row in programs(dataset, wanted):
-        write(root / "withoutconds" / f"{stem(row['program_id'])}.txt", print_program(program_of(row)).encode())
+        place = inside(root / "withoutconds", f"{stem(row['program_id'])}.txt")
+        write(place, print_program(program_of(row)).encode())
     number = 0
     for number, (row, run) in enumerate(runs(dataset, wanted), 1):  # noqa: B007 - the last number is the count
-        name = stem(row["program_id"])
+        name, home = stem(row["program_id"]), file_name(run.home)
         grounded = print_grounded(program_of(row, run.bindings()))
-        write(root / "executable_programs" / run.home / f"{name}.txt", grounded.encode())
+        write(inside(root / "executable_programs", f"{home}/{name}.txt"), grounded.encode())
         graphs = {"init_graph": to_release(run.start), "final_graph": to_release(run.final)}
-        write(root / "init_and_final_graphs" / run.home / f"{name}.json", orjson.dumps(graphs))
-        write(root / "initstate" / f"{name}.json", orjson.dumps(_conditions(run)))
+        write(inside(root / "init_and_final_graphs", f"{home}/{name}.json"), orjson.dumps(graphs))
+        write(inside(root / "initstate", f"{name}.json"), orjson.dumps(_conditions(run)))
     return number
 
 
 def stem(program_id: str) -> str:
     """`release:batch-1/file1_1` -> `batch-1/file1_1`; `crowd:P1` -> `crowd/P1_1`."""
     origin, _, rest = program_id.partition(":")
-    if origin == "release" and "+" not in rest and not leaves(rest):
+    if origin == "release" and "+" not in rest and not leaves(rest) and rest.isprintable() and rest.strip("./"):
         return rest
     return f"{file_name(origin)}/{file_name(rest)}_1"
 

@@ -42,8 +42,20 @@ def write_catalog(folder: Path) -> None:
             connection.execute(statements())
 
 
+_CLOSED = (
+    "autoinstall_known_extensions = false",
+    "autoload_known_extensions = false",
+    "python_enable_replacements = false",
+    "enable_external_access = false",
+    "lock_configuration = true",
+)
+"""What keeps a query from files elsewhere, the network, Python's variables, and from undoing this; the last locks."""
+
+
 def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
-    """A connection with the dataset's views that reads nothing but this folder, and writes nothing anywhere.
+    """A connection with the dataset's views that reaches nothing but this folder.
+
+    DuckDB has no way to allow reading and not writing: what strangers ask goes through `check_question` first.
 
     Args:
         folder: of the dataset.
@@ -63,8 +75,8 @@ def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
     connection.execute(text)
     quoted = root.replace("'", "''")
     connection.execute(f"SET allowed_directories = ['{quoted}']")
-    connection.execute("SET enable_external_access = false")
-    connection.execute("SET lock_configuration = true")
+    for setting in _CLOSED:
+        connection.execute(f"SET {setting}")
     return connection
 
 

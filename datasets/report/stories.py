@@ -11,6 +11,7 @@ from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import change_of, edges_of, program_of
+from hearth.datasets.report.pictures import shown_as
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.rows import ProgramRow, RepairedRow, Row
@@ -31,20 +32,29 @@ class Stories:
         self._home = cache(partial(_Home, dataset))
 
     @cached_property
+    def pictures(self) -> dict[str, str]:
+        """What the report calls each picture and film."""
+        return shown_as(self.dataset)
+
+    @cached_property
     def frames(self) -> dict[str, list[Row]]:
         """Pictures by execution, in the order of ticks."""
         query = """SELECT execution_id, tick, camera, file FROM frames WHERE modality = 'rgb'
             ORDER BY execution_id, tick, camera = 'top' DESC, camera"""
         found: dict[str, list[Row]] = defaultdict(list)
         for execution_id, tick, camera, file in self.dataset.rows(query)[1]:
-            found[execution_id].append({"tick": tick, "camera": camera, "file": file})
+            if file in self.pictures:
+                found[execution_id].append({"tick": tick, "camera": camera, "file": self.pictures[file]})
         return found
 
     @cached_property
     def films(self) -> dict[str, Row]:
         """The film of each execution that has one: its file, and for each tick when it ends, seconds."""
         query = "SELECT execution_id, file, list_transform(steps, lambda s: s.end) FROM videos ORDER BY 1, 2"
-        return {name: {"file": file, "ends": ends} for name, file, ends in self.dataset.rows(query)[1]}
+        found = self.dataset.rows(query)[1]
+        return {
+            name: {"file": self.pictures[file], "ends": ends} for name, file, ends in found if file in self.pictures
+        }
 
     def story(self, program: ProgramRow, runs: Iterable[Any], repairs: Iterable[RepairedRow]) -> Row:
         """One program as JSON.

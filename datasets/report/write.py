@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections import defaultdict
 from collections.abc import Iterator
 from functools import lru_cache
@@ -14,11 +13,13 @@ import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.report.figures import figures
+from hearth.datasets.report.pictures import copy_pictures
 from hearth.datasets.report.plans import plans
 from hearth.datasets.report.stories import DRAWN, Stories
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rows import Row
+from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
 
 SHARD = 200
@@ -49,9 +50,9 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
     _write_stories(dataset, to, workers, seen)
     for name in ("app.js", "page.js", "style.css"):
-        (to / name).write_bytes((files("hearth.datasets.report") / "assets" / name).read_bytes())
+        inside(to, name).write_bytes(files("hearth.datasets.report").joinpath("assets", name).read_bytes())
     (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
-    _pictures(dataset, to)
+    copy_pictures(dataset, to)
     return len(rows)
 
 
@@ -118,7 +119,7 @@ def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> 
     number, low, high = shard
     with dataset.connection.cursor() as cursor:
         found = list(_stories(cursor, stories, {"low": low, "high": high}))
-    (to / f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
+    inside(to, f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
 
 
 # Only edges that are drawn are read: CLOSE is most of what a tick changes, and of that only the number is told.
@@ -157,13 +158,3 @@ def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[R
 def _ask(cursor: Any, query: str, asked: dict[str, str]) -> list[Any]:
     rows: list[Any] = cursor.sql(query, params=asked).to_arrow_table().to_pylist()
     return rows
-
-
-def _pictures(dataset: Dataset, to: Path) -> None:
-    query = """SELECT file FROM frames WHERE modality = 'rgb' UNION SELECT file FROM videos
-        UNION SELECT regexp_replace(file, '[.]webm$', '.mp4') FROM videos ORDER BY 1"""
-    for (name,) in dataset.rows(query)[1]:
-        source, target = dataset.folder / name, to / name
-        if source.is_file() and source.resolve().is_relative_to(dataset.folder.resolve()) and ".." not in name:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, target)

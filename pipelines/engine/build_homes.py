@@ -11,6 +11,7 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
+from hearth.storage.names import inside
 
 DERIVED = "homes"
 """Folder of the sample stage that holds homes derived from stored start graphs."""
@@ -61,5 +62,5 @@ class Homes:
         return Home.from_graph(self._derived(name), name, self.knowledge)
 
     def _derived(self, name: str) -> EnvironmentGraph:
-        path = self._settings.folder("sample") / DERIVED / f"{name}.json"
+        path = inside(self._settings.folder("sample") / DERIVED, f"{name}.json")
         return from_release(orjson.loads(path.read_bytes()), str(path))

@@ -17,7 +17,8 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.structs import QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
-from hearth.storage.archives import Place, leaves
+from hearth.storage.archives import Place
+from hearth.storage.names import leaves
 from hearth.storage.rejects import Reject
 
 NAME = "records"
@@ -58,12 +59,20 @@ def _item(value: Any, place: str, line: int, name: str) -> Item:
             place, Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         )
     own = str(value.get("program_id") or value.get("id") or "")
-    if any(map(leaves, own.split(":"))) or not own.isprintable():
-        message = "an id that is a path out of its folder, or not printable"
-        suggestion = "letters, digits and `-_./:#`, without `..`"
-        return refused(place, Reject.of(Code.BAD_JSON, message, file=place, line=line, found=ascii(own)[:60],
-                                        suggestion=suggestion), line=line)  # fmt: skip
+    fault = id_fault(own, place, line)
+    if fault:
+        return refused(place, fault, line=line)
     return Item(own or f"{NAME}:{name}", NAME, place, value, line=line)
+
+
+def id_fault(own: str, place: str, line: int = 0) -> Reject | None:
+    """Why an id that comes with a record is not taken."""
+    if not any(map(leaves, own.split(":"))) and own.isprintable():
+        return None
+    message = "an id that is a path out of its folder, or not printable"
+    suggestion = "letters, digits and `-_./:#`, without `..`"
+    found = ascii(own)[:60]
+    return Reject.of(Code.BAD_JSON, message, file=place, line=line, found=found, suggestion=suggestion)
 
 
 def read(item: Item) -> list[IngestedRow | Reject]:

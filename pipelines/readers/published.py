@@ -43,13 +43,18 @@ def scan(path: Path, place: str) -> Iterator[Item]:
         if row["parent_id"] is None:
             empty = False
             row["scene"] = scenes.get(row["description_id"])
-            yield Item(row["program_id"], NAME, f"{place}/programs", row)
+            yield _item(row["program_id"], f"{place}/programs", row)
     for row in _rows(path, "descriptions", DESCRIPTION_COLUMNS):
         if not row.pop("programs"):
             empty = False
-            yield Item(row["description_id"], NAME, f"{place}/descriptions", row)
+            yield _item(row["description_id"], f"{place}/descriptions", row)
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a dataset without programs or descriptions", file=place))
+
+
+def _item(own: str, place: str, row: Any) -> Item:
+    fault = ours.id_fault(own, place)
+    return refused(place, fault) if fault else Item(own, NAME, place, row)
 
 
 def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:

@@ -21,8 +21,9 @@ from hearth.schemas.graph import Edge, read_node
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.vocabulary import STATE_ID
-from hearth.storage.archives import archive, leaves, members, refusal_of
+from hearth.storage.archives import archive, members, refusal_of
 from hearth.storage.files import file_digest, walk
+from hearth.storage.names import leaves
 from hearth.storage.rejects import Reject
 
 NAME = "release"

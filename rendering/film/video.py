@@ -25,6 +25,7 @@ from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.structs import FilmedStepRow
 from hearth.schemas.vocabulary import ROOM_CATEGORY
+from hearth.storage.names import inside
 
 FIRST, THIRD = "first", "third"
 VIEWS = (AUTO, TOP, FIRST, THIRD)
@@ -306,7 +307,7 @@ def record(
     steps = times(list(known.values()))
     wanted = {tick: named_in(trajectory, span.steps) for tick, span in known.items()}
     seen: dict[int, set[int]] = {tick: set() for tick in known}
-    writers = [Writer(out / f"{view}{suffix}", *size, fps) for suffix in suffixes]
+    writers = [Writer(inside(out, f"{view}{suffix}"), *size, fps) for suffix in suffixes]
     last: dict[int, Image] = {}
     track: list[tuple[int, Camera]] = []
     for film_frame in film(trajectory, home, view, size=size, fps=fps):

@@ -153,6 +153,12 @@ def test_plain_duckdb_reads_the_catalog_after_a_move(made, tmp_path):
         "ATTACH '/tmp/other.duckdb' AS other",
         "SET threads = 1",
         "INSTALL httpfs",
+        "LOAD httpfs",
+        "PRAGMA version",
+        "EXPORT DATABASE '/tmp/other'",
+        "CALL enable_logging()",
+        "SELECT 1 FROM (COPY programs TO '/tmp/elsewhere.csv')",
+        "EXPLAIN",
         "",
     ],
 )
@@ -161,13 +167,60 @@ def test_a_dataset_can_only_be_read(ds, query):
         ds.rows(query)
 
 
-@pytest.mark.parametrize("query", ["SELECT * FROM read_text('/etc/hostname')", "SELECT * FROM '/etc/passwd'"])
-def test_other_files_are_out_of_reach(ds, query):
+@pytest.mark.parametrize(
+    "query",
+    [
+        "COPY (SELECT 1 AS x) TO '{}'",
+        "EXPLAIN ANALYZE COPY (SELECT 1 AS x) TO '{}'",
+        "explain/**/analyze/* \u00e9 */copy (SELECT '\u00e9' AS x) TO '{}'",
+        "EXPLAIN (ANALYZE, FORMAT json) COPY (SELECT 1 AS x) TO '{}'",
+        "WITH made AS (COPY (SELECT 1 AS x) TO '{}') FROM made",
+        "EXPLAIN ANALYZE WITH made AS (COPY (SELECT 1 AS x) TO '{}') FROM made",
+        "SELECT 1; COPY (SELECT 1 AS x) TO '{}'",
+        "FROM query($$COPY (SELECT 1 AS x) TO '{}'$$)",
+    ],
+)
+def test_no_query_replaces_a_table(made, tmp_path, query):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "copy")
+    part = folder / "programs/part-00000.parquet"
+    before = part.read_bytes()
     with pytest.raises(HearthError):
-        ds.rows(query)
+        Dataset.open(folder).rows(query.format(part))
+    assert part.read_bytes() == before
 
 
-@pytest.mark.parametrize("query", ["DESCRIBE programs", "SHOW TABLES", "EXPLAIN SELECT 1", "FROM steps LIMIT 1"])
+@pytest.mark.parametrize("query", ["read_text('{}')", "read_csv('{}')", "'{}'", "glob('{}')"])
+def test_other_files_are_out_of_reach(ds, tmp_path, query):
+    other = tmp_path / "other.csv"
+    other.write_text("a,b\n1,2\n")
+    asked = f"SELECT count(*) FROM {query.format(other)}"
+    assert duckdb.sql(asked).fetchall()
+    with pytest.raises(HearthError, match="disabled by configuration"):
+        ds.rows(asked)
+
+
+def test_nothing_opens_what_is_closed(ds):
+    with pytest.raises(duckdb.Error, match="locked"):
+        ds.connection.execute("SET threads = 1")
+    assert ds.connection.execute("SELECT current_setting('python_enable_replacements')").fetchall() == [(False,)]
+    settings = "SELECT current_setting('autoinstall_known_extensions'), current_setting('autoload_known_extensions')"
+    assert ds.rows(settings)[1] == [(False, False)]
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "DESCRIBE programs",
+        "SHOW TABLES",
+        "EXPLAIN SELECT 1",
+        "EXPLAIN ANALYZE SELECT 1",
+        "EXPLAIN (FORMAT json) (SELECT 1)",
+        "FROM steps LIMIT 1",
+        "WITH found AS (FROM steps) SELECT count(*) FROM found -- and no more",
+        "SUMMARIZE ledger;",
+        "VALUES (1)",
+    ],
+)
 def test_ways_to_ask(ds, query):
     assert ds.rows(query, limit=5)[1]
 

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import json
 import shutil
+from pathlib import Path
 
 import networkx
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
+from hostile import rename
 
 import hearth
 from hearth.analysis.release_replay import replay
-from hearth.datasets.export.batches import Wanted, file_name
+from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.export.release_layout import ROOT
 from hearth.datasets.export.triples import iri, text
 from hearth.kb.language.phrases import hear
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.storage.names import file_name
 
 MILK = "release:batch-1/file1_1"
 
@@ -141,7 +145,6 @@ def test_triples_read_by_rdflib(ds, tmp_path):
 def test_literals_and_identifiers_are_escaped():
     assert text('say "hi"\\\n\0') == '"say \\"hi\\"\\\\\\n"'
     assert iri("program", "a b>") == "<https://hearth.invalid/terms/program/a%20b%3E>"
-    assert file_name("crowd:a/../b") == "crowd%3aa%2f..%2fb"
 
 
 def test_only_what_was_asked_for(ds, tmp_path):
@@ -158,3 +161,37 @@ def test_what_cannot_be_exported_is_named(ds, tmp_path):
     (tmp_path / "mine.txt").write_text("precious")
     with pytest.raises(HearthError, match="something already"):
         export(ds, "nl", tmp_path)
+
+
+HOSTILE = [("../../stolen", "..", "x\0y"), ("/stolen-by-export", "a/../../../stolen", "..\\stolen")]
+
+
+@pytest.mark.parametrize(("home", "program", "origin"), HOSTILE)
+def test_no_name_of_a_home_or_program_leads_out_of_an_export(made, tmp_path, home, program, origin):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "dataset")
+    for old, new in (("cabin", home), (MILK, f"release:{program}"), ("crowd:P1", f"{origin}:{program}")):
+        rename(folder, old, new)
+    known = set(tmp_path.rglob("*"))
+    for form in FORMATS:
+        to = tmp_path / "a/b/c" / form
+        with contextlib.suppress(HearthError):
+            export(hearth.load(folder), form, to)
+        known |= {to, *to.parents, *to.rglob("*")}
+    assert set(tmp_path.rglob("*")) <= known and len(list(tmp_path.glob("a/b/c/*/*"))) > 6
+    assert not Path("/stolen-by-export").exists()
+
+
+def test_names_of_data_in_code_are_names_strings_and_comments(made, tmp_path):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "dataset")
+    hostile = "x')\nimport os; os.system('id')  # \u2028\u202e\r\0\f"
+    rename(folder, MILK, f"release:{hostile}")
+    for name in ("Walk", "kitchen", "milk", "Drink milk"):
+        rename(folder, name, hostile)
+    export(hearth.load(folder), "code", tmp_path / "out")
+    text = (tmp_path / "out/programs.py").read_text()
+    tree = ast.parse(text)
+    kinds = {type(node) for node in tree.body}
+    assert kinds == {ast.Expr, ast.ImportFrom, ast.FunctionDef}
+    names = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    assert "import" not in names and not {ast.Import, ast.Attribute} & {type(node) for node in ast.walk(tree)}
+    assert not {"\u2028", "\u202e", "\0"} & set(text)

@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import hearth
@@ -14,6 +17,7 @@ from hearth.datasets.report.plans import draw
 from hearth.datasets.report.write import write_report
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Node
+from hearth.schemas.tables import TABLES
 
 MILK = "release:batch-1/file1_1"
 NASTY = "<script>alert(1)</script><b>"
@@ -113,6 +117,23 @@ def test_it_does_not_write_over_something_else(ds, tmp_path):
     (tmp_path / "mine.txt").write_text("precious")
     with pytest.raises(HearthError, match="something else"):
         write_report(ds, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["index.html", "data/programs.js", "../../stolen.png", "link.png", "{}/secret.png"])
+def test_a_picture_replaces_no_page_and_comes_from_nowhere_else(made, tmp_path, name):
+    folder = shutil.copytree(made.out / "publish", tmp_path / "dataset")
+    for path in (tmp_path / "secret.png", folder / "index.html", tmp_path / "stolen.png", folder / "good.png"):
+        path.write_bytes(b"theirs")
+    (folder / "data").mkdir()
+    (folder / "data/programs.js").write_bytes(b"theirs")
+    (folder / "link.png").symlink_to(tmp_path / "secret.png")
+    frame = {field.name: None for field in TABLES["frames"]} | {"modality": "rgb", "execution_id": "e", "tick": 0}
+    rows = [{**frame, "camera": "top", "file": file} for file in (name.format(tmp_path), "good.png")]
+    pq.write_table(pa.Table.from_pylist(rows, TABLES["frames"]), folder / "frames/part-00000.parquet")
+    write_report(hearth.load(folder), tmp_path / "report")
+    copied = [path.relative_to(tmp_path / "report") for path in (tmp_path / "report").rglob("*") if path.is_file()
+              and path.read_bytes() == b"theirs"]  # fmt: skip
+    assert copied == [Path("pictures/0.png")]
 
 
 @pytest.fixture

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +19,7 @@ from hearth.datasets.verify import verify  # noqa: E402
 from hearth.pipelines.build import build  # noqa: E402
 from hearth.schemas.diagnostics import HearthError  # noqa: E402
 from hearth.schemas.failures import Code  # noqa: E402
-from hearth.storage.stores import Store, fetched, store, url_of, working  # noqa: E402
+from hearth.storage.stores import Store, _temporary_folder, fetched, store, url_of, working  # noqa: E402
 
 URL = "memory://bucket/evening"
 
@@ -27,6 +30,7 @@ def memory(tmp_path, monkeypatch):
     (tmp_path / "work").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "work"))
     store.cache_clear()
+    _temporary_folder.cache_clear()
     filesystem = fsspec.filesystem("memory")
     filesystem.store.clear()
     yield filesystem
@@ -168,3 +172,75 @@ def test_an_unknown_kind_of_store_is_named():
     with pytest.raises(HearthError) as error:
         fetched("nosuch://bucket/a")
     assert "nosuch" in error.value.diagnostics[0].message
+
+
+@pytest.mark.parametrize("name", ["../../stolen", "tables/../../../stolen", "/stolen", "..\\stolen", "c:/stolen"])
+def test_a_name_that_leaves_the_copy_is_refused(memory, tmp_path, monkeypatch, name):
+    memory.pipe_file("/bucket/evening/manifest.json", b"{}")
+    found = memory.find("/bucket/evening", detail=True)
+    key = f"/bucket/evening/{name}"
+    hostile = {**found, key: {"name": "/bucket/evening/manifest.json", "size": 2}}
+    monkeypatch.setattr(memory, "find", lambda *_, **__: hostile)
+    before = sorted(path for path in tmp_path.rglob("*") if path.is_file())
+    for read in (lambda: fetched(URL), lambda: store(URL).settle()):
+        with pytest.raises(HearthError) as error:
+            read()
+        assert error.value.diagnostics[0].code is Code.DAMAGED_FILE
+    outside = [path for path in tmp_path.rglob("*") if path.is_file() and "stolen" in path.name]
+    assert not outside and not before and not Path("/stolen").exists()
+
+
+def test_members_of_a_zip_do_not_leave_the_copy(tmp_path):
+    import zipfile
+
+    path = tmp_path / "dataset.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("ds/manifest.json", "{}")
+        archive.writestr("ds/../../../stolen", "x")
+    with pytest.raises(HearthError):
+        fetched(f"zip://ds::{path}")
+    assert not list(tmp_path.parent.rglob("stolen"))
+
+
+def test_a_link_in_a_folder_given_as_a_url_does_not_lead_out(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "given"
+    folder.mkdir()
+    (tmp_path / "secret").write_text("secret")
+    (folder / "a.txt").write_text("a")
+    assert (fetched("file://given") / "a.txt").read_text() == "a"
+    (folder / "b.txt").symlink_to(tmp_path / "secret")
+    with pytest.raises(HearthError, match="leaves the folder"):
+        fetched("file://given")
+
+
+def test_copies_are_closed_to_others_and_removed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.txt").write_text("a")
+    asked = """if True:
+        from hearth.storage.stores import Store, fetched
+        print(fetched("file://a.txt"))
+        print(Store("memory://x").work)"""
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "work")}
+    seen = []
+    for _ in range(2):
+        command = [sys.executable, "-c", asked]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+        copy, work = map(Path, done.stdout.split())
+        seen.append(copy.parent.parent)
+        assert not copy.parent.parent.exists() and work.parent.stat().st_mode & 0o777 == 0o700
+    assert seen[0] != seen[1]
+    assert fetched("file://a.txt").parent.parent.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_folder_that_another_user_prepared_is_not_used(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    place = tmp_path / f"work/hearth-{os.getuid()}"
+    place.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(HearthError, match="closed to others"):
+        Store(URL)
+    place.unlink()
+    place.mkdir(mode=0o777)
+    place.chmod(0o777)
+    with pytest.raises(HearthError, match="closed to others"):
+        Store(URL)
