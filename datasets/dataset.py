@@ -93,7 +93,7 @@ class Dataset:
 
     @property
     def connection(self) -> Any:
-        """A DuckDB connection with the views and macros, which reaches this folder only; `sql` refuses what would change it.
+        """A DuckDB connection with the views and macros, which reaches this folder only; `sql` refuses what changes it.
 
         Where a build has replaced the dataset since, it is a new one, to the dataset that is there now.
 
