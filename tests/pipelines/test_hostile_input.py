@@ -9,8 +9,9 @@ import zipfile
 
 import pyarrow as pa
 import pytest
+from oracles import mutated_input
 
-from hearth.analysis import mutated_input, ratings
+from hearth.analysis import ratings
 from hearth.analysis.spreadsheet_cells import cell_said, safe_cell
 from hearth.analysis.synthesis import load
 from hearth.datasets.export.release_layout import stem

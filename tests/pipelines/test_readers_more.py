@@ -10,8 +10,8 @@ import zipfile
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from oracles import mutated_input
 
-from hearth.analysis import mutated_input
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.storage import archives

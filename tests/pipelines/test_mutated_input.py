@@ -8,9 +8,9 @@ import zipfile
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from oracles import mutated_input
 from typer.testing import CliRunner
 
-from hearth.analysis import mutated_input
 from hearth.cli import app
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
