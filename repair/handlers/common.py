@@ -130,8 +130,13 @@ def removed(context: RepairContext, name: str) -> Edit:
 
 
 def leaving_out(name: str) -> Handler:
-    """The repair of that name leaves the failing step out."""
-    return lambda context: removed(context, name)
+    """The handler whose repair has that name."""
+
+    def handler(context: RepairContext) -> Edit | None:
+        """Leave the step out."""
+        return removed(context, name)
+
+    return handler
 
 
 def before(context: RepairContext, name: str, *steps: Step) -> Edit:
