@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-import heapq
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from itertools import pairwise
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.views import edges
+
+if TYPE_CHECKING:
+    import networkx
 
 
 class Link(NamedTuple):
@@ -54,23 +57,15 @@ def path(knowledge: Knowledge, first: str, second: str) -> tuple[Link, ...]:
     Raises:
         KeyError: nothing has the name; its argument is the name.
     """
+    import networkx
+
     start, goal = node_of(knowledge, first), node_of(knowledge, second)
-    neighbours = _neighbours(knowledge)
-    best: dict[str, float] = {start: 0.0}
-    came: dict[str, Link] = {}
-    queue = [(0.0, start)]
-    while queue:
-        cost, node = heapq.heappop(queue)
-        if node == goal:
-            break
-        if cost > best[node]:
-            continue
-        for step, link in neighbours.get(node, ()):
-            if cost + step < best.get(link.target, float("inf")):
-                best[link.target] = cost + step
-                came[link.target] = link
-                heapq.heappush(queue, (cost + step, link.target))
-    return tuple(reversed(list(_back(came, goal)))) if goal in came else ()
+    graph = _graph(knowledge)
+    if start not in graph or goal not in graph or not networkx.has_path(graph, start, goal):
+        return ()
+    way = networkx.dijkstra_path(graph, start, goal, weight="cost")
+    chosen = (min(graph[one][other].values(), key=itemgetter("cost")) for one, other in pairwise(way))
+    return tuple(each["link"] for each in chosen)
 
 
 def node_of(knowledge: Knowledge, name: str) -> str:
@@ -89,21 +84,16 @@ def node_of(knowledge: Knowledge, name: str) -> str:
     raise KeyError(name)
 
 
-def _back(came: dict[str, Link], node: str) -> Iterator[Link]:
-    while node in came:
-        yield came[node]
-        node = came[node].source
+def _graph(knowledge: Knowledge) -> networkx.MultiDiGraph[str]:
+    """Every fact that says something, both ways round, with its cost and link."""
+    import networkx
 
-
-def _neighbours(knowledge: Knowledge) -> dict[str, list[tuple[float, Link]]]:
-    found: dict[str, list[tuple[float, Link]]] = {}
+    found: networkx.MultiDiGraph[str] = networkx.MultiDiGraph()
     for source, target, relation, attributes in edges(knowledge):
-        if relation not in COSTS or source == target:
-            continue
-        cost = _cost(relation, attributes)
-        evidence = str(attributes.get("evidence", ""))
-        found.setdefault(source, []).append((cost, Link(source, relation, target, True, evidence)))
-        found.setdefault(target, []).append((cost, Link(target, relation, source, False, evidence)))
+        if relation in COSTS and source != target:
+            cost, evidence = _cost(relation, attributes), str(attributes.get("evidence", ""))
+            found.add_edge(source, target, cost=cost, link=Link(source, relation, target, True, evidence))
+            found.add_edge(target, source, cost=cost, link=Link(target, relation, source, False, evidence))
     return found
 
 
