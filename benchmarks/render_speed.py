@@ -17,6 +17,7 @@ from pathlib import Path
 
 import plain
 from measuring import Figure, finish, parser, rate, seconds, tell
+from warm import warm
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
@@ -30,7 +31,6 @@ from hearth.rendering.people.figure import Figure as Person
 from hearth.rendering.people.skeleton import BodyPose
 from hearth.rendering.rays import threads
 from hearth.rendering.rays.incremental import incremental_frame
-from hearth.rendering.rays.warm import warm
 from hearth.rendering.scene.instances import Thing, placed
 from hearth.rendering.scene.prepared import scene_of
 from hearth.rendering.scene.scene import Scene

@@ -70,11 +70,6 @@ def recipe_of(class_name: str, knowledge: Knowledge) -> Recipe:
     return RECIPES[choice_of(class_name, knowledge).recipe]
 
 
-def without_recipe(class_names: list[str], knowledge: Knowledge) -> list[str]:
-    """Those classes that are drawn as a plain box, sorted."""
-    return sorted({name for name in class_names if choice_of(name, knowledge).recipe == FALLBACK})
-
-
 def model_of(
     class_name: str, size: Size, states: frozenset[str], seed: int, knowledge: Knowledge, **more: Any
 ) -> Model:
