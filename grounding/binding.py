@@ -1,7 +1,7 @@
 """Binding a program whose instances are counters to the nodes of a home, so that all its steps can run (thesis 2.4.1).
 
-Depth-first over the ticks: one that names a new object tries the home's candidates for it, best first, and runs;
-what fails is undone by going back to the world before, which costs nothing because worlds are values.
+Depth-first over the ticks: a tick that names a new object runs with each of the home's candidates, best first. A failed
+try is undone by going back to the world before, at no cost because worlds are values.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class _Search:
             self.furthest = replace(failure, tick=number)
 
     def _ordered(self, key: Key, world: World, agent_number: int, nodes: dict[Key, int]) -> list[int]:
-        """Ids of the candidates that are not taken: what is at hand first, then what is in the room, then by id."""
+        """Ids of the candidates that are not taken: those at hand first, then those in the room, then by id."""
         home = world.home
         mask = self.candidates.get(key)
         if mask is None:

@@ -1,4 +1,4 @@
-"""Trying a program in a home: bound to what the home has if that can run, else in an environment sampled for it."""
+"""Running a program in a home: bound to the home's own objects if it can run, else in an environment sampled for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The homes that there are: the designed ones, and whatever a user lays over them with `--homes DIR`."""
+"""The library of homes: the designed ones, and a user's own from `--homes DIR`."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def layout_of(path: Path | str, knowledge: Knowledge) -> Layout:
 
 
 def graph_layout(home: Path | str, knowledge: Knowledge, directory: Path | str | None = None) -> GraphLayout:
-    """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and what of them that
-    does not show; errors as of `load_graph`.
+    """A scene graph (a file, or a home's by name) with the geometry that its relations suggest, and the relations that
+    it does not show; errors as of `load_graph`.
     """
     return _graph_layout(Path(home) if Path(home).suffix else _file(str(home), directory), knowledge)
 
@@ -97,7 +97,7 @@ def _files(directory: Path | str | None) -> dict[str, Path]:
     if directory is not None:
         folder = Path(directory)
         if not folder.is_dir():
-            raise HearthError.of(Code.MISSING_FILE, f"`{folder}` is no directory", suggestion="--homes DIR")
+            raise HearthError.of(Code.MISSING_FILE, f"`{folder}` is not a directory", suggestion="--homes DIR")
         found.update(_in(folder))
     return found
 
@@ -160,7 +160,7 @@ def _ids(path: Path) -> dict[str, int]:
         for row in csv.DictReader(file):
             number, name = row.get("id") or "", row.get("name") or ""
             if not number.isdigit() or not name or name in found or int(number) in found.values():
-                raise HearthError.of(Code.BAD_TABLE, f"`{number},{name}` is no id and name of its own", file=str(path),
+                raise HearthError.of(Code.BAD_TABLE, f"`{number},{name}` repeats an id or a name", file=str(path),
                                      suggestion="columns id and name, each once")  # fmt: skip
             found[name] = int(number)
     return found

@@ -1,4 +1,4 @@
-"""What is wrong with a scene graph, whoever made it: every fault with the ids of the nodes concerned."""
+"""Faults of a scene graph, each with the ids of the nodes concerned."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class View:
                     known.append(edge.target)
         return found
 
-    def said(self, node_id: int) -> str:
+    def label(self, node_id: int) -> str:
         """A node as people call it: `fridge (41)`."""
         node = self.nodes.get(node_id)
         return f"{node.class_name} ({node_id})" if node else f"node {node_id}"
@@ -97,7 +97,7 @@ def _names(view: View) -> Iterator[Diagnostic]:
     for node in view.graph.nodes:
         me = (node.id,)
         if node.category not in CATEGORIES:
-            message = f"{view.said(node.id)} is of the unknown category `{node.category}`"
+            message = f"{view.label(node.id)} is of the unknown category `{node.category}`"
             yield _fault(Code.BAD_GRAPH, message, me, f"one of {', '.join(CATEGORIES)}")
         if view.knowledge.object_class(node.class_name) is None:
             near = view.knowledge.suggest(node.class_name)
@@ -106,7 +106,7 @@ def _names(view: View) -> Iterator[Diagnostic]:
         for kind, words, known in (("state", node.states, STATES), ("property", node.properties, PROPERTIES)):
             for word in words:
                 if word not in known:
-                    yield _fault(Code.BAD_GRAPH, f"{view.said(node.id)} has the unknown {kind} `{word}`", me)
+                    yield _fault(Code.BAD_GRAPH, f"{view.label(node.id)} has the unknown {kind} `{word}`", me)
 
 
 def _edges(view: View) -> Iterator[Diagnostic]:
@@ -130,11 +130,11 @@ def _states(view: View) -> Iterator[Diagnostic]:
     for node in view.graph.nodes:
         for i in range(0, len(STATES), 2):
             if STATES[i] in node.states and STATES[i + 1] in node.states:
-                message = f"{view.said(node.id)} is both {STATES[i]} and {STATES[i + 1]}"
+                message = f"{view.label(node.id)} is both {STATES[i]} and {STATES[i + 1]}"
                 yield _fault(Code.CONTRADICTION, message, (node.id,), "keep one")
         for prop, states in NEEDS_STATES.items():
             if prop in node.properties and not set(states) & set(node.states):
-                message = f"{view.said(node.id)} has {prop} and is neither {states[0]} nor {states[1]}"
+                message = f"{view.label(node.id)} has {prop} and is neither {states[0]} nor {states[1]}"
                 yield _fault(Code.CONDITION_UNMET, message, (node.id,), f"give it the state {states[1]}")
 
 
@@ -145,15 +145,15 @@ def _rooms(view: View) -> Iterator[Diagnostic]:
     for node_id in view.nodes:
         rooms = [parent for parent in view.parents(node_id) if view.is_room(parent)]
         if len(rooms) > 1:
-            where = ", ".join(map(view.said, rooms))
+            where = ", ".join(map(view.label, rooms))
             yield _fault(
                 Code.BAD_GRAPH,
-                f"{view.said(node_id)} is INSIDE {len(rooms)} rooms: {where}",
+                f"{view.label(node_id)} is INSIDE {len(rooms)} rooms: {where}",
                 (node_id, *rooms),
                 "keep one",
             )
         if not rooms and not view.is_room(node_id) and node_id not in held and not _nested_room(view, node_id):
-            yield _fault(Code.NO_ROOM, f"{view.said(node_id)} is INSIDE no room", (node_id,), "say INSIDE which")
+            yield _fault(Code.NO_ROOM, f"{view.label(node_id)} is INSIDE no room", (node_id,), "add its room")
 
 
 def _nested_room(view: View, node_id: int) -> bool:
@@ -176,10 +176,10 @@ def _containers(view: View) -> Iterator[Diagnostic]:
         holders = [parent for parent in view.parents(node_id) if not view.is_room(parent)]
         innermost = [h for h in holders if not any(h in view.parents(other) for other in holders)]
         if len(innermost) > 1:
-            where = " and ".join(map(view.said, innermost))
-            yield _fault(Code.BAD_GRAPH, f"{view.said(node_id)} is INSIDE {where}", (node_id, *innermost), "keep one")
+            where = " and ".join(map(view.label, innermost))
+            yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is INSIDE {where}", (node_id, *innermost), "keep one")
         if view.is_room(node_id) and view.parents(node_id):
-            yield _fault(Code.BAD_GRAPH, f"{view.said(node_id)} is a room INSIDE something", (node_id,), "remove it")
+            yield _fault(Code.BAD_GRAPH, f"{view.label(node_id)} is a room INSIDE something", (node_id,), "remove it")
 
 
 def _circles(view: View) -> Iterator[Diagnostic]:
@@ -189,7 +189,7 @@ def _circles(view: View) -> Iterator[Diagnostic]:
         for start in view.targets[relation]:
             circle = _circle(view.targets[relation], start, done)
             if len(circle) > 1:
-                way = f" {relation} ".join(map(view.said, (*circle, circle[0])))
+                way = f" {relation} ".join(map(view.label, (*circle, circle[0])))
                 yield _fault(Code.LOOP, f"a circle: {way}", circle, "remove one of the edges")
 
 
@@ -213,13 +213,13 @@ def _doors(view: View) -> Iterator[Diagnostic]:
     for door, rooms in view.targets["BETWEEN"].items():
         real = [room for room in rooms if view.is_room(room)]
         if len(real) != 2 or len(rooms) != 2:
-            message = f"{view.said(door)} is BETWEEN {len(real)} room{'s' * (len(real) != 1)}"
+            message = f"{view.label(door)} is BETWEEN {len(real)} room{'s' * (len(real) != 1)}"
             yield _fault(Code.BAD_GRAPH, message, (door, *rooms), "a door joins two rooms")
     rooms = [node_id for node_id in view.nodes if view.is_room(node_id)]
     cut = sorted(set(rooms) - joined(rooms[0], map(set, view.targets["BETWEEN"].values()))) if rooms else []
     if rooms and cut and view.targets["BETWEEN"]:
-        names = ", ".join(map(view.said, cut))
-        yield _fault(Code.NO_PATH, f"no door leads from {view.said(rooms[0])} to {names}", tuple(cut), "add a door")
+        names = ", ".join(map(view.label, cut))
+        yield _fault(Code.NO_PATH, f"no door leads from {view.label(rooms[0])} to {names}", tuple(cut), "add a door")
 
 
 def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
@@ -236,18 +236,18 @@ def _hands(view: View) -> Iterator[Diagnostic]:
     for hand in HANDS:
         for agent, things in view.targets[hand].items():
             if view.nodes[agent].class_name != CHARACTER_CLASS:
-                yield _fault(Code.BAD_GRAPH, f"{view.said(agent)} has no hands to hold with", (agent, *things))
+                yield _fault(Code.BAD_GRAPH, f"{view.label(agent)} has no hands to hold with", (agent, *things))
             if len(things) > 1:
-                held = ", ".join(map(view.said, things))
+                held = ", ".join(map(view.label, things))
                 yield _fault(
-                    Code.CONFLICT, f"one hand of {view.said(agent)} holds {held}", (agent, *things), "keep one"
+                    Code.CONFLICT, f"one hand of {view.label(agent)} holds {held}", (agent, *things), "keep one"
                 )
             for thing in things:
                 holders[thing].add(agent)
     for thing, agents in holders.items():
         if len(agents) > 1:
-            names = " and ".join(view.said(agent) for agent in sorted(agents))
-            message = f"{view.said(thing)} is held by {names}"
+            names = " and ".join(view.label(agent) for agent in sorted(agents))
+            message = f"{view.label(thing)} is held by {names}"
             yield _fault(Code.CONFLICT, message, (thing, *sorted(agents)), "one of them has to let go")
 
 
@@ -256,7 +256,7 @@ def _close(view: View) -> Iterator[Diagnostic]:
     for one, others in near.items():
         for other in others:
             if one != other and one not in near.get(other, ()):
-                message = f"{view.said(one)} is CLOSE to {view.said(other)}, but not the other way round"
+                message = f"{view.label(one)} is CLOSE to {view.label(other)}, but not the other way round"
                 yield _fault(Code.BAD_GRAPH, message, (one, other), f"add {other} CLOSE {one}")
 
 

@@ -46,7 +46,7 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
 
 
 def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
-    """What the plan says outright; everything is INSIDE its room as well."""
+    """The plan's own relations; everything is INSIDE its room as well."""
     for thing in things:
         me = ids[thing.name]
         if thing.on:

@@ -1,4 +1,4 @@
-"""A box for what was put somewhere in a home with geometry: on or in a thing beside what is there, or on a floor."""
+"""Boxes for things that were moved in a home with geometry: on or in a thing, or on a floor."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STANDS = ("floor", "wall", "item")
 
 
 def posed(graph: EnvironmentGraph, places: Mapping[int, tuple[str, int]], knowledge: Knowledge) -> EnvironmentGraph:
-    """A graph whose nodes in `places` have boxes where they are now said to be; what is on and in them goes with them.
+    """A graph whose nodes in `places` have boxes at their new places; the things on and in them move along.
 
     Args:
         graph: edited already: its edges say where things are. Things that have a place that has no box get none.
@@ -115,8 +115,8 @@ def _carried(nodes: Mapping[int, Node], graph: EnvironmentGraph, moved: int, box
 
 
 def _full(node: Node, relation: str, place: Node, why: str) -> HearthError:
-    said = f"{node.class_name} ({node.id}) {relation} {place.class_name} ({place.id})"
-    return HearthError.of(Code.NO_PLACE, f"{said}: {why}", suggestion="another place, or take something away")
+    text = f"{node.class_name} ({node.id}) {relation} {place.class_name} ({place.id})"
+    return HearthError.of(Code.NO_PLACE, f"{text}: {why}", suggestion="another place, or take something away")
 
 
 def room_for(

@@ -9,10 +9,10 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import ObjectClass, Placement
 
 TOO_LARGE_TO_CARRY = 2.1
-"""Metres: no edge of a thing that can be grabbed is longer (a ladder is 2)."""
+"""Metres: the longest edge of a thing that can be grabbed (a ladder is 2)."""
 
 TOO_BULKY_TO_CARRY = 0.45
-"""Cubic metres: a thing that can be grabbed takes no more room than this."""
+"""Cubic metres: the largest volume of a thing that can be grabbed."""
 
 SOFT = frozenset(
     {"garment", "textile", "paper_goods", "waste", "animal", "bag_kind", "food", "cleaning_tool", "window_cover"}
@@ -55,7 +55,7 @@ def _incomplete(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
             yield thing.name, f"has no {' and no '.join(lacking)}"
         for room in thing.rooms:
             if room not in knowledge.rooms:
-                yield thing.name, f"is said to be found in `{room}`, which is no room"
+                yield thing.name, f"is listed in `{room}`, which is not a room"
 
 
 def _states(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
@@ -126,26 +126,26 @@ def _synonyms(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
 
 
 def _words(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
-    said: dict[tuple[str, int], str] = {}
+    phrases: dict[tuple[str, int], str] = {}
     for action in knowledge.actions.values():
         for words in action.words:
-            other = said.setdefault((words, action.arity), action.name)
+            other = phrases.setdefault((words, action.arity), action.name)
             if other != action.name:
-                yield action.name, f"is said `{words}`, as {other} is"
+                yield action.name, f"has the phrase `{words}`, as {other} has"
 
 
 def _named(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     for action in knowledge.actions.values():
         for need in (*action.needs, *action.grammar):
             for name in sorted((need.classes | need.also | need.never) - knowledge.objects.keys()):
-                yield action.name, f"names `{name}`, which is no class"
+                yield action.name, f"names `{name}`, which is not a known class"
 
 
 def _usable(knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     for action in knowledge.actions.values():
         for position, need in enumerate(action.grammar):
             if not any(need.accepts(thing.properties, name) for name, thing in knowledge.objects.items()):
-                yield action.name, f"takes no object at all as its {action.roles[position]}"
+                yield action.name, f"accepts no object as its {action.roles[position]}"
 
 
 def _placements(knowledge: Knowledge) -> Iterator[tuple[ObjectClass, ObjectClass, Placement]]:

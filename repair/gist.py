@@ -1,7 +1,7 @@
-"""What of a program is the activity, and what is due to where it was done (thesis 5.5.1).
+"""The gist of a program: the steps that are the activity, not due to the environment (thesis 5.5.1).
 
-A sketch keeps the steps that any environment would ask for. What is here needs no run: which effects are the point of a
-program, which actions are never anybody's point, and what the words of the description ask for.
+A sketch keeps the steps that any environment would ask for. The functions here need no run: the effects meant by a
+program, the actions never meant themselves, and the steps that the description names.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _WITH_TOOLS = {"Wipe": (), "Cut": ("knife",)}
 """Actions that need something in hand that they do not name; part of its name where only some things will do."""
 
 _ANYTHING = frozenset({"thing", "artefact", "being"})
-"""Kinds whose words ask for nothing in particular."""
+"""Kinds too general to be asked for by name."""
 
 _INSERTED = ("preparation", "unsaid", "takes", "frees_hand", "rests", "operates", "dresses")
 
@@ -117,7 +117,7 @@ def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
 
     Steps that only lead to others are never asked for, nor is taking back what the program itself has done.
     """
-    sentences = [_words(text) for text in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", _told(program))]
+    sentences = [_words(text) for text in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", _texts(program))]
     return tuple(
         step.action not in knowledge.group("preparation")
         and not _takes_back(program, number, knowledge)
@@ -126,7 +126,7 @@ def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
     )
 
 
-def _told(program: Program) -> str:
+def _texts(program: Program) -> str:
     return f"{program.title}. {program.description}".lower()
 
 
@@ -147,12 +147,12 @@ def _says(step: Step, sentence: frozenset[str], knowledge: Knowledge) -> bool:
 
 @lru_cache(maxsize=1 << 12)
 def _ways(action: str, knowledge: Knowledge) -> tuple[frozenset[str], ...]:
-    """The words of each way to say an action, objects left out."""
+    """The words of each phrase of an action, objects left out."""
     known = knowledge.actions.get(action)
     if known is None:
         return ()
-    said = (re.sub(r"\{\d\}", " ", known.template), *known.words)
-    return tuple(_words(way) - {"in", "at", "into"} for way in said)
+    phrases = (re.sub(r"\{\d\}", " ", known.template), *known.words)
+    return tuple(_words(phrase) - {"in", "at", "into"} for phrase in phrases)
 
 
 @lru_cache(maxsize=1 << 12)

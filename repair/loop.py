@@ -46,13 +46,13 @@ class Attempt:
 
     @property
     def cause(self) -> tuple[Code, str, tuple[int, ...], Postconditions]:
-        """What it is for: two attempts at one cause are about the same failure, whenever it occurs."""
+        """The failure repaired, whenever it occurs: equal for two attempts at one cause."""
         return self.failure.code, self.failure.action, self.failure.objects, self.missed
 
 
 @dataclass(frozen=True, slots=True)
 class Repaired:
-    """What became of a program in an environment that it was not made for.
+    """The result of repairing a program in an environment that it was not made for.
 
     Attributes:
         program: the last version.
@@ -70,7 +70,7 @@ class Repaired:
 
 
 def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[bool, ...]:
-    """Which of one program's attempts helped: something was changed, and what it was for did not come back at once.
+    """Which of one program's attempts helped: the program changed, and the failure did not come back at once.
 
     Args:
         attempts: in order.
@@ -82,7 +82,7 @@ def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[boo
 
 
 class _Task(NamedTuple):
-    """What a program is repaired for: its goal, said of these nodes."""
+    """What a program is repaired for: its goal, about these nodes."""
 
     goal: Postconditions
     nodes: Mapping[Key, int]
@@ -116,9 +116,9 @@ def repair(
         world: the start.
         goal: what the original achieves in its own environment.
         knowledge, rules: what the world goes by.
-        handlers: what to do about each failure.
+        handlers: by failure code.
         tries: repairs at most.
-        canonical_only: take out of the repaired program what it does not need; costs more than the repairs.
+        canonical_only: remove the steps that the repaired program does not need; costs more than the repairs.
 
     Returns:
         The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
@@ -195,7 +195,7 @@ def _consult(handlers: Mapping[Code, Handler], context: RepairContext) -> tuple[
     name = getattr(handler, "__name__", str(handler))
     try:
         return name, handler(context), ""
-    except Exception as error:  # whatever a handler does wrong is data too
+    except Exception as error:  # a handler's error is data too
         return name, None, f"{name} raised {type(error).__name__}: {error}"
 
 
@@ -220,9 +220,9 @@ def _attempt(attempts: Sequence[Attempt], context: RepairContext, name: str, aft
 
 
 def _given_up(revision: _Revision, attempts: list[Attempt], context: RepairContext, code: Code, why: str) -> Repaired:
-    """The failure keeps saying what could not be repaired."""
+    """The failure keeps the code and text of the one that could not be repaired."""
     last = context.failure
     reason = why or UNREPAIRABLE.get(last.code, "nothing in this environment helps")
-    told = f"{last.code}: {last.expected}" if last.expected else str(last.code)
-    failure = replace(last, code=code, expected=told, actual=f"{last.actual}; {reason}" if last.actual else reason)
+    expected = f"{last.code}: {last.expected}" if last.expected else str(last.code)
+    failure = replace(last, code=code, expected=expected, actual=f"{last.actual}; {reason}" if last.actual else reason)
     return Repaired(revision.program, revision.execution, tuple(attempts), revision.sources, failure)

@@ -1,4 +1,4 @@
-"""Perturbing preconditions: what a program relies on is made otherwise, so that it has to be repaired (thesis 5.5.4).
+"""Perturbing preconditions: conditions of a program are violated, so that it has to be repaired (thesis 5.5.4).
 
 A perturbation takes conditions away and asks for others. The thesis drops sitting, lying and being at reach and swaps
 plugged, on, open and free; the others here are ours.
@@ -20,7 +20,7 @@ from hearth.schemas.program import Program
 from hearth.simulation.world.bits import indices
 
 MOST = 6
-"""Perturbations of one draw, where nothing else is said."""
+"""Perturbations of one draw, by default."""
 
 MAX_STALE = 8
 """Draws in a row that bring nothing new before no more are made."""
@@ -28,7 +28,7 @@ MAX_STALE = 8
 
 @dataclass(frozen=True, slots=True)
 class Perturbation:
-    """One thing made otherwise.
+    """A perturbation: conditions dropped and added.
 
     Attributes:
         kind: its name in `PERTURBATIONS`.
@@ -42,11 +42,11 @@ class Perturbation:
 
     @property
     def about(self) -> Condition:
-        """The condition it is told by: the one dropped, else the one added."""
+        """The condition that identifies it: the one dropped, else the one added."""
         return (self.dropped or self.added)[0]
 
     def claims(self) -> frozenset[tuple[str, Key]]:
-        """What it settles, each as (matter, object); two that settle the same exclude each other."""
+        """The (matter, object) pairs it determines; two perturbations that share one exclude each other."""
         settled = ((_MATTER.get(c.name, "place"), c.objects[0]) for c in (*self.dropped, *self.added))
         off = (("switch", c.objects[0]) for c in self.added if c.name == "unplugged")
         return frozenset((*settled, *off))
@@ -67,13 +67,13 @@ class Case:
 
     @property
     def knowledge(self) -> Knowledge:
-        """What the home goes by."""
+        """The knowledge of the home."""
         return self.base.knowledge
 
 
 @dataclass(frozen=True, slots=True)
 class Perturbed:
-    """Preconditions made otherwise, and how."""
+    """Perturbed preconditions, with the perturbations."""
 
     conditions: Preconditions
     perturbations: tuple[Perturbation, ...]
@@ -125,7 +125,7 @@ def _drawn(case: Case, every: Sequence[Perturbation], chances: Chances, rng: Ran
 
 
 def _chosen(every: Sequence[Perturbation], chances: Chances, rng: Random) -> tuple[Perturbation, ...]:
-    """Some of the candidates, none of which settles what another does."""
+    """Some of the candidates, no two of which share a claim."""
     (way,) = rng.choices(tuple(chances.draws), tuple(chances.draws.values()))
     weights = [chances.kinds.get(one.kind, 0.0) for one in every]
     if way == "each":
@@ -146,7 +146,7 @@ def _chosen(every: Sequence[Perturbation], chances: Chances, rng: Random) -> tup
 
 
 def applied(conditions: Preconditions, perturbations: Sequence[Perturbation]) -> Preconditions:
-    """The conditions after all perturbations: first what moves things, since the rest is said of where they are."""
+    """The conditions after all perturbations: first those that move things, since the others depend on their places."""
     left = conditions.without(*(c for one in perturbations for c in one.dropped))
     added = [c for one in perturbations for c in one.added]
     moving = Preconditions(tuple(c for c in added if _MATTER.get(c.name, "place") == "place"))
@@ -166,7 +166,7 @@ def _swap(kind: str, pairs: Mapping[str, str]) -> Perturber:
 
 
 def _plugged(case: Case) -> Iterator[Perturbation]:
-    """What was plugged in and off is not, or the reverse, if it has a plug that can be put in."""
+    """A device plugged in and off is unplugged, or the reverse, if it has a plug that can be put in."""
     for one in _swap("plugged", {"plugged": "unplugged", "unplugged": "plugged"})(case):
         home = case.base.home
         lacking = (i for i in case.base.instances(one.about.objects[0][0]) if not home.able("PlugIn") >> i & 1)
@@ -187,7 +187,7 @@ def _drop(kind: str, *names: str) -> Perturber:
 
 
 def _at_reach(case: Case) -> Iterator[Perturbation]:
-    """What was at reach is where it belongs, but not at reach."""
+    """An object at reach is where it belongs, but not at reach."""
     for condition in case.conditions:
         if condition.name == "nearby":
             yield Perturbation("at_reach", (condition,))
@@ -196,14 +196,14 @@ def _at_reach(case: Case) -> Iterator[Perturbation]:
 
 
 def _container(case: Case) -> Iterator[Perturbation]:
-    """What was on or in something is in something else, which is closed."""
+    """An object on or in something is in another container, which is closed."""
     for condition in case.conditions:
         if condition.name in ("in", "inside") and _fits_closed_container(case, *condition.objects):
             yield _replaced(case, "container", condition, condition.instead("in_closed_container"))
 
 
 def _fits_closed_container(case: Case, key: Key, now: Key) -> bool:
-    """Whether something other than where it is now could be closed around it."""
+    """Whether it belongs in a container other than its present place that can be closed."""
     same = case.knowledge.same_class(now[0])
     classes = case.base.home.classes
     spots = case.base.spots(key[0]).choices
@@ -213,7 +213,7 @@ def _fits_closed_container(case: Case, key: Key, now: Key) -> bool:
 
 
 def _location(case: Case) -> Iterator[Perturbation]:
-    """What was in one room is in another."""
+    """An object in one room is in another."""
     for condition in case.conditions:
         if condition.name == "location" and _is_portable(case, condition.objects[0]):
             yield _replaced(case, "location", condition, condition.instead("other_room"))
@@ -263,7 +263,7 @@ def _has_door(case: Case, room: str) -> bool:
 
 
 def _pet(case: Case) -> Iterator[Perturbation]:
-    """A cat or a dog is on the seat, and what else it takes to leave no room."""
+    """A cat or a dog is on the seat, and enough other things to leave no room."""
     for condition in case.conditions:
         if condition.name == "free":
             added = tuple(condition.instead(name) for name in ("pet", "occupied"))
@@ -271,7 +271,7 @@ def _pet(case: Case) -> Iterator[Perturbation]:
 
 
 def _dirty(case: Case) -> Iterator[Perturbation]:
-    """What the program cleans is dirty."""
+    """An object that the program cleans is dirty."""
     seen: set[Key] = set()
     cleaning = case.knowledge.achieving("CLEAN")
     for number, step in enumerate(case.program.steps):
@@ -320,6 +320,6 @@ _MATTER: dict[str, str] = {
     **dict.fromkeys(("free", "occupied", "pet"), "seat"),
     "full_hands": "hands", "holds": "hands", "doors_closed": "way", "facing": "view", "facing_away": "view",
 }  # fmt: skip
-"""What each condition is about; the rest is about where its first object is."""
+"""The matter of each condition; others are about the place of their first object."""
 
 assert set(_MATTER) >= {*STATE_OF, "sitting", "lying", "free", "occupied"}

@@ -26,7 +26,7 @@ ENVIRONMENTS = 2
 """In how many homes a sketch has to be enough; a third changed none of 179 sketches."""
 
 _BARE = Size(0, 0, 0)
-"""Random things that nobody names make no difference to a sketch."""
+"""Random things that the program does not name make no difference to a sketch."""
 
 
 class _Place(NamedTuple):
@@ -37,7 +37,7 @@ class _Place(NamedTuple):
 
 
 _EXPANDING: Mapping[Code, Handler] = {code: one for code, one in HANDLERS.items() if code is not Code.GOAL_LOST}
-"""All handlers but the one that brings about what is missing at the end: it would make any step needless."""
+"""All handlers but the one that appends what the goal lacks, which would make any step needless."""
 
 Keep = tuple[bool, ...]
 """For each step of a program, whether its sketch keeps it."""
@@ -51,7 +51,7 @@ def sketch(
     record_id: str = "",
     original: tuple[Preconditions, Execution] | None = None,
 ) -> Keep:
-    """The smallest part of a program from which repairing reaches what it is for, and what only its words ask for.
+    """The smallest part of a program from which repairing reaches the effects meant, with the steps its text names.
 
     Steps are left out one by one, from the first; one stays out if in every environment the rest can still be
     repaired so that it reaches the effects meant. Actions that no repair inserts stay. What is left out comes back
@@ -99,7 +99,7 @@ def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
 def _smallest(
     program: Program, places: Sequence[_Place], goal: Postconditions, passed: Postconditions, knowledge: Knowledge
 ) -> Keep:
-    """Tried in the first environment alone; in all of them if what that gives is not enough in the others."""
+    """Tried in the first environment alone; in all of them if its result does not suffice in the others."""
     keep = [True] * len(program.steps)
     for tried in (places[:1], places):
         keep = [True] * len(program.steps)

@@ -1,4 +1,4 @@
-"""Canonical repairs: nothing in them that is not needed.
+"""Canonical repairs, without unneeded steps.
 
 A step that a repair has inserted stays only if without it the program stops or misses its goal; no walk leads to where
 the character has just walked; nothing is opened only to be closed again.
@@ -41,7 +41,7 @@ def resume(execution: Execution, program: Program, first: int, rules: Rules) -> 
 def trim(
     original: Program, execution: Execution, sources: tuple[int, ...], goal: Postconditions, rules: Rules
 ) -> tuple[Execution, tuple[int, ...]]:
-    """Take out what is not needed, until nothing more can be taken out.
+    """Remove unneeded steps, until no more can be removed.
 
     Args:
         original: the program before any repair.
@@ -122,7 +122,7 @@ def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int, 
 
 
 def _last_walk(steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> object:
-    """Where the walk before this walk went; None if this is no walk or the first."""
+    """Where the walk before this walk went; None if this is not a walk or the first."""
     if steps[number].action not in walks:
         return None
     earlier = (s for s in reversed(steps[:number]) if s.agent == steps[number].agent and s.action in walks)

@@ -1,4 +1,4 @@
-"""Augmenting a program in a home: perturb what it relies on, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
+"""Augmenting a program in a home: perturb its preconditions, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A program in a perturbed environment, and what became of it.
+    """A program in a perturbed environment, and its repair.
 
     Attributes:
         number: which of its program's pairs, from 0.
-        perturbations: what was made otherwise.
+        perturbations: those of its preconditions.
         environment: the perturbed environment, with the original program bound in it.
         program: the repaired program, bound.
         sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
@@ -93,7 +93,7 @@ def augment(
     options: Options = Options(),
     original: tuple[Preconditions, Execution] | None = None,
 ) -> Augmented | Failure:
-    """Repaired versions of a program for environments in which something it relies on is otherwise.
+    """Repaired versions of a program for environments that violate some of its preconditions.
 
     Args:
         program: with instances as counters.
@@ -133,10 +133,10 @@ def augment(
 
 @lru_cache(maxsize=8)
 def load_chances(path: Path) -> Chances:
-    """Read probabilities as perturbations.yaml says them.
+    """Read the probabilities of a file like perturbations.yaml.
 
     Raises:
-        HearthError: BAD_TABLE, naming an unknown perturbation or draw, or a value that is no probability.
+        HearthError: BAD_TABLE, naming an unknown perturbation or draw, or a value that is not a probability.
     """
     import yaml
 
@@ -159,12 +159,12 @@ def _faults(data: object) -> Iterator[str]:
             if name not in known:
                 yield f"`{name}` is none of the {part}"
             elif not isinstance(value, int | float) or value < 0 or (part == "kinds" and value > 1):
-                yield f"{value!r} is no {'probability' if part == 'kinds' else 'weight'} of `{name}`"
+                yield f"{value!r} is not a {'probability' if part == 'kinds' else 'weight'} of `{name}`"
     if not any(isinstance(weight, int | float) and weight > 0 for weight in data["draws"].values()):
         yield "no draw has a weight"
     most = data.get("most", MOST)
     if not isinstance(most, int) or most < 1:
-        yield "`most` is no count"
+        yield "`most` is not a count"
 
 
 def default_chances() -> Chances:

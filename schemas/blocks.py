@@ -14,7 +14,7 @@ _SENTENCE_WORDS = 9
 
 @dataclass(slots=True)
 class Splitter:
-    """Tells, line by line, which line begins a program.
+    """Decides, line by line, where a program begins.
 
     A plain line after a blank one begins the next program once steps were seen. Where none were, a title that nobody
     wrote steps for must not become a part of its neighbour: two blank lines part them, or one where a description

@@ -1,4 +1,4 @@
-"""What one graph has that another has not: the form in which ticks, environments and final graphs are published.
+"""The difference of two graphs: the form in which ticks, environments and final graphs are published.
 
 `encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
 moved (`simulation.world.change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
@@ -19,7 +19,7 @@ State = tuple[int, str]
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What came and went; all sorted.
+    """Added and removed nodes, edges and states; all sorted.
 
     A removed node takes its edges and states with it, and an added one brings its states; one that is both gives way to
     another of its id. What is removed and cleared is so before anything is added and set.
@@ -76,12 +76,12 @@ class Parts(NamedTuple):
 
 
 def encode(before: EnvironmentGraph, after: EnvironmentGraph) -> Change:
-    """What must be done to `before` to get `after`; order and repetitions make no difference."""
+    """The change from `before` to `after`; order and repetitions make no difference."""
     return difference(_parts(before), _parts(after))
 
 
 def difference(before: Parts, after: Parts) -> Change:
-    """What must be done to `before` to get `after`."""
+    """The change from `before` to `after`."""
     removed = {i for i, node in before.nodes.items() if not _same(node, after.nodes.get(i))}
     new = sorted(i for i in after.nodes if i in removed or i not in before.nodes)
     edges, past, now = before.edges, before.states, after.states

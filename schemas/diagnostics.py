@@ -35,7 +35,7 @@ class Diagnostic:
     source: str = ""
 
     def at(self, file: str) -> Diagnostic:
-        """The same fault, said to stand in `file`."""
+        """The same fault, placed in `file`."""
         return replace(self, file=file)
 
     def place(self) -> str:

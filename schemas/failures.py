@@ -11,8 +11,7 @@ class Code(StrEnum):
     """A failure's kind. Handlers, reports and scores look things up by it; nothing is parsed back from text.
 
     Attributes:
-        number: the id under which it is published, fixed for ever whatever the order here: a new code gets the next
-            number, one that goes leaves a gap.
+        number: the published id, which never changes: a new code gets the next number, a removed one leaves a gap.
     """
 
     number: int
@@ -47,15 +46,15 @@ class Code(StrEnum):
     AMBIGUOUS = "AMBIGUOUS", 19
     FUZZY_MATCH = "FUZZY_MATCH", 20
     HEARD_NEARLY = "FUZZY_MATCH", 20  # its name in datasets of version 0.1.0
-    # What an action is done to
+    # Objects of an action
     NOT_AFFORDED = "NOT_AFFORDED", 21
     NOT_SIMULATED = "NOT_SIMULATED", 22
-    # What a program says as a whole
+    # A program as a whole
     NEAR_DUPLICATE = "NEAR_DUPLICATE", 23
     NO_EFFECT = "NO_EFFECT", 24
     OFF_TOPIC = "OFF_TOPIC", 25
     UNDECLARED = "UNDECLARED", 26
-    # Where and how the character is
+    # Place and posture of the character
     NOT_CLOSE = "NOT_CLOSE", 27
     NOT_FACING = "NOT_FACING", 28
     NOT_IN_ROOM = "NOT_IN_ROOM", 29

@@ -58,7 +58,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class EnvironmentGraph:
-    """Nodes and edges, in the order given; `extra` keeps what a file said beyond them."""
+    """Nodes and edges, in the order given; `extra` keeps the file's other fields."""
 
     nodes: tuple[Node, ...] = ()
     edges: tuple[Edge, ...] = ()

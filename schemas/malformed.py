@@ -1,4 +1,4 @@
-"""Why a line is no step: the first thing that is wrong with it, where it stands, and what to write instead."""
+"""Diagnoses a line that is not a step: its first fault, the place, and the remedy."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _fault(line: str, at: int) -> Fault:
     if agent:
         if not _NAMED_AGENT.fullmatch(agent[0]):
             remedy = "agents are <char0>, <char1>, ...; leave it out where there is one agent"
-            return agent.start(), agent.end(), f"`{agent[0][:40]}` is no agent", remedy, Code.SYNTAX
+            return agent.start(), agent.end(), f"`{agent[0][:40]}` is not an agent", remedy, Code.SYNTAX
         at = _skipped(line, agent.end())
     action = _BRACKETS.match(line, at)
     if action is None:

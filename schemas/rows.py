@@ -1,8 +1,8 @@
 """A row of every table: what the stages pass on, and what is published.
 
-Nested types are used where a thing belongs to its row. A column says what it means beside its type; dataset cards read
-that. Node ids are those of the environment's graph; steps and ticks count from 0. Every column may be null in a file:
-`| None` says where it is in fact. `schemas.tables` makes Arrow schemas of these declarations, column by column.
+Nested types are used where a thing belongs to its row. Each column has its meaning beside its type, for dataset cards.
+Node ids are those of the environment's graph; steps and ticks count from 0. In a file any column may be null; `| None`
+marks those that are. `schemas.tables` makes Arrow schemas of these declarations, column by column.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class ScriptRow(TypedDict):
 
 
 class NamedRow(TypedDict):
-    """Where a program comes from, and what was said with it."""
+    """Where a program comes from, with its title, description and declarations."""
 
     program_id: Annotated[str, "stable id of the program"]
     origin: Annotated[str, "crowd, release, text, spoken, records, sketches, scenes, synthetic or augmented"]
@@ -69,7 +69,7 @@ class NamedRow(TypedDict):
     place: Annotated[str, "file and line inside the source"]
     description_id: Annotated[str, "the description it was written for"]
     title: Annotated[str, "name of the activity as written"]
-    description: Annotated[str, "what is done, in words"]
+    description: Annotated[str, "what is done, in sentences"]
     scene: Annotated[str | None, "room the worker was shown"]
     worker: Annotated[str | None, "salted hash of the worker's id"]
     platform: Annotated[str | None, "crowd-sourcing platform"]
@@ -78,7 +78,7 @@ class NamedRow(TypedDict):
 
 
 class _Kind(TypedDict):
-    kind: Annotated[str, "program, description where only words were given, sketch, or scene for a graph alone"]
+    kind: Annotated[str, "program, description where there is no program, sketch, or scene for a graph alone"]
 
 
 class WrittenGroundingRow(TypedDict):
@@ -176,7 +176,7 @@ class RenderedRow(TypedDict):
     """A picture."""
 
     execution_id: Annotated[str, "the execution filmed"]
-    tick: Annotated[int, "the world after so many ticks"]
+    tick: Annotated[int, "the number of ticks done before the picture"]
     camera: Annotated[str, "name of the camera"]
     modality: Annotated[str, "rgb, ids, depth, ..."]
     width: Annotated[int, "pixels"]
@@ -216,7 +216,7 @@ class RejectRow(TypedDict):
     """A fault of a record that was refused."""
 
     stage: Annotated[str, "which stage refused it"]
-    record_id: Annotated[str, "the record, or the file when nothing in it could be told apart"]
+    record_id: Annotated[str, "the record, or the file when no records could be distinguished"]
     code: Annotated[str, "why"]
     file: Annotated[str, "source and file inside it"]
     line: Annotated[int, "from 1; 0 when it concerns the whole file"]
@@ -249,7 +249,7 @@ class ActivityRow(TypedDict):
 
     activity_id: Annotated[str, "the title in lower case, words joined by underscores"]
     title: Annotated[str, "the commonest spelling"]
-    scenes: Annotated[list[str], "rooms it was told for"]
+    scenes: Annotated[list[str], "rooms its workers were shown"]
     descriptions: Annotated[int, "how many descriptions"]
     programs: Annotated[int, "how many programs, augmented ones included"]
 

@@ -36,14 +36,14 @@ _MODIFIER = re.compile(r"([a-z]+)=(\S+)")
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """What a text holds: programs as far as they could be read, and every fault."""
+    """The programs of a text as far as they could be read, and every fault."""
 
     programs: tuple[Program, ...]
     diagnostics: tuple[Diagnostic, ...]
 
 
 def parse_programs(text: str, file: str = "") -> Parsed:
-    """Read every program of a text; a line that is no step becomes a diagnostic, never a silent loss."""
+    """Read every program of a text; a line that is not a step becomes a diagnostic, never a silent loss."""
     return _parse(text, file, several=True)
 
 

@@ -41,8 +41,8 @@ def _schema(row: type, known: Iterable[pa.Field] = (), otherwise: str = "") -> p
 
     Args:
         row: a TypedDict.
-        known: where columns that say nothing themselves find their comments, by name.
-        otherwise: the comment of those that it lacks, with their name put in.
+        known: fields with comments, for columns of the same name that have none.
+        otherwise: the comment of columns in neither, with their name put in.
     """
     comments = {field.name: field.metadata[b"comment"] for field in known}
     fields = []

@@ -1,4 +1,4 @@
-"""Running programs: ticks of instructions, each giving a new world or saying why not."""
+"""Running programs: ticks of instructions, each giving a new world or a failure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """What became of a program.
+    """The result of running a program.
 
     Attributes:
         program: what was run, bound to node ids.
@@ -93,8 +93,8 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     result = action.rule(world, instruction.agent, o, s, rules)
     if result.__class__ is Failure:
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
-        said = (result.objects, result.names, result.expected, result.actual)
-        return Failure(result.code, result.tick, instruction.agent, instruction.action, *said)
+        rest = (result.objects, result.names, result.expected, result.actual)
+        return Failure(result.code, result.tick, instruction.agent, instruction.action, *rest)
     return result
 
 
@@ -108,11 +108,11 @@ def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:
 def tick(
     world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT
 ) -> tuple[World, dict[int, Failure]]:
-    """What several agents make of one tick, each failing for itself.
+    """One tick of several agents, each failing for itself.
 
     The rule: each instruction must be possible in the world as the tick begins; those that are, are done in order of
     agent number, and one that an earlier agent's change has made impossible is a CONFLICT. So of two who grab one cup
-    the lower number gets it; who walks to another arrives where that one has gone.
+    the lower number gets it; an agent that walks to another arrives where that one has walked.
 
     Args:
         world: as the tick begins.
@@ -120,7 +120,7 @@ def tick(
         rules: how actions are to be read.
 
     Returns:
-        The world after what could be done, and for the others why not.
+        The world after the instructions that could be done, and the failures of the others.
     """
     failures: dict[int, Failure] = {}
     now = world

@@ -1,4 +1,4 @@
-"""Why a step could be done: each check of its action in the knowledge's words, and the edges or states it held by."""
+"""Why a step could be done: each check of its action, and the edges or states by which it held."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class _Cast:
-    """A world and who plays which variable."""
+    """A world and a binding of the variables."""
 
     world: World
     agent: Agent
@@ -71,8 +71,8 @@ def _witness(formula: Formula, cast: _Cast) -> str:
     if isinstance(formula, Or):
         return next((text for part in formula.parts if (text := _witness(part, cast))), "")
     if isinstance(formula, Literal):
-        tell = (_TELL_NOT if formula.negated else _TELL).get(formula.name)
-        return tell(formula, cast) if tell else ""
+        find = (_NEGATED_WITNESSES if formula.negated else _WITNESSES).get(formula.name)
+        return find(formula, cast) if find else ""
     if isinstance(formula, And):
         return ", ".join(text for part in formula.parts if (text := _witness(part, cast)))
     if isinstance(formula, Some) and "REMEMBERS" in str(formula):
@@ -156,12 +156,12 @@ def _edge(atom: Literal[Term], cast: _Cast) -> str:
     return f"character {atom.name} {cast.name(x)}" if atom.name == "FACING" and cast.agent.facing >> x & 1 else ""
 
 
-_TELL_NOT: dict[str, Callable[[Literal[Term], _Cast], str]] = {
+_NEGATED_WITNESSES: dict[str, Callable[[Literal[Term], _Cast], str]] = {
     "hidden": _open,
     "state": _states,
 }
 
-_TELL: dict[str, Callable[[Literal[Term], _Cast], str]] = {
+_WITNESSES: dict[str, Callable[[Literal[Term], _Cast], str]] = {
     "FACING": _edge,
     "affords": _affords,
     "close": _close,

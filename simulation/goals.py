@@ -1,4 +1,4 @@
-"""How far a goal is reached, kept up to date by what changes (thesis 6.3, tables B.1 and C.2)."""
+"""The progress of a goal, updated by changes (thesis 6.3, tables B.1 and C.2)."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def _check(literal: Literal[Name], found: Candidates, home: Home) -> None:
     """Refuse a literal that no change could make hold, or about what the home and its knowledge do not have."""
     kind, known = ("state", STATE_ID.keys()) if len(literal.terms) == 1 else ("relation", _RELATIONS)
     if literal.name not in known:
-        raise _fault(Code.SYNTAX, literal, f"{literal.name} is no {kind}")
+        raise _fault(Code.SYNTAX, literal, f"{literal.name} is not a known {kind}")
     for term, nodes in zip(literal.terms, (found.subjects, found.targets), strict=False):
         if nodes or term == AGENT:
             continue
@@ -120,7 +120,7 @@ def _check(literal: Literal[Name], found: Candidates, home: Home) -> None:
         if term.startswith(f"{AGENT}:"):
             raise _fault(Code.UNKNOWN_AGENT, literal, f"the home has no {term}")
         if home.knowledge.object_class(term) is None:
-            raise _fault(Code.UNKNOWN_OBJECT, literal, f"`{term}` is no class")
+            raise _fault(Code.UNKNOWN_OBJECT, literal, f"`{term}` is not a known class")
 
 
 def _fault(code: Code, literal: Literal[Name], message: str) -> HearthError:

@@ -23,7 +23,7 @@ UNBOUND: Mapping[Any, int] = {}
 """Nothing is bound. A binding has the node ids of a program's objects, or of variables; characters need none."""
 
 PETS = ("cat", "dog")
-"""What may lie on a seat that is wanted."""
+"""Animals that may lie on a seat."""
 
 Unary = Callable[[World, int], bool]
 """Whether a predicate holds of a node."""
@@ -78,7 +78,7 @@ class Candidates(NamedTuple):
     by_target: bool
 
     def met(self, world: World) -> tuple[int, ...]:
-        """What makes the literal hold in a world: the set of subjects, or for each character the set of targets."""
+        """The candidates for which the literal holds in a world: subjects, or for each character targets."""
         name, _, negated = self.literal
         if self.by_target:
             related, targets = binary(name), self.targets

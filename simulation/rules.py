@@ -1,4 +1,4 @@
-"""Named options of the engine: where the release's accidents and people's expectations part."""
+"""Named options of the engine: where the release's accidents and people's expectations differ."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 
 class Rules(NamedTuple):
-    """How actions are to be read.
+    """Options of actions.
 
     Attributes:
         origin: which place Grab remembers for PutObjBack when several would do. `sensible`: what the object stood on or

@@ -1,4 +1,4 @@
-"""Packed sources read in place: members of a zip, gzip and zstd files; refused where they unpack to far too much."""
+"""Packed sources read in place: members of a zip, gzip and zstd files; refused where they unpack to too many bytes."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def members(found: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
 
 
 def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
-    """Why a member is not read, from what the directory says of it."""
+    """Why a member is not read, by its entry in the directory."""
     if leaves(info.filename):
         message = f"`{info.filename[:100]}` leaves the archive"
         return Reject.of(Code.BAD_ARCHIVE, message, file=place, found=info.filename[:200], suggestion="pack it anew")
@@ -93,16 +93,16 @@ def refusal_of(info: zipfile.ZipInfo, place: str) -> Reject | None:
     if info.flag_bits & 1:
         return Reject.of(Code.BAD_ARCHIVE, "it is encrypted", file=place, suggestion="pack it without a password")
     if bomb(info.file_size, info.compress_size):
-        return Reject.of(Code.FILE_TOO_LARGE, _told(info.file_size, info.compress_size), file=place)
+        return Reject.of(Code.FILE_TOO_LARGE, _reported(info.file_size, info.compress_size), file=place)
     return None
 
 
 def bomb(size: int, packed: int) -> bool:
-    """Whether so many bytes of so few are more than any text packs to."""
+    """Whether the ratio of unpacked to packed bytes is beyond that of any text."""
     return size > LARGEST_MEMBER or (size > _HARMLESS and size > packed * MOST_PACKED)
 
 
-def _told(size: int, packed: int) -> str:
+def _reported(size: int, packed: int) -> str:
     return f"a zip bomb: {packed:,} bytes that unpack to {size:,}"
 
 
@@ -147,7 +147,7 @@ def _buffered(stream: io.RawIOBase) -> BinaryIO:
 
 
 class _Guarded(io.RawIOBase):
-    """A stream that is unpacked, which ends in `DamagedError` where it is broken or too much comes of it."""
+    """A stream that is unpacked, which ends in `DamagedError` where it is damaged or too large."""
 
     def __init__(self, stream: IO[bytes], name: str, packed: int, behind: IO[bytes] | None = None) -> None:
         self._stream, self._name, self._packed, self._behind = stream, name, packed, behind
@@ -163,7 +163,7 @@ class _Guarded(io.RawIOBase):
             raise _damaged(self._name, f"can't be unpacked: {error}") from error
         self._size += len(data)
         if bomb(self._size, self._packed):
-            fault = Reject.of(Code.FILE_TOO_LARGE, _told(self._size, self._packed), file=self._name)
+            fault = Reject.of(Code.FILE_TOO_LARGE, _reported(self._size, self._packed), file=self._name)
             raise DamagedError(fault.diagnostics)
         buffer[: len(data)] = data
         return len(data)

@@ -104,7 +104,7 @@ def walk(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.rglob("*"), key=lambda p: p.relative_to(folder).as_posix()):
         inside = path.relative_to(folder)
         hidden = any(part.startswith(".") for part in inside.parts)
-        # Links to folders are not followed, so that only a file that is one itself can lead elsewhere.
+        # Links to folders are not followed, so that only a file that is one itself can lead outside.
         if not hidden and path.is_file() and (not path.is_symlink() or path.resolve().is_relative_to(root)):
             yield path
 

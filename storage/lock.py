@@ -21,7 +21,7 @@ def locked(folder: Path) -> Iterator[None]:
         HearthError: LOCKED, naming the process that builds there now; UNWRITABLE, when the folder cannot be made.
     """
     path = folder.resolve() / ".lock"
-    # What is called a lock here is held by the system, and so is free as soon as its process is no more.
+    # The system holds the lock, and frees it as soon as its process has ended.
     lock = FileLock(path, blocking=False, thread_local=False, is_singleton=True, fallback_to_soft=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

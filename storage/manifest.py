@@ -47,7 +47,7 @@ class Manifest:
         return value_digest(self.content["files"])
 
     def write(self) -> None:
-        """Say that the stage is complete: the last of its files, since nobody looks for what a later one left."""
+        """Write the manifest, which marks the stage as complete; it is the last file written."""
         write_json(self.folder / NAME, self.content)
 
     def intact(self) -> bool:
@@ -64,7 +64,7 @@ def read_manifest(folder: Path) -> Manifest | None:
 
 
 def describe(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: str, **facts: Any) -> Manifest:
-    """Describe a stage whose other files are all in place; that it is complete is only said by `write`."""
+    """The manifest of a stage whose other files are all in place; `write` marks the stage as complete."""
     content = {
         "format": FORMAT,
         "version": VERSION,

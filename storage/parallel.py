@@ -31,7 +31,7 @@ def begin() -> None:
 
 
 def _end_with_parent() -> None:
-    """Workers wait for work on a pipe that each of them holds open: nothing else tells them that none will come."""
+    """Workers wait for work on a pipe that each of them holds open: without this they would wait for ever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         connection.wait([parent.sentinel])
@@ -39,11 +39,11 @@ def _end_with_parent() -> None:
 
 
 Seen = Callable[[int, int | None], None]
-"""Told how many are done, and of how many if that is known."""
+"""Reports progress: items done and, if known, the total."""
 
 
 def unseen(done: int, total: int | None) -> None:
-    """Nobody is told."""
+    """Reports nothing."""
 
 
 def spread(
@@ -55,7 +55,7 @@ def spread(
         function: of a module, so that other processes find it.
         jobs: what it is called with, one after the other.
         workers: processes; below 2, or for a single job, all is done in this one.
-        seen: told how many jobs are done.
+        seen: called with the number of jobs done.
     """
     for done, result in enumerate(_results(function, jobs, workers), 1):
         seen(done, len(jobs))

@@ -1,4 +1,4 @@
-"""Partitions on disk: Parquet files that say in their own metadata what they were made from and what they count.
+"""Partitions on disk: Parquet files with their key and their counts in their metadata.
 
 A partition is one `part-00000.parquet` for each of the stage's tables, and, where records were refused, a hidden
 `.rejects-00000.parquet` that ends up in the stage's `rejects.parquet`. The part of the last table is renamed last and
@@ -38,7 +38,7 @@ class Counts:
         partial: parts refused of records that went on.
         rows: rows written, by table.
         codes: why records were refused whole.
-        tally: what the stage counts about its rows.
+        tally: the stage's own counts of its rows.
     """
 
     records_in: int = 0

@@ -1,4 +1,4 @@
-"""What a stage refuses, and why: the other half of every ledger."""
+"""Records that a stage refuses, with codes: the other half of every ledger."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ class Reject:
 
     @classmethod
     def failed(cls, failure: Failure, file: str = "", line: int = 0, where: str = "") -> Reject:
-        """A reject for a failure of the engine or of grounding; `where` tells in which home or environment."""
+        """A reject for a failure of the engine or of grounding; `where` names the home or environment."""
         message = f"{failure.message()}, {where}" if where else failure.message()
         return cls((Diagnostic(failure.code, message, file, line, found=" ".join(failure.names)),))
 
     @classmethod
     def caused(cls, error: BaseException, file: str = "") -> Reject:
-        """A reject for an exception: a `HearthError` keeps its faults, another is ours and says where it arose."""
+        """A reject for an exception: a `HearthError` keeps its faults, any other is internal."""
         if isinstance(error, HearthError) and error.diagnostics:
             return cls.because(error.diagnostics, file)
         frames = traceback.extract_tb(error.__traceback__)
@@ -65,7 +65,7 @@ class Reject:
         return INTERNAL_ERROR if self.internal else str(self.diagnostics[0].code)
 
     def rows(self) -> list[Row]:
-        """For each fault, what the rejects table says of it."""
+        """The row of the rejects table for each fault."""
         return [
             {
                 "code": self.code if self.internal else str(fault.code),

@@ -1,4 +1,4 @@
-"""Folders that live elsewhere: on S3 or anything else that fsspec knows, worked on in a folder of this machine.
+"""Remote folders (S3 or any other store of fsspec), worked on in a local copy.
 
 A build into a store works in a local copy of it. Complete parts go to the store at once, a stage's manifest last, so
 that the store, too, only ever holds what is whole; a build on another machine takes up what it finds there. Datasets
@@ -68,7 +68,7 @@ class Store:
         """
         path = self._path(_LOCK)
         me = {"host": socket.gethostname(), "pid": os.getpid()}
-        with _told(self.url):
+        with _reported(self.url):
             try:
                 self._fs.pipe_file(path, orjson.dumps(me), mode="create")
             except (FileExistsError, OSError) as error:
@@ -78,11 +78,11 @@ class Store:
         try:
             yield
         finally:
-            with _told(self.url):
+            with _reported(self.url):
                 self._fs.rm_file(path)
 
     def _take_over(self, path: str, me: dict[str, Any], error: OSError) -> None:
-        """Take a lock whose holder on this machine is no more."""
+        """Take over a lock whose process on this machine has ended."""
         self._fs.invalidate_cache()
         held = orjson.loads(self._fs.cat_file(path))
         if held["host"] != me["host"] or Path(f"/proc/{int(held['pid'])}").exists():
@@ -100,7 +100,7 @@ class Store:
         What only this machine built since its last visit goes to the store; where another machine has built there, the
         local copy is fetched anew.
         """
-        with _told(self.url):
+        with _reported(self.url):
             self._fs.invalidate_cache()
             theirs = self._read(_REVISION)
             mine = (self.work / _REVISION).read_bytes() if (self.work / _REVISION).exists() else None
@@ -118,7 +118,7 @@ class Store:
     def attend(self, revision: str) -> None:
         """See, in a worker on any machine, that the local copy is of the build at hand: all but its parts."""
         if read_text(self.work / _REVISION) != revision:
-            with _told(self.url):
+            with _reported(self.url):
                 shutil.rmtree(self.work, ignore_errors=True)
                 self._get(name for name in self._names() if _is_plain(name))
                 self.work.mkdir(parents=True, exist_ok=True)
@@ -127,18 +127,18 @@ class Store:
     def fetch(self, path: Path) -> None:
         """See that a file of the local copy is there."""
         if not path.exists():
-            with _told(self.url):
+            with _reported(self.url):
                 self._get([path.relative_to(self.work).as_posix()])
 
     def push(self, paths: Iterable[Path]) -> None:
         """Put files of the local copy into the store, one after the other."""
-        with _told(self.url):
+        with _reported(self.url):
             for path in paths:
                 self._put(path.relative_to(self.work).as_posix())
 
     def begin(self, stage: str) -> None:
         """Make the store say that a stage is not complete."""
-        with _told(self.url):
+        with _reported(self.url):
             path = self._path(f"{stage}/{MANIFEST}")
             if self._fs.exists(path):
                 self._fs.rm_file(path)
@@ -148,11 +148,11 @@ class Store:
 
         Args:
             stage: its name.
-            whole: its parts, too, are put there anew: those that are there are of another build.
+            whole: its parts, too, are put there anew: those in the store are of another build.
         """
         if whole:
             self.begin(stage)
-        with _told(self.url):
+        with _reported(self.url):
             self._sync(stage, whole)
             for name in self._names():
                 if whole and name.startswith(f"{beside(Path(stage))}/"):
@@ -236,7 +236,7 @@ def fetched(path: str | Path) -> Path:
     url = url_of(path)
     if url is None:
         return Path(path)
-    with _told(url):
+    with _reported(url):
         fs, root = _filesystem(url)
         fs.invalidate_cache()
         copy = _temporary_folder(os.getpid()) / f"hearth-{os.getuid()}-read-{value_digest(url)[:16]}"
@@ -333,7 +333,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _is_plain(name: str) -> bool:
-    """Whether a file is none of the parts, which never change under their name while a build goes on."""
+    """Whether a file is not a part; parts never change under their name while a build goes on."""
     base = name.rsplit("/", 1)[-1]
     return not (base.startswith((".", "part-")) and base.endswith(".parquet")) and base not in (_LOCK, _REVISION)
 
@@ -360,8 +360,8 @@ def _filesystem(url: str) -> tuple[Any, str]:
 
 
 @contextmanager
-def _told(url: str) -> Iterator[None]:
-    """Whatever a store's library raises, as ours."""
+def _reported(url: str) -> Iterator[None]:
+    """Raises a store's errors as HearthError."""
     try:
         yield
     except HearthError:

@@ -47,7 +47,7 @@ def maple(knowledge):
 
 @pytest.fixture(scope="session")
 def module():
-    """A way to load a script of the checkout that is no part of the package, by its path from the root."""
+    """A way to load a script of the checkout that is not a part of the package, by its path from the root."""
 
     def load(path: str):
         file = Path(__file__).resolve().parents[1] / path

@@ -1,4 +1,4 @@
-"""Homes made ready for sampling: everything in its default state, and tables of what can be found and put where."""
+"""Homes prepared for sampling: all nodes in their default states, with tables of instances and placements by class."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from hearth.simulation.world.nodes import states_of
 from hearth.simulation.world.world import World
 
 WITHOUT_PLACE = frozenset({"BodyParts", "Characters", "People", "Animals"})
-"""Categories of what is wherever it is."""
+"""Categories without placements."""
 
 
 class Spots(NamedTuple):
@@ -32,7 +32,7 @@ class Spots(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """What a new node of a class is like: category, sorted properties, default states."""
+    """The attributes of a new node of a class: category, sorted properties, default states."""
 
     category: str
     properties: tuple[str, ...]
@@ -40,21 +40,21 @@ class Kind(NamedTuple):
 
 
 Homeless = tuple[Code, str, str]
-"""A failure's code, what was expected, and what there is."""
+"""A failure's code, `expected` and `actual`."""
 
 
 class Base:
-    """A home in its default state, with what sampling asks of it again and again.
+    """A home in its default state, with tables that sampling looks up repeatedly.
 
     Attributes:
         home: doors OPEN, lamps ON, everything else CLOSED, OFF, CLEAN and PLUGGED_IN; the character stands with empty
             hands (thesis 5.5.2).
-        knowledge: what decides where things belong.
+        knowledge: its placements decide where things belong.
         start: the home as a world.
         character: id of the character's node.
         room: index of each node's room, or -1.
         whole: the home that this is a thinned version of; else the home itself.
-        removed: ids of the nodes that it lacks for that.
+        removed: ids of the nodes that were thinned out.
     """
 
     def __init__(self, home: Home, whole: Home | None = None, removed: tuple[int, ...] = ()) -> None:
@@ -70,7 +70,7 @@ class Base:
         self._thinned = cache(self._without_many)
 
     def thinned(self, most: int) -> Base:
-        """The home with at most so many nodes, if that can be: without small movable things that it has many of."""
+        """The home thinned to at most `most` nodes, if possible, by removing small movable things."""
         return self if len(self.home) <= most else self._thinned(most)
 
     def _without_many(self, most: int) -> Base:
@@ -79,7 +79,7 @@ class Base:
 
     @cached_property
     def seats(self) -> int:
-        """What one sits or lies on."""
+        """The seats and beds."""
         return self.home.properties["SITTABLE"] | self.home.properties["LIEABLE"]
 
     def rooms(self, name: str) -> tuple[int, ...]:
@@ -97,7 +97,7 @@ class Base:
         return tuple(indices(found))
 
     def _instances(self, name: str) -> tuple[int, ...]:
-        """Indices of what a program may mean by a class name: of the first of its names that the home knows."""
+        """Indices of the instances of a class, under the first of its names that occurs in the home."""
         return tuple(indices(self.home.instances(name)))
 
     def _kind(self, name: str) -> Kind:
@@ -108,7 +108,7 @@ class Base:
         return Kind(category, properties, self.knowledge.default_states(name))
 
     def _homeless(self, name: str) -> Homeless | None:
-        """Why the home can't hold a thing of a class, whatever is sampled: the code, what is expected, and what is."""
+        """The failure of any sampling that needs a thing of a class; None if the home can hold one."""
         knowledge, home = self.knowledge, self.home
         if knowledge.is_room(name):
             if self.serving(name):
@@ -146,7 +146,7 @@ _BASES: WeakKeyDictionary[Home, Base] = WeakKeyDictionary()
 
 
 def prepared(home: Home) -> Base:
-    """The home made ready, once for each home."""
+    """The home prepared for sampling, once for each home."""
     base = _BASES.get(home)
     if base is None:
         base = _BASES[home] = Base(home)

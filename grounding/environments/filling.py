@@ -10,7 +10,7 @@ from hearth.schemas.vocabulary import FIRST_FILLED_ID, OPPOSITE
 from hearth.simulation.world.edit import Movable
 
 TURNED = 0.25
-"""How likely each of a thing's pairs of states is turned over."""
+"""Probability that a pair of states of a thing is swapped."""
 
 
 def fill(partial: PartialEnvironment, least: int, most: int, some: int) -> None:
@@ -19,7 +19,7 @@ def fill(partial: PartialEnvironment, least: int, most: int, some: int) -> None:
     Args:
         partial: to add to; nothing else may be added after.
         least, most: nodes the environment should have; the number is drawn from between.
-        some: things added all the same to a home that has as many already.
+        some: things added to a home that has as many already.
     """
     base = partial.base
     choices, weights, _ = base.fillers

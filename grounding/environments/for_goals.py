@@ -1,4 +1,4 @@
-"""Sampling environments for goals: what they name is there, as often as they count it, and not yet as they want it."""
+"""Sampling environments for goals: the objects that a goal counts are there, and it does not hold yet."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 MOST = 9
-"""Of one class a goal may count up to so many (thesis table C.2)."""
+"""The largest count of one class in a goal (thesis table C.2)."""
 
 _NO_PROGRAM = Program("", "", ())
 _NOTHING = Preconditions()
@@ -125,7 +125,7 @@ def provide(partial: PartialEnvironment, name: str, number: int) -> None:
 
 
 def _undo(partial: PartialEnvironment, literal: Literal[Name], number: int) -> None:
-    """Where the home meets a predicate already, spoil it: states turned over, things laid on the floor."""
+    """Violate predicates that the home meets already: swap states, put things on the floor."""
     home = partial.base.home
     try:
         watch = Progress.start(Goal(((literal, number),)), World.start(home)).watches[0]

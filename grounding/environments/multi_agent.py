@@ -1,4 +1,4 @@
-"""Environments for programs of several characters: what they name and the home lacks is added where it belongs."""
+"""Environments for programs of several characters: objects that the home lacks are added where they belong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An environment being put together: what is added to a home, taken away and set, and which object is which node."""
+"""A partial environment: nodes and edges added and removed, states set, and the binding of objects to nodes."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PartialEnvironment:
         self.movable: list[Movable] = []
 
     def home(self) -> Home:
-        """The home with everything that was added."""
+        """The home with all changes."""
         return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
 
     def room_of(self, node_id: int) -> int:
@@ -68,7 +68,7 @@ class PartialEnvironment:
         return node_id
 
     def settle(self, node_id: int, room: int) -> None:
-        """Say which room a new or lifted node is in."""
+        """Set the room of a new or lifted node."""
         self.room[node_id] = room
         if room >= 0:
             self.added.append(Edge(node_id, "INSIDE", room))
@@ -105,7 +105,7 @@ class PartialEnvironment:
         self.states[node_id] = (*(name for name in now if name not in (state, OPPOSITE[state])), state)
 
     def states_now(self, node_id: int) -> tuple[str, ...]:
-        """The states of a node as added so far."""
+        """The states of a node so far."""
         known = self.states.get(node_id)
         if known is not None:
             return known

@@ -17,7 +17,7 @@ _LINKS = {"in": "ON", "inside": "INSIDE", "atreach": "CLOSE", "together": "", "f
 
 
 class Requirements:
-    """What a program and its conditions ask of each of its objects; made once for many environments.
+    """The requirements of a program and its conditions on each of its objects; made once for many environments.
 
     Attributes:
         keys: the objects, each after those it is placed by.
@@ -42,7 +42,7 @@ class Requirements:
         self.keys = self._ordered()
 
     def _holders(self, key: Key) -> list[Key]:
-        """What an object must be in or on: that has to be placed before it."""
+        """The support or container of an object, which is placed before it."""
         return [_anchor(c) for c in self.links.get(key, ()) if c.name in ("in", "inside")]
 
     def _ordered(self) -> tuple[Key, ...]:
@@ -74,7 +74,7 @@ def requirements_of(program: Program, conditions: Preconditions, knowledge: Know
 
 
 def _follower(condition: Condition) -> Key:
-    """Which of the two objects is placed by the other: a seat leads what it faces."""
+    """The object by which the other of a condition is placed: a seat is the anchor of what it faces."""
     return condition.objects[1] if condition.name == "facing" else condition.objects[0]
 
 

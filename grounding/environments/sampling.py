@@ -40,7 +40,7 @@ class Environment:
         seed: the run's seed.
         world: the start.
         program: the program, bound to the world's nodes.
-        conditions: what was asked for, the conditions found while sampling included.
+        conditions: those given, and those abduced while sampling.
         nodes, placed, removed, states: what differs from the base; states are those of the nodes named, all of them.
         movable: the random things among the nodes, and where they are.
     """
@@ -65,7 +65,7 @@ class Environment:
 
 
 def of_partial(partial: PartialEnvironment, seed: int, program: Program, conditions: Preconditions) -> Environment:
-    """What a partial has become."""
+    """The environment made of a partial one."""
     return Environment(
         partial.base.whole,
         seed,
@@ -98,11 +98,11 @@ class Size:
 
     @classmethod
     def about(cls, nodes: int) -> Size:
-        """So many nodes, ten more or less; larger homes are thinned."""
+        """`nodes` nodes, ten more or less; larger homes are thinned."""
         return cls(nodes - AROUND, nodes + AROUND, 0, thin=True)
 
     def base(self, home: Home) -> Base:
-        """A home made ready for environments of this size, with room for what a program names."""
+        """A home prepared for environments of this size, with room for the objects of a program."""
         base = prepared(home)
         return base.thinned(self.least - ROOM_FOR_MORE) if self.thin else base
 
@@ -130,7 +130,7 @@ def sample(
         conditions: what must hold; inferred from the program when None.
         size: nodes wanted.
         rules: for the run.
-        must_run: draw again, with what the failed run lacked as a further condition, until the program runs.
+        must_run: draw again, with the abduced precondition of the failed run added, until the program runs.
 
     Returns:
         The environment and the program's execution in it, or the failure of the last one drawn.
@@ -162,9 +162,7 @@ def sample(
 
 
 def unplaceable(program: Program, base: Base) -> Failure | None:
-    """Why a home can't hold what a program names, whatever is sampled: it lacks a room, or nobody knows where a thing
-    belongs.
-    """
+    """The failure of any sampling where the home lacks a room, or an object has no placement; else None."""
     for tick, steps in enumerate(program.ticks()):
         for step in steps:
             for ref in step.objects:
@@ -187,7 +185,7 @@ def _unmet(condition: Condition) -> Failure:
 def draw(
     program: Program, base: Base, conditions: Preconditions, seed: int, record_id: str, attempt: int, size: Size
 ) -> Environment:
-    """One environment in which the conditions hold; whether the program runs in it remains to be seen."""
+    """One environment in which the conditions hold; the program was not run in it yet."""
     generator = rng(seed, "sample", base.home.name, record_id, attempt)
     partial = PartialEnvironment(base, generator)
     bind(partial, requirements_of(program, conditions, base.knowledge))
@@ -219,7 +217,7 @@ def settle_character(partial: PartialEnvironment, program: Program, conditions: 
 
 
 def _bring(partial: PartialEnvironment, me: int, room: int) -> None:
-    """What the character holds is where it is, unless it is said to be elsewhere."""
+    """Things held are in the character's room, unless a condition places them in another."""
     held = [edge.target for edge in partial.added if edge.source == me and edge.relation in HANDS]
     for node_id in held:
         if partial.room_of(node_id) < 0:
@@ -229,7 +227,7 @@ def _bring(partial: PartialEnvironment, me: int, room: int) -> None:
 def _with_abduced(
     conditions: Preconditions, environment: Environment, execution: Execution, base: Base
 ) -> Preconditions:
-    """The conditions with what the failed run lacked."""
+    """The conditions with the abduced precondition of the failed run."""
     failure = execution.failure
     assert failure is not None
     keys = {node: key for key, node in _nodes(environment.program).items()}

@@ -1,4 +1,4 @@
-"""Making conditions true in a partial, one small function a condition."""
+"""Satisfying conditions in a partial environment, one small function a condition."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Fulfil = Callable[[PartialEnvironment, Condition], None]
 
 
 def fulfil(partial: PartialEnvironment, conditions: Preconditions) -> None:
-    """Make every condition true that placing has not made true already."""
+    """Satisfy every condition that placing has not satisfied already."""
     for condition in conditions:
         FULFIL[condition.name](partial, condition)
 
@@ -128,7 +128,7 @@ def _resting(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def _done(partial: PartialEnvironment, condition: Condition) -> None:
-    """Placing the objects has seen to it."""
+    """Satisfied by placing."""
 
 
 FULFIL: dict[str, Fulfil] = {

@@ -1,4 +1,4 @@
-"""Whether a drawn environment is a sound graph: what `home lint` asks, of what differs from the home, in O(that)."""
+"""Soundness of a sampled environment: the checks of `home lint`, made of its differences from the home only."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def unsound(world: World) -> Failure | None:
     """The first fault of a start that was derived from a sound home; None when it is sound as well.
 
     Args:
-        world: of a home made by `edit.extended`; only what that changed is looked at.
+        world: of a home made by `edit.extended`; only its changes are checked.
     """
     home = world.home
     touched = (home.base[1] if home.base is not None else home.everything) | home.restated

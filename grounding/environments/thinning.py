@@ -1,4 +1,4 @@
-"""Homes with fewer things: for environments of a size that a well-stocked home is beyond (thesis 5.5.2)."""
+"""Thinned homes, for environments smaller than a well-stocked home (thesis 5.5.2)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.simulation.world.world import World
 
 
 def superfluous(home: Home, most: int) -> tuple[int, ...]:
-    """Ids of small movable things to go without, so that at most so many nodes are left, if that can be; sorted.
+    """Ids of small movable things to remove, so that at most `most` nodes are left, if possible; sorted.
 
     The first to go is what its room has most of: a household's twelfth plate is missed less than its only kettle.
     Furniture, and what something stands on or in, stays.
@@ -38,13 +38,13 @@ def without(home: Home, removed: tuple[int, ...]) -> Home:
 
 
 def _movable(home: Home, removed: int) -> list[int]:
-    """What can be grasped and bears and holds nothing that is left."""
+    """Graspable things with nothing left on or in them."""
     graspable = home.properties["GRABBABLE"] & ~home.characters & ~removed
     return [i for i in indices(graspable) if not (home.bears[i] | home.contents[i]) & ~removed]
 
 
 def _chosen(home: Home, going: list[int], count: int, chooser: Random) -> int:
-    """So many of them, always one of which its room has most, and then the home; appliances last."""
+    """`count` of them, always one of the class most frequent in its room, then in the home; appliances last."""
     chooser.shuffle(going)
     plain = ~home.properties["HAS_PLUG"]
     kinds = {i: (home.direct_room[i], home.classes[i]) for i in going}

@@ -1,4 +1,4 @@
-"""Making true what perturbing asks for: things elsewhere, shut away, in the way, or in the hands (thesis 5.5.4)."""
+"""Satisfying violated conditions: things in other rooms, closed containers, on seats or in hands (thesis 5.5.4)."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def other_room(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def in_closed_container(partial: PartialEnvironment, condition: Condition) -> None:
-    """The first object is in something closed where it belongs, other than the second; if possible in nothing that the
-    program names.
+    """The first object is in a closed container where it belongs, other than the second; if possible one not
+    named by the program.
     """
     key, now = condition.objects
     ids, here = partial.base.home.ids, partial.binding.get(now, -1)
@@ -70,7 +70,7 @@ def facing_away(partial: PartialEnvironment, condition: Condition) -> None:
 
 
 def full_hands(partial: PartialEnvironment, condition: Condition) -> None:
-    """The character's hands hold things of no concern to the program."""
+    """The character's hands hold things that the program does not use."""
     me = partial.base.character
     taken = {edge.relation for edge in partial.added if edge.source == me}
     fillers = partial.base.fillers.choices
@@ -142,7 +142,7 @@ def _is_open(partial: PartialEnvironment, spot: Target) -> bool:
 
 
 def _moved(partial: PartialEnvironment, key: Key, fits: Callable[[Target], bool], named: bool = False) -> bool:
-    """Put an object where one of its class belongs and which fits; whether there is such a place.
+    """Put an object at a place of its class that fits; whether there is one.
 
     Args:
         partial, key: the object.
@@ -192,7 +192,7 @@ def _movable(partial: PartialEnvironment, key: Key, room: int) -> int:
 
 
 def _is_movable(partial: PartialEnvironment, node_id: int) -> bool:
-    """Whether a node can be put elsewhere: new or graspable, with nothing on or in it."""
+    """Whether a node can be moved: new or graspable, with nothing on or in it."""
     home = partial.base.home
     if partial.load.get(node_id, 0):
         return False

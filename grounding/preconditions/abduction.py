@@ -1,6 +1,6 @@
-"""From a failure to the condition on the start that would have prevented it: one small function a failure code.
+"""Abduced preconditions: the conditions on the start that prevent a failure, one small function a failure code.
 
-Each gets the context of a failure and gives the conditions to try, best first; none means that no start can help.
+Each gets the context of a failure and gives the conditions to try, best first; none if no start prevents the failure.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def conditions_for(context: StartContext) -> Iterator[Condition]:
 
 
 def state(wanted: str) -> Abduction:
-    """The object is in a state from the start; no help if the program itself has put it in the opposite."""
+    """The object is in a state from the start; none if the program itself has put it in the opposite."""
 
     def abduced(context: StartContext) -> Iterator[Condition]:
         key = context.key()
@@ -65,7 +65,7 @@ def state(wanted: str) -> Abduction:
 
 
 def _at_reach(context: StartContext) -> Iterator[Condition]:
-    """Near what the character has gone to, or near the character if it has not gone anywhere."""
+    """Near the object that the character has walked to, or near the character if it has not walked."""
     key = context.key()
     if key is None:
         return
@@ -79,8 +79,8 @@ def _at_reach(context: StartContext) -> Iterator[Condition]:
 
 
 def _had_not_left(context: StartContext) -> Iterator[Condition]:
-    """What the program itself has put down is only near while the character stays: so what it then looked for was near
-    there, and looking for it took no walk.
+    """An object that the program has put down is only near while the character stays: so the object found next was near
+    there, and finding it took no walk.
     """
     index = context.index()
     places = (rows.on(context.world, index) | rows.inside(context.world, index)) & ~context.world.home.rooms

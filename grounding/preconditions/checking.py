@@ -1,4 +1,4 @@
-"""Whether conditions hold in a world: what sampling promises, checked."""
+"""Whether conditions hold in a world, as sampling guarantees."""
 
 from __future__ import annotations
 

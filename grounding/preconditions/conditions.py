@@ -15,7 +15,7 @@ class Condition:
     Attributes:
         literal: a predicate of `simulation.holds`; its objects stand in the order of the release's files.
         step: number of the step that needs it, from 0.
-        hard: the program can't run without it; a soft one is what its author took for granted (the cup is in the
+        hard: the program can't run without it; a soft one is a default that its author assumed (the cup is in the
             cupboard that was opened).
     """
 
@@ -30,7 +30,7 @@ class Condition:
 
     @property
     def objects(self) -> tuple[Key, ...]:
-        """What it is about."""
+        """Its objects."""
         return self.literal.terms
 
     def instead(self, name: str) -> Condition:

@@ -1,4 +1,4 @@
-"""What the author of a program takes for granted (rules 1, 7, 8, 9 and 11 of the release): soft conditions.
+"""Defaults: soft conditions that the author of a program assumes (rules 1, 7, 8, 9 and 11 of the release).
 
 They make environments realistic; a program that can't run with one of them runs without it.
 """

@@ -1,8 +1,8 @@
-"""Inferring what a program needs, by trying it in a home about which nothing is known but what it needed so far.
+"""Inferring preconditions by running a program in a minimal home in which only the preconditions found so far hold.
 
-The first step that fails says what the start must provide; the condition is added and the program tried again. So every
-condition is explained by the step that needs it, and a program that no start can help is told by the step at which
-that shows and the step that spoilt it (thesis 5.5.2: the function Phi).
+A precondition is abduced from the first failing step, and the program is run again. So every condition has the step
+that needs it, and a contradictory program is reported with the step that fails and the step that violated its
+condition (thesis 5.5.2: the function Phi).
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ MAX_CONDITIONS = 200
 CAUSED_BY_START = frozenset(
     {Code.UNBOUND, Code.NOT_AFFORDED, Code.NOT_SIMULATED, Code.UNKNOWN_ACTION, Code.UNKNOWN_AGENT}
 )
-"""Failures that are the program's own whatever the start."""
+"""Failures that no start prevents."""
 
 
 def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Preconditions | Failure:
     """The conditions under which a program runs, or the failure that no start prevents.
 
-    A failure of a program that contradicts itself has code CONTRADICTION; its `expected` says what step needed, its
-    `actual` which step made that impossible.
+    A failure of a program that contradicts itself has code CONTRADICTION; its `expected` names the condition and the
+    step that needs it, its `actual` the step that violates it.
 
     Examples:
         >>> list(map(str, hearth.infer(program, known)))
@@ -45,7 +45,7 @@ def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Pre
 
 
 def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> tuple[int, ...]:
-    """The steps because of which no start lets a program run: one, or the one that spoils another and that other."""
+    """The steps of a contradiction: one, or the one that violates another's condition and that other."""
     conditions, execution, step = _inferred(program, knowledge, rules)
     if execution.failure is None:
         return ()
@@ -78,7 +78,7 @@ def _next(
     tried: set[Literal[Key]],
     knowledge: Knowledge,
 ) -> Preconditions | None:
-    """The conditions with one more that may help at this step, or with a habit in its way given up."""
+    """The conditions with one more that may help at this step, or without a default that conflicts."""
     failure = execution.failure
     assert failure is not None
     if failure.code in CAUSED_BY_START:

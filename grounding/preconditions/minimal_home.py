@@ -1,4 +1,4 @@
-"""The smallest home in which a program can be tried: its own objects, about which nothing is known but its conditions.
+"""The minimal home of a program: its own objects, of which only its conditions hold.
 
 Every object has no states and a room of its own, unless a condition says more; what can be grabbed stands on a stand of
 its own, so that it can be put back.

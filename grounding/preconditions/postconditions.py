@@ -1,4 +1,4 @@
-"""Post-conditions: what a program achieves, said of its own objects, so that it can be asked of any environment.
+"""Post-conditions: what a program achieves, in terms of its own objects, so that any environment can be checked.
 
 What the original brings about in its own, unperturbed environment has to be reached by every repair of it (thesis A.2,
 eq. A.1: the function Omega).
@@ -94,7 +94,7 @@ def facts(
 
 
 def _residues(program: Program, now: Postconditions, held: set[Key | None], rooms: set[Key]) -> set[Literal[Key]]:
-    """What pouring has left: a thing is INSIDE what it was poured into, although it is held or stands elsewhere."""
+    """Pouring: a thing is INSIDE the one it was poured into, although it is held or stands in another place."""
     pours = {(s.objects[0].key, s.objects[1].key) for s in program.steps if s.action == "Pour"}
     if not pours:
         return set()

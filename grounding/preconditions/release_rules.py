@@ -22,12 +22,12 @@ SEATS = frozenset({"couch", "bed", "chair", "loveseat", "sofa", "toilet", "piano
 
 
 class Compared(NamedTuple):
-    """A condition that the release's rules name, and what becomes of it here.
+    """A condition of the release's rules, compared with ours.
 
     Attributes:
         condition: as the rules have it.
         ours: whether it is among ours.
-        why: why not: what it would stop, or that nothing needs it.
+        why: why not: the step it would stop, or that no step needs it.
     """
 
     condition: Condition
@@ -53,7 +53,7 @@ def compare(
 
 
 def _tried(condition: Condition, program: Program, ours: Preconditions, knowledge: Knowledge, rules: Rules) -> Compared:
-    """Try the program with the condition as well: it then runs all the same, or it is told where it stops."""
+    """Run the program with the condition as well: reports whether it runs, else the step that fails."""
     place = sketch(program, ours.plus(condition), knowledge)
     execution = run(World.start(place.home), place.program, rules)
     if execution.failure is None:
@@ -78,7 +78,7 @@ def _soft(name: str, step: int, *objects: Key) -> Condition:
 
 
 def _states(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rule 1: what is first switched, plugged in, opened or closed was the other way before."""
+    """Rule 1: an object first switched, plugged in, opened or closed was the other way before."""
     seen: set[tuple[str, Key]] = set()
     operated = knowledge.group("operates") - knowledge.achieving("PLUGGED_OUT")
     for number, step in enumerate(program.steps):
@@ -111,7 +111,7 @@ def _rest(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
 
 
 def _places(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rules 2, 4 and 5: what is used is at reach of the seat, near at the start, or at reach of what was gone to."""
+    """Rules 2, 4 and 5: what is used is at reach of the seat, near at the start, or at reach of a target."""
     sought: set[Key] = set()
     held: set[Key] = set()
     at: Key | None = None
@@ -178,7 +178,7 @@ def _opened(program: Program) -> Iterator[Condition]:
 
 
 def _tables(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Rule 9: what is used after something table-like was gone to is on it; after a chair, near it."""
+    """Rule 9: what is used after something table-like was walked to is on it; after a chair, near it."""
     last: Key | None = None
     for number, step in enumerate(program.steps):
         for ref in step.objects:

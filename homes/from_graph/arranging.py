@@ -28,19 +28,19 @@ ALONG, ACROSS = 0.25, 0.5
 FRONT = 0.55
 """Free depth kept before what is used from its front."""
 MOST_LOOKED_AT = 40
-"""Of the best places so many are tried for whether they block the way."""
+"""Number of the best places tried for whether they block the way."""
 MARGIN = 0.5
 """Metres beyond a room's walls that are looked at: its doors' holes."""
 SLACK = 0.2
 """Metres by which things are placed nearer than they need be: what is on and in them is not at their edge."""
 MUST = 60.0
 """What being ON a wall, a tile or a rug is worth, in relations."""
-LOOSE_WALL = 5.0
+FREE_STANDING_WALL = 5.0
 """What a place at a wall is worth, in relations: furniture out in the room needs a reason."""
 
 
 class Crowd:
-    """What has its place so far.
+    """The things placed so far.
 
     Attributes:
         things: by node id; called by that id.
@@ -135,13 +135,13 @@ def _best(crowd: Crowd, room: Room, node: int, shaped: Form, solids: list[Thing]
 
 
 def _scores(crowd: Crowd, room: Room, node: int, spots: list[Stand], height: float) -> np.ndarray:
-    """For each spot how much would be met of what the graph says of a thing and of all on and in it."""
+    """For each spot the weight of the relations met by a thing and all on and in it."""
     parts, own = crowd.parts, sorted(crowd.parts.family(node))
     boxes = [box_over(rect, low, low + height) for rect, _, low in spots]
     yaws = [yaw for _, yaw, _ in spots]
     near = [t for m in own for n in parts.near.get(m, ()) if (t := crowd.known(n)) is not None]
     faced = [t for m in own for n in parts.faces.get(m, ()) if (t := crowd.known(n)) is not None]
-    lookers = [t for m in own for r, n, out in parts.said.get(m, ()) if r == "FACING" and not out
+    lookers = [t for m in own for r, n, out in parts.relations.get(m, ()) if r == "FACING" and not out
                and (t := crowd.known(n)) is not None and t.yaw is not None and t.room == room.name]  # fmt: skip
     score: np.ndarray = (gaps(boxes, [t.box for t in near]) <= NEAR - SLACK).sum(axis=1).astype(float)
     score += 2 * seen(boxes, yaws, [t.box for t in faced]).sum(axis=1)
@@ -170,7 +170,7 @@ def spots(room: Room, shaped: Form) -> Iterator[tuple[Stand, float]]:
     if shaped.mount != "flat":
         for wall in DIRECTIONS:
             for rect in _along(inner, wall, shaped):
-                yield (rect, facing_from(wall), low), LOOSE_WALL
+                yield (rect, facing_from(wall), low), FREE_STANDING_WALL
     if shaped.mount != "wall":
         yield from (((*spot, 0.0), 0.0) for spot in _out_in_the_room(inner, shaped, tuple(DIRECTIONS.values())))
 

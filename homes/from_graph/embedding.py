@@ -39,7 +39,8 @@ def guessed(parts: Parts, plan: Plan, doors: Mapping[int, Thing]) -> dict[int, T
         if len(members) < FEW:
             continue
         inner = interior(room)
-        places = min(_laid(_map(parts, members), inner), key=lambda laid: _misfit(laid, members, anchors))
+        guesses = _placements(_map(parts, members), inner)
+        places = min(guesses, key=lambda guess: _misfit(guess, members, anchors))
         for member, (x, z) in zip(members, places.tolist(), strict=True):
             if member not in doors:
                 found[member] = _guess(parts, member, room.name, x, z)
@@ -85,7 +86,7 @@ def _map(parts: Parts, members: list[int]) -> np.ndarray:
     return np.asarray(found * signs)
 
 
-def _laid(points: np.ndarray, inner: Rect) -> Iterator[np.ndarray]:
+def _placements(points: np.ndarray, inner: Rect) -> Iterator[np.ndarray]:
     """The map filling the floor, turned so that it does so best, in all eight ways round."""
 
     def turned(angle: float) -> np.ndarray:

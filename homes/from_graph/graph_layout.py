@@ -1,7 +1,7 @@
 """A layout for any scene graph: rooms joined through their doors, furniture along walls, things on and in each other.
 
-The relations decide: what is CLOSE is put close, what FACES something is turned to it, as far as there is room. What
-cannot be had is told, edge by edge.
+The relations decide: things that are CLOSE are put close, things that FACE something are turned to it, as far as there
+is room. Relations that cannot be met are reported, edge by edge.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class GraphLayout:
     Attributes:
         graph: the same nodes and edges, in the same order; those that have a place with box and yaw.
         layout: rooms, doors and things, for drawing and walking; things are called by their node ids.
-        unmet: what the geometry does not show of what the graph says, each with the ids in `found`.
+        unmet: the edges that the geometry does not show, each with the ids in `found`.
     """
 
     graph: EnvironmentGraph

@@ -1,4 +1,4 @@
-"""The layout of a scene graph that has boxes of its own: what is where is read, not made up."""
+"""The layout of a scene graph that has boxes: places are read from them."""
 
 from __future__ import annotations
 

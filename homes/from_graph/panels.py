@@ -23,7 +23,7 @@ THICK = 0.1
 HUNG = 0.05, 0.4, 2.0
 """Depth, width and height of a curtain beyond those that the windows have."""
 SWEEPS = 2
-"""How often all classes are gone through: what is where in one decides about the others."""
+"""Passes over all classes: the places of one decide about the others."""
 
 Slots = dict[tuple[int, str], list[Thing]]
 """Places by room and class."""
@@ -65,7 +65,7 @@ def rooms_and_doors(parts: Parts, plan: Plan, built: Shell) -> dict[int, Thing]:
 
 
 def assigned(parts: Parts, places: Slots, things: Mapping[int, Thing], anew: bool = False) -> dict[int, Thing]:
-    """Each of the panels with the place where most of what the graph says of it is met.
+    """Each of the panels with the place where most of its relations are met.
 
     Args:
         parts: the graph.
@@ -96,7 +96,7 @@ def assigned(parts: Parts, places: Slots, things: Mapping[int, Thing], anew: boo
 
 def _drawn_before(parts: Parts, node: int, things: Mapping[int, Thing]) -> Iterator[Thing]:
     """A curtain's place before what it is in, such as a shower."""
-    for relation, other, outward in parts.said.get(node, ()):
+    for relation, other, outward in parts.relations.get(node, ()):
         thing = things.get(other)
         if relation == "INSIDE" and outward and thing is not None and thing.class_name != "curtain":
             rect, side = footprint(thing.box), front_of(thing.yaw or 0.0)
@@ -110,9 +110,9 @@ def _nearness(guess: Thing, place: Thing) -> float:
 
 
 def _worth(parts: Parts, node: int, place: Thing, things: Mapping[int, Thing]) -> int:
-    """How much of what the graph says of a node would be met there."""
+    """The weight of the relations of a node that would be met there."""
     total = 0
-    for relation, other, outward in parts.said.get(node, ()):
+    for relation, other, outward in parts.relations.get(node, ()):
         thing = things.get(other)
         if thing is not None:
             total += WEIGHTS[relation] * SHOWS[relation](*((place, thing) if outward else (thing, place)))
@@ -120,7 +120,7 @@ def _worth(parts: Parts, node: int, place: Thing, things: Mapping[int, Thing]) -
 
 
 def _tiles(room: Room, class_name: str, count: int, low: float) -> Iterator[Thing]:
-    """A floor or ceiling in so many tiles, in rows as square as can be."""
+    """A floor or ceiling in `count` tiles, in rows as square as can be."""
     inner = interior(room)
     rows = max(1, round(sqrt(count * inner.depth / inner.width))) if count else 0
     for row in range(rows):
@@ -133,7 +133,7 @@ def _tiles(room: Room, class_name: str, count: int, low: float) -> Iterator[Thin
 
 
 def _walls(room: Room, count: int, height: float) -> Iterator[Thing]:
-    """So many panels, on each of the four sides in proportion to its length."""
+    """`count` panels, on each of the four sides in proportion to its length."""
     inner = interior(room)
     lengths = {wall: span(inner, wall)[1] - span(inner, wall)[0] for wall in DIRECTIONS}
     shares = dict.fromkeys(DIRECTIONS, 0)

@@ -1,4 +1,4 @@
-"""What a scene graph says of where things are: rooms, doors, and for each thing what it stands on or in."""
+"""Places by a scene graph's relations: rooms, doors, and for each thing its support or container."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Parts:
         between: the two rooms of each door.
         under: what is ON a rug, a tile or a wall, by that.
         near, faces: CLOSE and FACING, by source.
-        said: ON, CLOSE (by source only) and FACING of each node, as (relation, other, whether it is the source); of
-            INSIDE only what the shell is in (a curtain in a shower).
+        relations: ON, CLOSE (by source only) and FACING of each node, as (relation, other, whether it is the source);
+            of INSIDE only what the shell is in (a curtain in a shower).
     """
 
     def __init__(self, graph: EnvironmentGraph, knowledge: Knowledge) -> None:
@@ -41,15 +41,15 @@ class Parts:
             if edge.source in self.nodes and edge.target in self.nodes and edge.source != edge.target:
                 targets[edge.relation][edge.source].append(edge.target)
         self.near, self.faces = targets["CLOSE"], targets["FACING"]
-        self.said: dict[int, list[tuple[str, int, bool]]] = defaultdict(list)
+        self.relations: dict[int, list[tuple[str, int, bool]]] = defaultdict(list)
         for relation in ("ON", "CLOSE", "FACING", "INSIDE"):
             for source, found in targets[relation].items():
                 for target in found:
                     if relation == "INSIDE" and (target in self.rooms or self.nodes[source].class_name not in SHELL):
                         continue
-                    self.said[source].append((relation, target, True))
+                    self.relations[source].append((relation, target, True))
                     if relation != "CLOSE":
-                        self.said[target].append((relation, source, False))
+                        self.relations[target].append((relation, source, False))
         self.between = {
             door: (pair[0], pair[1])
             for door, found in targets["BETWEEN"].items()
@@ -110,7 +110,7 @@ class Parts:
         return -1
 
     def both_ways(self, one: int, other: int) -> tuple[str, ...]:
-        """Which of ON and INSIDE are said of two things both ways round."""
+        """Which of ON and INSIDE two things have both ways round."""
         return tuple(name for name, places in self._places.items()
                      if other in places.get(one, ()) and one in places.get(other, ()))  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""What geometry shows of what a graph says: relation by relation, with what it does not show."""
+"""The relations of a graph that its geometry shows, and those that it does not."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ def unmet(
         one, other = things.get(edge.source), things.get(edge.target)
         if one is None or other is None or not SHOWS[edge.relation](one, other):
             names = [parts.nodes[n].class_name for n in (edge.source, edge.target)]
-            said = f"{names[0]} ({edge.source}) {edge.relation} {names[1]} ({edge.target})"
-            yield Diagnostic(Code.CONDITION_UNMET, f"not to be had: {said}: {_why(edge, things, parts)}",
+            text = f"{names[0]} ({edge.source}) {edge.relation} {names[1]} ({edge.target})"
+            yield Diagnostic(Code.CONDITION_UNMET, f"not to be had: {text}: {_why(edge, things, parts)}",
                              found=f"{edge.source} {edge.target}",
                              suggestion="drop the edge, or what stands in its way")  # fmt: skip
 
 
 def missed(parts: Parts, things: Mapping[int, Thing]) -> int:
-    """What is not met of what a graph says, by weight."""
+    """The unmet relations of a graph, by weight."""
     return sum(
         WEIGHTS[relation]
-        for node, said in parts.said.items()
-        for relation, other, outward in said
+        for node, given in parts.relations.items()
+        for relation, other, outward in given
         if outward and not (node in things and other in things and SHOWS[relation](things[node], things[other]))
     )
 
@@ -63,21 +63,21 @@ def _why(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
     apart = parts.room.get(edge.source) != parts.room.get(edge.target) and edge.target not in parts.rooms
     if edge.relation in ("ON", "INSIDE"):
         if edge.relation in parts.both_ways(edge.source, edge.target):
-            return "each is said to be so of the other"
+            return "the graph has it both ways round"
         if edge.source in parts.parent and parts.parent[edge.source][0] != edge.target:
             place, word = parts.parent[edge.source]
-            return f"it is {word} {_called(place, parts)}, and that is elsewhere"
+            return f"it is {word} {_called(place, parts)}, which is in another place"
         if not apart:
             return _taken(edge, things, parts)
     if apart:
         return "they are in different rooms, and walls part them"
     if edge.relation == "FACING":
-        return "its front points elsewhere"
+        return "its front points another way"
     return f"{gap(things[edge.source].box, things[edge.target].box):.1f} m are between them"
 
 
 def _taken(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
-    """What stands where a thing was to be, or else what the thing has to be at instead."""
+    """The obstacles at a thing's place, or else the thing that it has to be at instead."""
     there = footprint(things[edge.target].box)
     if edge.relation == "INSIDE":
         return f"{_called(edge.target, parts)} has no room for it"
@@ -89,7 +89,7 @@ def _taken(edge: Edge, things: Mapping[int, Thing], parts: Parts) -> str:
         if n not in (edge.source, edge.target) and t.class_name not in SHELL and not t.on and not t.inside
         and footprint(t.box).inset(-0.3).overlap(there) > 0
     ]  # fmt: skip
-    return f"there stand {', '.join(names[:3])}" if names else "what opens there, or is said of it, leaves no room"
+    return f"there stand {', '.join(names[:3])}" if names else "doors, drawers or other relations leave no room"
 
 
 def _called(node: int, parts: Parts) -> str:

@@ -1,4 +1,4 @@
-"""What the entries of a plan say together: rooms apart, doors that lead somewhere, furniture that can be reached."""
+"""Checks of a plan's entries together: rooms do not overlap, doors lead somewhere, furniture can be reached."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def check_rooms(plan: Plan, faults: Faults) -> None:
                            f"{b.name} (line {b.line}) covers {_bounds(b.rect)}")  # fmt: skip
     _check_doors(plan, faults)
     if plan.character and plan.character not in seen:
-        faults.add(Code.UNKNOWN_OBJECT, f"the character stands in `{plan.character}`, which is no room of the plan")
+        faults.add(Code.UNKNOWN_OBJECT, f"the character stands in `{plan.character}`, which is not a room of the plan")
 
 
 def check_layout(plan: Plan, shell: Shell, things: Sequence[Thing], floor: Floor, faults: Faults) -> None:
@@ -140,7 +140,7 @@ def _check_kept_free(things: Sequence[Thing], shell: Shell, faults: Faults) -> N
 def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faults) -> None:
     """All rooms join on foot, and whoever is in a room gets to the front of what has one.
 
-    Where rooms or doors are at fault, or a thing itself, this would only say so again.
+    Not checked where rooms, doors or the thing itself are at fault already.
     """
     faulty = {fault.line for fault in faults}
     if faulty & ({room.line for room in plan.rooms} | {door.line for door in plan.doorways}):

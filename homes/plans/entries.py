@@ -18,11 +18,11 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 ReadValue = Callable[[Any], Any]
 CORNERS = ("northwest", "northeast", "southwest", "southeast")
 MOST = 60
-"""Things one entry may count; more is taken for a slip of the pen."""
+"""Things one entry may count; a larger number is a fault."""
 
 
 class WrongValueError(ValueError):
-    """What a value should have been."""
+    """The expected form of a value."""
 
 
 def number(value: Any) -> float:
@@ -133,7 +133,7 @@ def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Pla
     """A plan from YAML text; what cannot be read is left out and noted.
 
     Raises:
-        HearthError: the text is no YAML mapping at all.
+        HearthError: the text is not a YAML mapping.
     """
     tree = located.read(text, file)
     if not isinstance(tree, located.Mapping):
@@ -205,7 +205,10 @@ class _Reader:
         if known is None or known.category != ROOM_CATEGORY:
             rooms = sorted(n for n, o in self.knowledge.objects.items() if o.category == ROOM_CATEGORY)
             self.faults.add(
-                Code.UNKNOWN_OBJECT, f"`{class_name}` is no class of room", line, f"`class:` one of {', '.join(rooms)}"
+                Code.UNKNOWN_OBJECT,
+                f"`{class_name}` is not a known class of room",
+                line,
+                f"`class:` one of {', '.join(rooms)}",
             )
         (x, z), (width, depth) = found["at"], found["size"]
         windows = [w for item in found.get("windows", ()) if (w := self.window(item)) is not None]
@@ -249,12 +252,12 @@ class _Reader:
             text, fields = entry, located.Mapping(line)
         else:
             hint = "`plate*4`, or `couch: {wall: south, at: 1.2}`"
-            self.faults.add(Code.SYNTAX, f"`{_shown(entry)}` is no thing", line, hint)
+            self.faults.add(Code.SYNTAX, f"`{_shown(entry)}` is not an entry", line, hint)
             return None
         match = re.fullmatch(r"\s*([^*\s]+)\s*(?:\*\s*(\d{1,4}))?\s*", text)
         count = int(match[2] or 1) if match else 0
         if match is None or not 1 <= count <= MOST:
-            self.faults.add(Code.SYNTAX, f"`{text}` is no thing", line, f"a class, or class*count up to {MOST}")
+            self.faults.add(Code.SYNTAX, f"`{text}` is not an entry", line, f"a class, or class*count up to {MOST}")
             return None
         class_name = self._class(match[1], line)
         return self._piece(class_name, count, fields, line, furniture) if class_name else None
@@ -287,7 +290,7 @@ class _Reader:
         if name not in self.knowledge.objects:
             near = self.knowledge.suggest(name)
             hint = f"did you mean `{near[0]}`?" if near else "`kb find` lists the classes"
-            self.faults.add(Code.UNKNOWN_OBJECT, f"`{name}` is no class", line, hint)
+            self.faults.add(Code.UNKNOWN_OBJECT, f"`{name}` is not a known class", line, hint)
             return None
         return name
 

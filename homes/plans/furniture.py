@@ -1,4 +1,4 @@
-"""Where the plan puts furniture: one function for each way of saying it."""
+"""Places furniture: one function for each key of the plan."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class NoPlaceError(Exception):
 
 
 def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> Furnishing:
-    """Place a room's furniture; each entry after those it refers to. What cannot be placed is noted and left out."""
+    """Place a room's furniture; each entry after those it refers to. Faulty entries are noted and left out."""
     found = Furnishing(room, interior(room), height, knowledge, faults)
     numbers: dict[str, int] = {}
     waiting = [(piece, names_of(piece, numbers)) for piece in room.furniture]
@@ -205,7 +205,7 @@ def _in_corner(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 
 def _beside(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
-    """Next along the wall that the other has its back to, backs in line; on its east or north side unless said."""
+    """Next along the wall that the other has its back to, backs in line; by default on its east or north side."""
     other, turned_to = _target(piece, "beside", room, "side")
     rect, wall = footprint(other.box), wall_of(turned_to)
     side = piece.place.get("side", "east" if along_x(wall) else "north")

@@ -85,18 +85,18 @@ class Support:
 def contents(
     thing: Thing, piece: Piece, knowledge: Knowledge, faults: Faults, seats: Sequence[Thing] = ()
 ) -> Iterator[Thing]:
-    """What stands on and in a thing, and on and in that, as the plan's entry says; `seats` are those of its room.
+    """All things on and in a thing, recursively, by the plan's entry; `seats` are those of its room.
 
     What finds no room is noted as NO_PLACE and left out.
     """
     numbers: dict[str, int] = {}
     shaped = shape(piece, knowledge)
-    laid = list(_settings(thing, piece.lay, seats, numbers, knowledge))
+    settings = list(_settings(thing, piece.lay, seats, numbers, knowledge))
     for relation, pieces in (("on", piece.on), ("inside", piece.inside)):
         named = [(entry, names_of(entry, numbers)) for entry in pieces]
         # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
         named.sort(key=lambda pair: _rank(pair[0], knowledge))
-        fixed = laid if relation == "on" else []
+        fixed = settings if relation == "on" else []
         if named or fixed:
             standing, missed = _arranged(thing, shaped, relation, (named, fixed), knowledge)
             for entry, stood in standing:
@@ -111,7 +111,7 @@ def contents(
 def _settings(
     table: Thing, lay: Sequence[Piece], seats: Sequence[Thing], numbers: dict[str, int], knowledge: Knowledge
 ) -> Iterator[tuple[Piece, str, Rect]]:
-    """What is laid on a table for each seat at it: the entry, its name and where it lies."""
+    """The table setting of each seat: the entry, its name and its rectangle."""
     sizes = [shape(entry, knowledge).size for entry in lay]
     for place in places(table, seats) if lay else ():
         rects = setting(place, [(width, depth) for width, _, depth in sizes])
@@ -126,13 +126,13 @@ def _arranged(
     wanted: tuple[Sequence[NamedPiece], Sequence[tuple[Piece, str, Rect]]],
     knowledge: Knowledge,
 ) -> tuple[list[tuple[Piece, Thing]], list[tuple[Piece, str]]]:
-    """Everything in its place, well apart if it can be, closer together if it must; and what has none, with why."""
-    named, laid = wanted
+    """Places for all things, widely spaced if possible, closer if necessary; and the things without one, with why."""
+    named, settings = wanted
     for apart in (FAR, FAR / 3, 0.0):
         support = support_of(thing, shaped, relation, knowledge, apart)
         found: list[tuple[Piece, Thing]] = []
         missed: list[tuple[Piece, str]] = []
-        for entry, name, rect in laid:
+        for entry, name, rect in settings:
             try:
                 found.append((entry, _lay(support, entry, name, rect, knowledge)))
             except NoPlaceError as why:
@@ -255,7 +255,7 @@ def _pile(support: Support, class_name: str, shaped: Form) -> tuple[Level, Local
 
 
 def _ways(size: tuple[float, float, float], tidy: bool) -> Iterator[tuple[tuple[float, float, float], bool]]:
-    """As it is, turned sideways, laid on its back, set upright; what is thin lies down first unless on a shelf."""
+    """As it is, turned sideways, on its back, upright; what is thin lies down first unless on a shelf."""
     width, height, depth = size
     if not tidy and min(width, depth) < 0.2 * height:
         yield ((height, width, depth) if width < depth else (width, depth, height)), False

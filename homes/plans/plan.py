@@ -1,6 +1,6 @@
 """Floor plans as people write them in YAML (README of data_raw/homes), read into records.
 
-Only what one entry says is checked here: names, keys, numbers. What entries say together is checked in `checks`.
+Single entries are checked here: names, keys, numbers. Entries together are checked in `checks`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Piece:
         place: how it is placed: key -> value, as `entries.PLACE_KEYS` reads them.
         size: width, height and depth as far as the plan says so.
         on, inside: what stands on it and in it.
-        lay: what is laid for everyone who sits at it.
+        lay: the table setting of each seat.
         line: in the plan.
     """
 
@@ -64,7 +64,7 @@ class Piece:
     line: int = 0
 
     def with_parts(self, change: Callable[[tuple[Piece, ...]], tuple[Piece, ...]]) -> Piece:
-        """The same, with what is on and in it and laid at it changed."""
+        """The same, with its `on`, `inside` and `lay` changed."""
         return replace(self, on=change(self.on), inside=change(self.inside), lay=change(self.lay))
 
     def has(self, key: str) -> bool:

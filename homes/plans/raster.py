@@ -53,7 +53,7 @@ def regions(mask: np.ndarray) -> np.ndarray:
 def clearance(free: np.ndarray) -> np.ndarray:
     """Int64, same shape: the squared distance in cells from each free cell to the nearest that is not; 0 where not.
 
-    Beyond the grid nothing is said, as in a Euclidean distance transform; a grid free throughout is far from all.
+    Cells beyond the grid do not count, as in a Euclidean distance transform; in a grid without obstacles all are far.
     """
     columns, rows = free.shape
     far = columns + rows

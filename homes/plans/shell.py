@@ -158,7 +158,7 @@ def _add_door(plan: Plan, door: Doorway, number: int, shell: Shell, faults: Faul
     names = {room.name for room in plan.rooms}
     unknown = [name for name in door.rooms if name not in names and name != OUTSIDE]
     if unknown:
-        faults.add(Code.UNKNOWN_OBJECT, f"a door to `{unknown[0]}`, which is no room of the plan", door.line,
+        faults.add(Code.UNKNOWN_OBJECT, f"a door to `{unknown[0]}`, which is not a room of the plan", door.line,
                    f"rooms are {', '.join(sorted(names))}, {OUTSIDE}")  # fmt: skip
         return
     room = plan.room(door.rooms[0])

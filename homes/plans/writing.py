@@ -40,11 +40,11 @@ def _room(room: Room) -> Iterator[str]:
 
 def _piece(piece: Piece) -> str:
     what = f"{piece.class_name}*{piece.count}" if piece.count > 1 else piece.class_name
-    said: dict[str, Any] = {"name": piece.name} if piece.name else {}
-    said |= {key: _place(value) for key, value in piece.place.items()}
-    said |= {key: size for key, size in zip(("width", "height", "depth"), piece.size, strict=True) if size}
-    said |= {key: list(own) for key, own in (("on", piece.on), ("in", piece.inside), ("lay", piece.lay)) if own}
-    return f"{what}: {_flow(said)}" if said else what
+    fields: dict[str, Any] = {"name": piece.name} if piece.name else {}
+    fields |= {key: _place(value) for key, value in piece.place.items()}
+    fields |= {key: size for key, size in zip(("width", "height", "depth"), piece.size, strict=True) if size}
+    fields |= {key: list(own) for key, own in (("on", piece.on), ("in", piece.inside), ("lay", piece.lay)) if own}
+    return f"{what}: {_flow(fields)}" if fields else what
 
 
 def _place(value: Any) -> Any:
@@ -60,15 +60,15 @@ def _window(window: Window) -> dict[str, Any]:
 
 
 def _door(door: Doorway) -> dict[str, Any]:
-    said: dict[str, Any] = {"between": list(door.rooms)}
+    fields: dict[str, Any] = {"between": list(door.rooms)}
     if door.wall:
-        said["wall"] = door.wall
+        fields["wall"] = door.wall
     if door.at is not None:
-        said["at"] = door.at
-    said["width"] = door.width
+        fields["at"] = door.at
+    fields["width"] = door.width
     if not door.leaf:
-        return {**said, "leaf": False}
-    return {**said, **({"into": door.into} if door.into else {}), "hinge": door.hinge}
+        return {**fields, "leaf": False}
+    return {**fields, **({"into": door.into} if door.into else {}), "hinge": door.hinge}
 
 
 def _metres(length: float) -> float:

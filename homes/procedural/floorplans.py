@@ -1,4 +1,4 @@
-"""Floor plans drawn by lot: two bands of rooms along a hall, turned and mirrored; every room opens onto the hall."""
+"""Procedural floor plans: two bands of rooms along a hall, turned and mirrored; every room opens onto the hall."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PROGRAMME: dict[int, tuple[tuple[str, ...], ...]] = {
          "kids_bedroom", "bathroom"),
     ),
 }  # fmt: skip
-"""Which rooms a home of so many has; the first is the hall, or the room that serves as one."""
+"""The rooms of a home by their number; the first is the hall, or the room that serves as one."""
 
 WIDTHS: dict[str, tuple[float, float]] = {
     "bathroom": (2.3, 3.0), "bedroom": (3.7, 4.5), "kids_bedroom": (3.5, 4.2), "kitchen": (3.9, 4.8),

@@ -1,4 +1,4 @@
-"""Furnishing a room by lot: what it holds stands in data_raw/furnishing.yaml, where it goes is tried out."""
+"""Procedural furnishing of a room: data_raw/furnishing.yaml lists its contents, places are tried at random."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ FRONT_OF_WINDOW = 0.9
 
 
 TABLES = {2: 1.1, 4: 1.4, 6: 1.8}
-"""Metres of table for so many people."""
+"""Metres of table by number of people."""
 RUN = frozenset({"dishwasher", "freezer", "fridge", "kitchen_counter", "oven", "stove"})
-"""What stands side by side in a kitchen."""
+"""Classes that stand side by side in a kitchen."""
 
 
 class UnfurnishableError(Exception):
@@ -278,7 +278,7 @@ def _couch(suite: Suite, shown: Thing) -> Piece:
 
 
 def _eating(suite: Suite) -> bool:
-    """A table laid for those who sit around it."""
+    """A table with chairs around it, and a setting for each."""
     rng, inner = suite.rng, suite.furnishing.inner
     large = suite.furnishing.room.class_name == "dining_room"
     name = rng.choice(("dining_table", "table")) if large else rng.choice(("kitchen_table", "table"))

@@ -1,4 +1,4 @@
-"""Homes by lot: a floor plan, furniture with clearances, and small things where the knowledge says they belong."""
+"""Procedural homes: a random floor plan, furniture with clearances, and small things at the knowledge's placements."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ROOM_TRIES = 4
 
 
 def generate(rooms: int, seed: int, knowledge: Knowledge) -> Layout:
-    """A home of so many rooms, furnished; the same for the same arguments.
+    """A furnished home with that number of rooms; the same for the same arguments.
 
     Args:
         rooms: from 3 to 9.

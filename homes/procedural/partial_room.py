@@ -1,4 +1,4 @@
-"""A room while it is furnished by lot."""
+"""A partially furnished room of a procedural home."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hearth.kb.knowledge import Knowledge
 
 @dataclass(slots=True)
 class Suite:
-    """A room while it is furnished by lot.
+    """A partially furnished room of a procedural home.
 
     Attributes:
         furnishing: what has its place so far, as for a plan.

@@ -1,4 +1,4 @@
-"""What stands on and in furniture, drawn by lot from the knowledge's placements and their weights."""
+"""Stocks furniture: things on and in it, drawn at random by the weights of the knowledge's placements."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from hearth.homes.plans.plan import Piece
 from hearth.kb.knowledge import Knowledge
 
 SHARPNESS = 3
-"""Weights are raised to this power: what merely happens is to stay rare."""
-LOOSE = ("Props", "Food", "Clothes", "Decor", "Electronics", "Lamps", "Appliances")
+"""Weights are raised to this power, so that rare placements stay rare."""
+MOVABLE = ("Props", "Food", "Clothes", "Decor", "Electronics", "Lamps", "Appliances")
 """Categories of what stands on and in things."""
 SHARE = 0.45
 """How much of a top or of a container's floors is filled at most."""
@@ -68,7 +68,7 @@ def _candidates(class_name: str, relation: str, room: str, knowledge: Knowledge)
         shaped = form(placement.object, knowledge)
         if known is None or shaped is None or holder is None or placement.relation != relation:
             continue
-        if placement.room not in ("", room) or known.category not in LOOSE or known.same_as:
+        if placement.room not in ("", room) or known.category not in MOVABLE or known.same_as:
             continue
         if shaped.mount != "item" or not _goes_in(shaped.size, holder.size, holder.shelves, relation):
             continue

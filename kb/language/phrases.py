@@ -1,4 +1,4 @@
-"""Steps in words and back: `[PutBack] <cup> <table>` is said `Put cup on table`."""
+"""Steps as phrases and back: `[PutBack] <cup> <table>` is `Put cup on table`."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
 
-Heard = tuple[Action, tuple[str, ...]]
-"""An action with the names of its objects, as they were said."""
+Parse = tuple[Action, tuple[str, ...]]
+"""An action with the names of its objects, as the sentence has them."""
 
 
 def say(action: Action, names: Sequence[str]) -> str:
-    """The step in words, names with spaces: `Pour milk into coffee cup`."""
+    """The step as a phrase, names with spaces: `Pour milk into coffee cup`."""
     return action.template.format(*(name.replace("_", " ") for name in names))
 
 
-def hear(knowledge: Knowledge, text: str) -> tuple[Heard, ...]:
+def parses(knowledge: Knowledge, text: str) -> tuple[Parse, ...]:
     """The steps that a sentence may mean, the likeliest first: those whose objects are all known come first.
 
-    An article before an object and a full stop are not heard; `go to the kitchen.` is a Walk to `kitchen`.
+    An article before an object and a full stop are skipped; `go to the kitchen.` is a Walk to `kitchen`.
     """
     cleaned = " ".join(text.strip().rstrip(".!").lower().split())
-    found: list[tuple[int, int, Heard]] = []
+    found: list[tuple[int, int, Parse]] = []
     for rank, (pattern, action) in enumerate(_patterns(knowledge)):
         match = pattern.fullmatch(cleaned)
         if match:
             names = tuple(_named(knowledge, name) for name in match.groups())
             unknown = sum(knowledge.object_class(name) is None for name in names)
             found.append((unknown, rank, (action, names)))
-    return tuple(dict.fromkeys(heard for _, _, heard in sorted(found, key=lambda each: each[:2])))
+    return tuple(dict.fromkeys(parse for _, _, parse in sorted(found, key=lambda each: each[:2])))
 
 
 def _named(knowledge: Knowledge, words: str) -> str:
@@ -42,16 +42,16 @@ def _named(knowledge: Knowledge, words: str) -> str:
 
 @lru_cache(maxsize=8)
 def _patterns(knowledge: Knowledge) -> tuple[tuple[re.Pattern[str], Action], ...]:
-    """A pattern for each way to say each action, templates before other words, longer ones first."""
-    spoken: list[tuple[bool, int, str, Action]] = []
+    """A pattern for each paraphrase of each action, templates before other words, longer ones first."""
+    templates: list[tuple[bool, int, str, Action]] = []
     for action in knowledge.actions.values():
         head, _, tail = action.template.lower().partition(" {0}")
-        spoken.append((False, -len(action.template), action.template.lower(), action))
+        templates.append((False, -len(action.template), action.template.lower(), action))
         for words in action.words:
             joined = f"{words} {{0}}{tail}" if action.arity else words
-            spoken.append((words != head, -len(joined), joined, action))
-    spoken.sort(key=lambda each: each[:3])
-    return tuple((_pattern(template), action) for _, _, template, action in spoken)
+            templates.append((words != head, -len(joined), joined, action))
+    templates.sort(key=lambda each: each[:3])
+    return tuple((_pattern(template), action) for _, _, template, action in templates)
 
 
 def _pattern(template: str) -> re.Pattern[str]:

@@ -1,4 +1,4 @@
-"""Steps in words to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
+"""Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 
 NUMBERED = re.compile(r"\s*(?:step\s*\d{1,4}\s*[.:)\]–-]?|\d{1,4}\s*[.:)\]]|[-*•])\s+(?=\S)", re.IGNORECASE)
-"""How a line begins that is a step in words."""
+"""The beginning of a line that is a natural-language step."""
 
 TITLE = re.compile(r"\s*(?:task|title|activity|goal)\s*:\s*", re.IGNORECASE)
-"""How the line of a title may begin."""
+"""The optional beginning of a title's line."""
 
 
 class Header(NamedTuple):
-    """What stands above the steps."""
+    """The text above the steps."""
 
     title: str
     description: str
@@ -42,16 +42,16 @@ _JOINTS = re.compile(r"(?:,|;)?\s+(?:and then|then|and)\s+|[;,]\s+|\.\s+(?=[A-Z]
 _PRONOUN = re.compile(r"\b(?:it|them)\b", re.IGNORECASE)
 
 
-class Spoken(NamedTuple):
-    """A program as far as it was understood; faults for what was not, warnings for what was nearly."""
+class ParsedSteps(NamedTuple):
+    """The program of the steps understood, faults for those not understood, warnings for fuzzy matches."""
 
     program: Program
     faults: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...]
 
 
-def parse_steps(text: str, before: int, place: str, known: Knowledge) -> Spoken:
-    """Read steps in words; instances are not said, so that every name is its instance 1.
+def parse_steps(text: str, before: int, place: str, known: Knowledge) -> ParsedSteps:
+    """Parse natural-language steps. They name no instances, so that every object is instance 1.
 
     A line may ask for several things ("open the fridge and take the milk out"), where each of them is understood; `it`
     is what the last step was about.
@@ -62,20 +62,20 @@ def parse_steps(text: str, before: int, place: str, known: Knowledge) -> Spoken:
         place: the file, for diagnostics.
         known: the grammar.
     """
-    listener = _Listener(known, place)
+    parser = _StepParser(known, place)
     for number, line in enumerate(text.split("\n"), before + 1):
         match = NUMBERED.match(line)
         if match:
-            listener.line(line, match.end(), number)
+            parser.line(line, match.end(), number)
     top = header(text)
-    if not listener.steps and not listener.faults:
+    if not parser.steps and not parser.faults:
         fault = Diagnostic(Code.EMPTY, f"`{top.title[:60]}` has no steps", place, before + 1)
-        listener.faults.append(fault)
-    program = Program(top.title, top.description, tuple(listener.steps), tuple(listener.lines))
-    return Spoken(program, tuple(listener.faults), tuple(listener.warnings))
+        parser.faults.append(fault)
+    program = Program(top.title, top.description, tuple(parser.steps), tuple(parser.lines))
+    return ParsedSteps(program, tuple(parser.faults), tuple(parser.warnings))
 
 
-class _Listener:
+class _StepParser:
     def __init__(self, known: Knowledge, place: str) -> None:
         self.known, self.place = known, place
         self.steps: list[Step] = []
@@ -96,12 +96,12 @@ class _Listener:
                 self._add(part, number)
         elif whole.meant:
             self._add(whole.meant, number)
-            self.warnings.append(self._nearly(whole.meant, line, start, words, number))
+            self.warnings.append(self._fuzzy(whole.meant, line, start, words, number))
         else:
             self.faults.append(self._fault(whole.candidates, whole.ambiguous, line, start, words, number))
 
     def _parts(self, words: str) -> list[Candidate]:
-        """What several clauses ask for, where every one of them is said word by word; else nothing."""
+        """The steps of several clauses where every clause is an exact paraphrase; else none."""
         clauses = [clause for clause in _JOINTS.split(words) if clause]
         if len(clauses) < 2:
             return []
@@ -126,8 +126,8 @@ class _Listener:
         self.steps.append(Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)))
         self.lines.append(number)
 
-    def _nearly(self, meant: Candidate, line: str, start: int, words: str, number: int) -> Diagnostic:
-        message = f"taken for `{said(meant)}`, similarity {meant.score:.2f}"
+    def _fuzzy(self, meant: Candidate, line: str, start: int, words: str, number: int) -> Diagnostic:
+        message = f"taken for `{phrase(meant)}`, similarity {meant.score:.2f}"
         return Diagnostic(Code.FUZZY_MATCH, message, self.place, number, start + 1, len(words), words[:200], "", line)
 
     def _fault(
@@ -135,11 +135,12 @@ class _Listener:
     ) -> Diagnostic:
         code = Code.AMBIGUOUS if ambiguous else Code.NOT_UNDERSTOOD
         message = "words that may mean several things" if ambiguous else "words that mean no step"
-        told = " or ".join(f"`{said(each)}` ({each.score:.2f})" for each in near)
-        remedy = f"did you mean {told}?" if told else "write one thing to do a line, as in `Walk to kitchen`"
+        near_phrases = " or ".join(f"`{phrase(each)}` ({each.score:.2f})" for each in near)
+        otherwise = "write one step a line, as in `Walk to kitchen`"
+        remedy = f"did you mean {near_phrases}?" if near_phrases else otherwise
         return Diagnostic(code, message, self.place, number, start + 1, len(words), words[:200], remedy, line[:200])
 
 
-def said(candidate: Candidate) -> str:
-    """A candidate in words."""
+def phrase(candidate: Candidate) -> str:
+    """A candidate as a phrase."""
     return say(candidate.action, candidate.names)

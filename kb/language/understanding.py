@@ -1,4 +1,4 @@
-"""What a sentence asks for: the step it means, how sure that is, and what else it may mean."""
+"""Language understanding: the step that a sentence means, with a score and alternatives."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge, key_of
-from hearth.kb.language.phrases import Heard, hear
+from hearth.kb.language.phrases import Parse, parses
 from hearth.kb.records import Action
 
 ACCEPTED = 0.75
-"""The similarity from which the nearest valid instruction is taken for what was meant."""
+"""The similarity from which the nearest valid instruction is accepted as the meaning."""
 
 MARGIN = 0.03
-"""How much nearer the best must be than the second; what is not is ambiguous."""
+"""The least difference between the best and the second similarity; below it a sentence is ambiguous."""
 
 _WEAK = 0.5
 _HEADS = 8
@@ -26,7 +26,7 @@ _ARTICLE = re.compile(r"\b(?:the|a|an|some|my|your|his|her|their)\b ")
 
 
 class Candidate(NamedTuple):
-    """A valid instruction that a sentence may mean, and how near it is: 1 for what is said word by word."""
+    """A valid instruction that a sentence may mean, and its similarity: 1 for an exact paraphrase."""
 
     score: float
     action: Action
@@ -34,14 +34,14 @@ class Candidate(NamedTuple):
 
 
 class Understood(NamedTuple):
-    """What was made of a sentence; `meant` is None where nothing is near or two things are equally near."""
+    """The meaning of a sentence; `meant` is None where no candidate is near or two are equally near."""
 
     meant: Candidate | None
     candidates: tuple[Candidate, ...]
 
     @property
     def ambiguous(self) -> bool:
-        """Whether something is near enough, but not one thing alone."""
+        """Whether several candidates are near enough."""
         return self.meant is None and bool(self.candidates) and self.candidates[0].score >= ACCEPTED
 
 
@@ -78,19 +78,19 @@ def _cleaned(sentence: str) -> str:
 
 
 def _exact(knowledge: Knowledge, text: str) -> tuple[Candidate, ...]:
-    """What is said word by word, of known things; those that afford it first."""
-    known = [heard for heard in hear(knowledge, text) if all(map(knowledge.object_class, heard[1]))]
-    known.sort(key=lambda heard: not _afforded(knowledge, heard))
-    return tuple(Candidate(1.0, *heard) for heard in known[:_SHOWN])
+    """The exact paraphrases about known objects; those that afford the action first."""
+    known = [parse for parse in parses(knowledge, text) if all(map(knowledge.object_class, parse[1]))]
+    known.sort(key=lambda parse: not _afforded(knowledge, parse))
+    return tuple(Candidate(1.0, *parse) for parse in known[:_SHOWN])
 
 
-def _afforded(knowledge: Knowledge, heard: Heard) -> bool:
-    action, names = heard
+def _afforded(knowledge: Knowledge, parse: Parse) -> bool:
+    action, names = parse
     return all(knowledge.affords(action.name, place, name) for place, name in enumerate(names))
 
 
-class _Way(NamedTuple):
-    """One way to say an action: the words before its first object, between, and after its objects."""
+class _Paraphrase(NamedTuple):
+    """A paraphrase of an action: the words before its first object and between its objects."""
 
     head: str
     between: str
@@ -98,17 +98,17 @@ class _Way(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def _ways(knowledge: Knowledge) -> dict[str, tuple[_Way, ...]]:
-    """Ways by their first words, so that each beginning is compared once."""
-    found: dict[str, list[_Way]] = {}
+def _paraphrases(knowledge: Knowledge) -> dict[str, tuple[_Paraphrase, ...]]:
+    """Paraphrases by their first words, so that each beginning is compared once."""
+    found: dict[str, list[_Paraphrase]] = {}
     for action in knowledge.actions.values():
-        said = [action.template.lower(), *(f"{words} {{0}}" if action.arity else words for words in action.words)]
+        templates = [action.template.lower(), *(f"{words} {{0}}" if action.arity else words for words in action.words)]
         tail = action.template.lower().partition("{0}")[2].strip()
-        for template in said:
+        for template in templates:
             head, _, rest = template.partition("{0}")
             between = (rest.strip() or tail if action.arity > 1 else "").replace("{1}", "").strip()
-            found.setdefault(head.strip(), []).append(_Way(head.strip(), between, action))
-    return {head: tuple(dict.fromkeys(ways)) for head, ways in found.items()}
+            found.setdefault(head.strip(), []).append(_Paraphrase(head.strip(), between, action))
+    return {head: tuple(dict.fromkeys(alike)) for head, alike in found.items()}
 
 
 def _near(knowledge: Knowledge, text: str) -> Iterator[Candidate]:
@@ -116,23 +116,23 @@ def _near(knowledge: Knowledge, text: str) -> Iterator[Candidate]:
     from rapidfuzz.distance import Levenshtein
 
     words = text.split()
-    ways = _ways(knowledge)
+    paraphrases = _paraphrases(knowledge)
     for size in range(1, min(4, len(words)) + 1):
         guess, rest = " ".join(words[:size]), " ".join(words[size:])
         scorer = Levenshtein.normalized_similarity
-        heads = process.extract(guess, list(ways), scorer=scorer, limit=_HEADS, score_cutoff=_WEAK)
+        heads = process.extract(guess, list(paraphrases), scorer=scorer, limit=_HEADS, score_cutoff=_WEAK)
         for head, _, _ in heads:
-            for way in ways[head]:
-                yield from _filled(knowledge, text, way, rest)
+            for paraphrase in paraphrases[head]:
+                yield from _filled(knowledge, text, paraphrase, rest)
 
 
-def _filled(knowledge: Knowledge, text: str, way: _Way, rest: str) -> Iterator[Candidate]:
-    """A way to say it with the known objects nearest to the words that follow."""
-    if way.action.arity == 0:
-        yield Candidate(_similar(text, way.head), way.action, ())
+def _filled(knowledge: Knowledge, text: str, paraphrase: _Paraphrase, rest: str) -> Iterator[Candidate]:
+    """A paraphrase with the known objects nearest to the words that follow."""
+    if paraphrase.action.arity == 0:
+        yield Candidate(_similar(text, paraphrase.head), paraphrase.action, ())
         return
-    parts = [rest] if way.action.arity == 1 else [*map(str.strip, rest.split(f" {way.between} ", 1))]
-    if len(parts) != way.action.arity:
+    parts = [rest] if paraphrase.action.arity == 1 else [*map(str.strip, rest.split(f" {paraphrase.between} ", 1))]
+    if len(parts) != paraphrase.action.arity:
         return
     guesses = [_objects(knowledge, _ARTICLE.sub("", f"{part} ").strip()) for part in parts]
     if not all(guesses):
@@ -141,9 +141,9 @@ def _filled(knowledge: Knowledge, text: str, way: _Way, rest: str) -> Iterator[C
         for second in guesses[1] if len(guesses) > 1 else [None]:
             chosen = [first, *([second] if second else [])]
             names = tuple(name for _, name in chosen)
-            said = f" {way.between} ".join(spelt for spelt, _ in chosen)
-            if _afforded(knowledge, (way.action, names)):
-                yield Candidate(_similar(text, f"{way.head} {said}"), way.action, names)
+            objects = f" {paraphrase.between} ".join(spelt for spelt, _ in chosen)
+            if _afforded(knowledge, (paraphrase.action, names)):
+                yield Candidate(_similar(text, f"{paraphrase.head} {objects}"), paraphrase.action, names)
 
 
 def _similar(text: str, phrase: str) -> float:

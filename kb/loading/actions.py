@@ -41,7 +41,7 @@ def load_actions(layers: Layers, derived: Iterable[str], faults: Faults) -> dict
         faults.at(written[name], f"`{name}` stands in actions.yaml too", "an action is executed or only written")
     entries = {**written, **executed}
     for name in sorted(grammar.keys() - entries.keys()):
-        faults.at(grammar[name], f"`{name}` is no action", code=Code.UNKNOWN_ACTION)
+        faults.at(grammar[name], f"`{name}` is not a known action", code=Code.UNKNOWN_ACTION)
     result = {}
     for name, entry in entries.items():
         if isinstance(entry.value, dict):
@@ -96,7 +96,7 @@ def _requirement(value: Any, at: Entry, faults: Faults) -> Requirement:
     if value in ("anything", "object"):
         return Requirement(anything=True, no_rooms=value == "object")
     if not isinstance(value, dict):
-        faults.at(at, f"`{value}` is no requirement", "anything, object, or a mapping")
+        faults.at(at, f"`{value}` is not a requirement", "anything, object, or a mapping")
         return Requirement()
     for key in sorted(value.keys() - _REQUIREMENT_KEYS):
         faults.at(at, f"`{key}` is not part of a requirement", f"parts are {', '.join(sorted(_REQUIREMENT_KEYS))}")
@@ -114,7 +114,7 @@ def _conditions(rows: Iterable[Any], at: Entry, faults: Faults) -> Iterator[Cond
     for row in rows:
         checks = [(code, text) for code, text in row.items() if code != "option"] if isinstance(row, dict) else []
         if len(checks) != 1 or checks[0][0] not in Code.__members__:
-            faults.at(at, f"`{row}` is no check", "write `FAILURE_CODE: formula`")
+            faults.at(at, f"`{row}` is not a check", "write `FAILURE_CODE: formula`")
             continue
         code, text = checks[0]
         formula = parsed(parse_formula, text, at, faults)
@@ -133,7 +133,7 @@ def _effects(rows: Iterable[Any], at: Entry, entries: Mapping[str, Entry], fault
             for effect in _effects(entries[row["like"]].value.get("effects") or (), at, entries, faults):
                 yield _under(when or TRUE, effect)
         else:
-            faults.at(at, f"`{row}` is no effect", "write a change, or `like: Action`")
+            faults.at(at, f"`{row}` is not an effect", "write a change, or `like: Action`")
 
 
 def _under(condition: Formula, effect: Effect) -> Effect:
@@ -164,7 +164,7 @@ def _check_literals(action: Action, known: set[str], at: Entry, faults: Faults) 
         for unknown in sorted(predicates(part) - known):
             faults.at(at, f"in `{part}`: nothing says what `{unknown}` is", "see derived.yaml")
         for unbound in sorted(free(part) - variables):
-            faults.at(at, f"in `{part}`: `{unbound}` is no argument of {action.name} and is not bound")
+            faults.at(at, f"in `{part}`: `{unbound}` is not an argument of {action.name} and is not bound")
 
 
 def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) -> dict[str, Repair]:
@@ -175,10 +175,10 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
         for key in sorted(fields.keys() - _REPAIR_KEYS):
             faults.at(entry, f"`{key}` is not part of a repair", f"parts are {', '.join(sorted(_REPAIR_KEYS))}")
         if fields.get("on") not in Code.__members__:
-            faults.at(entry, f"`{fields.get('on')}` is no failure code")
+            faults.at(entry, f"`{fields.get('on')}` is not a failure code")
             continue
         for unknown in sorted(set(strings(fields.get("actions"))) - actions.keys()):
-            faults.at(entry, f"`{unknown}` is no action", code=Code.UNKNOWN_ACTION)
+            faults.at(entry, f"`{unknown}` is not a known action", code=Code.UNKNOWN_ACTION)
         result[name] = Repair(
             name=name,
             code=Code[fields["on"]],

@@ -1,4 +1,4 @@
-"""The files of one directory laid over another's: what a later layer says of a name replaces what an earlier said."""
+"""The files of one directory laid over another's: a later layer's entry replaces an earlier one's of the same name."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def csv_rows(
 
 
 def parsed(parser: Callable[[str], T], text: object, at: Entry, faults: Faults) -> T | None:
-    """What the parser makes of the text; None, and its faults with their place, when it cannot."""
+    """The parser's value for the text; None when it fails, its faults noted with their place."""
     try:
         return parser(str(text))
     except HearthError as error:
@@ -72,7 +72,7 @@ def check_properties(names: Iterable[str], at: Entry, faults: Faults) -> frozens
     given = frozenset(names)
     for name in sorted(given - _KNOWN_PROPERTIES):
         near = get_close_matches(name.upper(), PROPERTIES, 1, 0.5)
-        faults.at(at, f"`{name}` is no property", f"did you mean `{near[0]}`?" if near else "")
+        faults.at(at, f"`{name}` is not a known property", f"did you mean `{near[0]}`?" if near else "")
     return given
 
 

@@ -41,7 +41,7 @@ class Faults(list[Diagnostic]):
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 LARGEST = 4 << 20
-"""Bytes of a file of somebody else's knowledge, at most; ours is smaller by far."""
+"""Largest size of a file of an overlay, in bytes."""
 MOST = 100_000
 """Values in one, aliases written out."""
 DEEPEST = 20
@@ -49,9 +49,9 @@ DEEPEST = 20
 
 
 def check_extent(path: Path, faults: Faults) -> None:
-    """Refuse a file that takes too much to read, by its size or by aliases that stand for more than they take to write.
+    """Refuse a file that is too costly to read, by its size or by aliases that expand to too many values.
 
-    Ours need no such check. A fault of form is left for the reader to name.
+    Our own files are not checked. Faults of form are left to the reader.
     """
     remedy = f"at most {LARGEST:,} bytes, {MOST:,} values, {DEEPEST} in one another"
     size = path.stat().st_size

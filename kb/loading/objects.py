@@ -55,7 +55,7 @@ def load_kinds(layers: Layers, faults: Faults) -> dict[str, Kind]:
         faults.at(rows[name,], f"`{name}` is a kind of itself in a circle")
     for name, kind in kinds.items():
         if kind.parent and kind.parent not in kinds:
-            faults.at(rows[name,], f"`{kind.parent}` is no kind")
+            faults.at(rows[name,], f"`{kind.parent}` is not a known kind")
     return kinds
 
 
@@ -76,7 +76,7 @@ def load_objects(
         if name in circular:
             faults.at(at[name], f"`{name}` is a synonym of itself in a circle", "let one have its own facts")
         elif thing.same_as and thing.same_as not in made:
-            faults.at(at[name], f"`{thing.same_as}` is no object", code=Code.UNKNOWN_OBJECT)
+            faults.at(at[name], f"`{thing.same_as}` is not a known object", code=Code.UNKNOWN_OBJECT)
         elif not thing.same_as and thing.hypernym not in kinds and thing.hypernym not in made:
             faults.at(at[name], f"`{thing.hypernym}` is neither a kind nor a class", "see kinds.csv")
     result = made if faults else {name: _twin(thing, made) for name, thing in made.items()}
@@ -122,7 +122,7 @@ def _size(text: str, at: Entry, faults: Faults) -> tuple[float, float, float]:
     try:
         width, height, depth = (float(part) for part in text.split())
     except ValueError:
-        faults.at(at, f"`{text}` is no size", "width, height and depth in metres: `0.6 1.8 0.65`")
+        faults.at(at, f"`{text}` is not a size", "width, height and depth in metres: `0.6 1.8 0.65`")
         return (0.0, 0.0, 0.0)
     return (width, height, depth)
 
@@ -146,11 +146,11 @@ def load_placements(layers: Layers, known: Container[str], faults: Faults) -> li
         thing, relation, destination, room, weight, evidence = entry.value
         for name in (thing, destination, room):
             if name and name not in known:
-                faults.at(entry, f"`{name}` is no object", code=Code.UNKNOWN_OBJECT)
+                faults.at(entry, f"`{name}` is not a known object", code=Code.UNKNOWN_OBJECT)
         if relation not in EDGES:
-            faults.at(entry, f"`{relation}` is no relation", "ON, IN or NEARBY")
+            faults.at(entry, f"`{relation}` is not a known relation", "ON, IN or NEARBY")
         if weight not in _WEIGHTS:
-            faults.at(entry, f"`{weight}` is no weight", "1 (it happens) to 5 (its place); 0 removes")
+            faults.at(entry, f"`{weight}` is not a weight", "1 (it happens) to 5 (its place); 0 removes")
         elif weight != "0":
             result.append(Placement(thing, relation, destination, room, int(weight), evidence))
     return result
@@ -166,13 +166,13 @@ def load_associations(
         name, relation, other, weight, evidence = entry.value
         others = {"goes_with": objects, "serves": actions}.get(relation)
         if name not in objects:
-            faults.at(entry, f"`{name}` is no object", code=Code.UNKNOWN_OBJECT)
+            faults.at(entry, f"`{name}` is not a known object", code=Code.UNKNOWN_OBJECT)
         if others is None:
-            faults.at(entry, f"`{relation}` is no association", "goes_with or serves")
+            faults.at(entry, f"`{relation}` is not a known association", "goes_with or serves")
         elif other not in others:
-            faults.at(entry, f"`{other}` is no {'object' if relation == 'goes_with' else 'action'}")
+            faults.at(entry, f"`{other}` is not a known {'object' if relation == 'goes_with' else 'action'}")
         if weight not in _WEIGHTS:
-            faults.at(entry, f"`{weight}` is no weight", "1 to 5; 0 removes")
+            faults.at(entry, f"`{weight}` is not a weight", "1 to 5; 0 removes")
         elif weight != "0":
             result.append(Association(name, relation, other, int(weight), evidence))
     return tuple(result)
@@ -192,7 +192,7 @@ def load_aliases(layers: Layers, known: Container[str], faults: Faults) -> dict[
         while target in direct:
             target = direct[target]
         if target not in known:
-            faults.at(entry, f"`{target}` is no object", code=Code.UNKNOWN_OBJECT)
+            faults.at(entry, f"`{target}` is not a known object", code=Code.UNKNOWN_OBJECT)
         elif name in known:
             faults.at(entry, f"`{name}` is a class of its own", f"it cannot also mean `{target}`")
         else:
@@ -208,9 +208,9 @@ def load_stand_ins(layers: Layers, known: Container[str], faults: Faults) -> dic
         name, rank, stand_in, _ = entry.value
         for thing in (name, stand_in):
             if thing not in known:
-                faults.at(entry, f"`{thing}` is no object", code=Code.UNKNOWN_OBJECT)
+                faults.at(entry, f"`{thing}` is not a known object", code=Code.UNKNOWN_OBJECT)
         if not rank.isdecimal():
-            faults.at(entry, f"`{rank}` is no rank", "1 for the best, then 2, ...")
+            faults.at(entry, f"`{rank}` is not a rank", "1 for the best, then 2, ...")
             continue
         found.setdefault(name, []).append((int(rank), stand_in))
     return {name: tuple(thing for _, thing in sorted(ranked)) for name, ranked in found.items()}

@@ -17,12 +17,12 @@ def export(knowledge: Knowledge, form: str, to: Path | None = None) -> str:
     """Write the knowledge as one of `FORMS` to a file; without one, the text is returned.
 
     Raises:
-        HearthError: the form is unknown, or it is no text and there is no file to write it to.
+        HearthError: the form is unknown, or it is binary and no file is given.
     """
     if form == "duckdb":
         return _database(knowledge, to)
     if form not in FORMS:
-        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is no form", suggestion=f"{', '.join(FORMS)}, duckdb")
+        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is not a form", suggestion=f"{', '.join(FORMS)}, duckdb")
     text = FORMS[form](knowledge)
     if to is None:
         return text

@@ -1,4 +1,4 @@
-"""Which things can be done something with, are in some place, have some property."""
+"""Classes by affordance, place, property, state and kind."""
 
 from __future__ import annotations
 
@@ -115,8 +115,9 @@ def unknown(knowledge: Knowledge, name: str, kind: str) -> Diagnostic:
     code = Code.UNKNOWN_ACTION if kind == "action" else Code.UNKNOWN_OBJECT
     near = knowledge.suggest(name, kind)
     suggestion = f"did you mean {' or '.join(f'`{other}`' for other in near)}?" if near else ""
-    return Diagnostic(code, f"`{name}` is no {kind}", found=name, suggestion=suggestion)
+    return Diagnostic(code, f"`{name}` is not a known {kind}", found=name, suggestion=suggestion)
 
 
 def _bad(name: str, kind: str, known: tuple[str, ...]) -> Diagnostic:
-    return Diagnostic(Code.BAD_TABLE, f"`{name}` is no {kind}", found=name, suggestion=f"they are {', '.join(known)}")
+    remedy = f"they are {', '.join(known)}"
+    return Diagnostic(Code.BAD_TABLE, f"`{name}` is not a known {kind}", found=name, suggestion=remedy)

@@ -103,7 +103,7 @@ def _moves(knowledge: Knowledge) -> frozenset[str]:
 
 
 def _handling(knowledge: Knowledge) -> frozenset[str]:
-    """Actions that are done on the way to a purpose; no object is said to serve them."""
+    """Actions that are done on the way to a purpose; no object serves them."""
     means = frozenset().union(*map(knowledge.group, ("handling", "operates", "takes", "frees_hand")))
     return _moves(knowledge) | means - knowledge.group("dresses")
 

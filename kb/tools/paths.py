@@ -1,4 +1,4 @@
-"""How two things are related: the most telling chain of facts from one to the other."""
+"""How two things are related: the most specific chain of facts from one to the other."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 class Link(NamedTuple):
-    """One fact of a chain, told in the direction of the chain.
+    """One fact of a chain, in the direction of the chain.
 
     Attributes:
         source: where the chain stands.
         relation: `ON`, `goes_with`, `is_a`, ...
         target: where it goes.
-        forward: whether the fact itself says source -> target; otherwise target -> source.
-        evidence: who says so, where that is recorded.
+        forward: whether the fact is source -> target; otherwise it is target -> source.
+        evidence: the source of the fact, where recorded.
     """
 
     source: str
@@ -46,7 +46,7 @@ COSTS = {
     "is_a": 2.0,
     "found_in": 3.5,
 }
-"""What a step along a fact costs: little where it says much. Properties, states and affordances say too little."""
+"""Cost of following a fact: low for specific facts. Properties, states and affordances are not followed."""
 
 
 def path(knowledge: Knowledge, first: str, second: str) -> tuple[Link, ...]:

@@ -1,8 +1,8 @@
 """The knowledge as PDDL: how formulas, requirements and effects are written, and the domain of all executed actions.
 
 In that domain places, states and properties become predicates; derived predicates become axioms; what depends on a
-found thing (`room(o)`) is said of every thing that is found so. Where a Grab would remember one of several places, the
-domain remembers all of them, which is the only way it differs from the engine.
+found thing (`room(o)`) is stated for every such thing. Where a Grab would remember one of several places, the
+domain remembers all of them, its only difference from the engine.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def both(parts: list[str]) -> str:
 
 
 class Writer:
-    """Writes actions. A subclass says what finds a thing, what derived predicates are, and how variables are called."""
+    """Writes actions. A subclass defines functions, derived predicates and the names of variables."""
 
     agent = typed = ""
     """The types of a character and of other things, as ` - object`."""

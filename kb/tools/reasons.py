@@ -1,4 +1,4 @@
-"""Who says so, and why: the reasons of corrections.yaml for differing from the release."""
+"""The evidence of facts: the reasons of corrections.yaml for differing from the release."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Rule:
         }
 
     def covers(self, fact: Fact) -> bool:
-        """Whether every part of the fact is among those named; what rests on which property is not asked."""
+        """Whether every part of the fact is among those named; the properties that a fact rests on are not compared."""
         given = dict(zip(FIELDS[self.table], fact, strict=True))
         if self.same and given["object"] != given["destination"]:
             return False
@@ -88,7 +88,7 @@ class Reasons:
         return why or ("ours" if table == "synonyms" else "")
 
     def cell(self, action: str, position: int, name: str) -> str:
-        """Who says that the grammar takes a class there: the release's matrix, or we, with the reason."""
+        """The evidence that the grammar accepts a class there: the release's matrix, or ours with the reason."""
         if self.knowledge.objects[name].source != "release":
             return f"ours: {name} is not among the release's objects"
         if self.knowledge.actions[action].source != "release":

@@ -40,7 +40,7 @@ def about_object(knowledge: Knowledge, thing: ObjectClass) -> dict[str, Any]:
 
 
 def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
-    """Everything about an action: what it takes, needs and changes, how it is said, what repairs it."""
+    """Everything about an action: what it takes, needs and changes, its phrase, its repairs."""
     return {
         "name": action.name,
         "id": action.id,
@@ -78,8 +78,8 @@ def _our_own(knowledge: Knowledge, name: str, taken: list[list[str]]) -> list[di
         return []
     reasons = Reasons(knowledge)
     cells = ((action, position) for position in (0, 1) for action in taken[position])
-    said = ((action, reasons.cell(action, position, name)) for action, position in cells)
-    return [{"action": action, "evidence": evidence} for action, evidence in said if evidence != "release"]
+    evidence_of = ((action, reasons.cell(action, position, name)) for action, position in cells)
+    return [{"action": action, "evidence": evidence} for action, evidence in evidence_of if evidence != "release"]
 
 
 def _placed(placement: Placement, *ends: str) -> dict[str, Any]:

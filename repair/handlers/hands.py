@@ -1,4 +1,4 @@
-"""Full hands, empty hands, and things whose place nobody remembers."""
+"""Full hands, empty hands, and things without a remembered origin."""
 
 from __future__ import annotations
 

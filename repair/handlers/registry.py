@@ -1,4 +1,4 @@
-"""Which handler repairs which failure. To add one: a function, a row here, a test, its say in kb/data/repairs.yaml."""
+"""Handlers by failure code. To add one: a function, a row here, a test, its words in kb/data/repairs.yaml."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ UNREPAIRABLE: dict[Code, str] = {
     Code.NOT_SIMULATED: "the action is never executed",
     Code.NO_PATH: "no door leads there, open or closed",
     Code.NO_ROOM: "the object is in no room, so nobody can go to it",
-    Code.UNBOUND: "the object is no node of this home",
+    Code.UNBOUND: "the object is not a node of this home",
     Code.UNKNOWN_ACTION: "there is no such action",
     Code.UNKNOWN_AGENT: "the home has fewer characters than the program",
 }
@@ -67,4 +67,4 @@ def unclassified() -> tuple[Code, ...]:
 
 
 if unclassified():
-    raise AssertionError(f"say what is to be done about {', '.join(unclassified())}: repair/handlers/registry.py")
+    raise AssertionError(f"add a handler or a reason for {', '.join(unclassified())}: repair/handlers/registry.py")

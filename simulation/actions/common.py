@@ -66,7 +66,7 @@ def becomes(state: int) -> Effect:
 
 
 def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
-    """The action of one object that makes these checks in order and then has this effect, or changes nothing."""
+    """The action of one object that makes these checks in order and then has this effect, or has none."""
     refusals = tuple(check.refuse for check in checks)
     masks = tuple(check.mask for check in reversed(checks))  # the last are the cheapest and most often empty
 

@@ -18,7 +18,7 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     """A DOOR_CLOSED failure when every way from the character's room to `room` leads through a closed door.
 
     A home whose doors do not say what they part, or parts no one can walk between even with every door open, stops
-    nobody: the graph does not know the way. Doorways without a door are always open.
+    nobody: the graph does not have the way. Doorways without a door are always open.
     """
     home = world.home
     start = rows.agent_room(world, agent)

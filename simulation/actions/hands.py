@@ -181,10 +181,10 @@ def _putable_in(s: Situation) -> Masks:
 
 
 def _returnable(s: Situation) -> Masks:
-    shut = s.home.properties["CAN_OPEN"] & ~s.states[OPEN]
+    closed = s.home.properties["CAN_OPEN"] & ~s.states[OPEN]
     mask = 0
     for o, place, kind in s.me.origins:
-        if s.held >> o & 1 and s.close >> place & 1 and not (kind == kinds.INSIDE and shut >> place & 1):
+        if s.held >> o & 1 and s.close >> place & 1 and not (kind == kinds.INSIDE and closed >> place & 1):
             mask |= 1 << o
     return some(mask)
 

@@ -76,7 +76,7 @@ def legal(
     Args:
         world: now.
         agent: number of the agent.
-        rules: as the engine is to read the actions.
+        rules: of the engine.
         only_visible: leave out instructions about what the agent does not see (see `reach.visible`).
         only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
             action itself would not mind.

@@ -1,4 +1,4 @@
-"""A world as one agent meets it: what the masks of several actions ask, found once."""
+"""A world for one agent, with sets of nodes that the masks of several actions share."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hearth.simulation.world.world import World
 
 
 class Situation:
-    """A world as one agent meets it; what several actions ask is found out once, when first asked."""
+    """A world for one agent; the sets that several actions share are computed once, on first use."""
 
     def __init__(self, world: World, number: int, rules: Rules) -> None:
         self.world = world
@@ -31,22 +31,22 @@ class Situation:
 
     @cached_property
     def facing(self) -> int:
-        """What the agent faces."""
+        """Things that the agent faces."""
         return reach.faced_by(self.world, self.me)
 
     @cached_property
     def hidden(self) -> int:
-        """What is shut away."""
+        """Things inside closed containers."""
         return reach.hidden(self.world)
 
     @cached_property
     def walkable(self) -> int:
-        """What can be walked to, once the agent stands."""
+        """Things that can be walked to, once the agent stands."""
         return reach.walkable(self.world, self.me, self.rules.doors)
 
     @cached_property
     def held_by_others(self) -> int:
-        """What other characters hold."""
+        """Things that other characters hold."""
         found = 0
         for number, other in enumerate(self.world.agents):
             if number != self.number:

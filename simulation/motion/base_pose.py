@@ -1,4 +1,4 @@
-"""Where to stand, which hand, which way to face: what a binding chooses beside the objects (thesis 2.4.1)."""
+"""Hand and base pose of each step: the place to stand, the way to face, the hand (thesis 2.4.1)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RIGHT, LEFT = "right", "left"
 
 @dataclass(frozen=True, slots=True)
 class HandAndBasePose:
-    """How a character does a step.
+    """The hand and the base pose of a character for a step.
 
     Attributes:
         agent: its number.
@@ -34,7 +34,7 @@ class HandAndBasePose:
 def hand_and_base_poses(
     execution: Execution, ways: Ways, rules: Rules = DEFAULT
 ) -> tuple[tuple[HandAndBasePose, ...], ...]:
-    """For each tick done, how each of its characters stands for its step, once it has arrived and turned.
+    """For each tick done, the hand and the base pose of each acting character, once it has arrived and turned.
 
     Args:
         execution: in a home with geometry.
@@ -49,7 +49,7 @@ def hand_and_base_poses(
     for steps, after in zip(execution.program.ticks(), execution.worlds[1:], strict=False):
         tick = tuple(_each(here, steps, ways, rules))
         found.append(tick)
-        poses = {how.agent: how.pose for how in tick}
+        poses = {each.agent: each.pose for each in tick}
         here = Located(after, tuple(poses.get(number, pose) for number, pose in enumerate(here.poses)))
     return tuple(found)
 
@@ -74,7 +74,7 @@ def _turned(pose: Pose, here: Located, step: Step) -> Pose:
 
 
 def hand_of(step: Step, before: World, after: World) -> str | None:
-    """Which hand does a step: the one that takes or gives, else a free one, else the right."""
+    """The hand of a step: the one that takes or gives, else a free one, else the right."""
     old, new = before.agents[step.agent], after.agents[step.agent]
     if old.right != new.right:
         return RIGHT

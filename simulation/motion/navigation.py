@@ -1,4 +1,4 @@
-"""Ways over the floor: shortest free paths, where to stand for a thing, and who is in the way (thesis 2.3.1, 2.4.1)."""
+"""Navigation: shortest free paths, base poses for things, and other characters as obstacles (thesis 2.3.1, 2.4.1)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Pose(NamedTuple):
 
     @property
     def point(self) -> Spot:
-        """Where, whatever the look."""
+        """The position alone."""
         return (self.x, self.z)
 
     def towards(self, point: Spot) -> Pose:

@@ -1,4 +1,4 @@
-"""Questions about all nodes at once, answered as bit sets: what is close, faced, shut away, in a room, within reach."""
+"""Sets of nodes as bit sets: close, faced, in closed containers, in a room, within reach."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def upon(world: World, places: int) -> int:
 
 
 def hidden(world: World) -> int:
-    """Everything directly INSIDE something closed that is no room: what cannot be grabbed or touched."""
+    """Everything directly INSIDE something closed that is not a room; it cannot be grabbed or touched."""
     return contained(world, world.states[CLOSED] & ~world.home.rooms)
 
 
@@ -130,13 +130,13 @@ def walkable(world: World, agent: Agent, through_doors: bool) -> int:
     direct = home.rooms | contained(world, home.rooms)
     found = direct
     open_rooms = doors.open_rooms(world, agent) if through_doors else -1
-    shut = home.rooms & ~open_rooms
-    apart = home.everything & ~direct
-    if shut:
-        apart |= shut | contained(world, shut)
+    closed = home.rooms & ~open_rooms
+    rest = home.everything & ~direct
+    if closed:
+        rest |= closed | contained(world, closed)
     if through_doors:
-        apart |= home.doors
-    for i in indices(apart):
+        rest |= home.doors
+    for i in indices(rest):
         room = rows.room_of(world, i)
         if through_doors and home.between[i]:
             room = doors.side(world, agent, i, room)

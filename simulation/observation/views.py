@@ -1,4 +1,4 @@
-"""What an agent sees: nodes and edges, and how the others stand and what they did last."""
+"""What an agent sees: nodes and edges, the poses of the others and their last actions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from hearth.simulation.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class LastAction:
-    """What an agent last tried: the instruction, and why it failed if it did."""
+    """The last instruction of an agent, and its failure if it failed."""
 
     instruction: Step
     failure: Failure | None = None

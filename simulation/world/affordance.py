@@ -1,4 +1,4 @@
-"""Which nodes of a home an action's argument may be, as a bit set."""
+"""The nodes of a home that an action's argument may be, as a bit set."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""Reading nodes and edges into bit sets. What graphs may have odd, and what becomes of it:
+"""Reading nodes and edges into bit sets. Irregular graphs are read so:
 
-- an id used twice, a node without id or class, an id that is no number: refused as BAD_GRAPH;
+- an id used twice, a node without id or class, an id that is not a number: refused as BAD_GRAPH;
 - no category, properties or states: none; categories, properties and states that are not of the vocabulary: kept for
   printing, and of no effect;
-- two states that exclude each other: the one said first holds;
-- an edge to a node that there is not: left out; an edge said twice: once; CLOSE said one way: both ways;
+- two states that exclude each other: the first holds;
+- an edge to a node that there is not: left out; a repeated edge: once; CLOSE one way: both ways;
 - a relation that is not of the vocabulary, or HOLDS by something else than a character: kept for printing only;
 - two characters holding one thing: the one of the lower id holds it;
 - a character that could be grabbed, worn, sat on or filled: of its properties only PERSON counts;
@@ -31,13 +31,13 @@ Rows = list[int]
 Raw = tuple[int, str, int]
 
 CHARACTER_PROPERTIES = frozenset({"PERSON"})
-"""What counts of a character's properties."""
+"""The only property of a character that counts."""
 
 LARGEST_MATRIX = 2048
-"""Up to so many nodes edges are read through a matrix of n x n, which is faster; beyond, edge by edge."""
+"""Largest number of nodes for which edges are read through a matrix of n x n, which is faster; beyond, edge by edge."""
 
 FEW_EDGES = 250
-"""Up to so many edges one by one is faster than any matrix."""
+"""Largest number of edges for which reading one by one is faster than any matrix."""
 
 LARGEST_TABLE = 100_000
 """Up to this id nodes are looked up in an array."""
@@ -279,11 +279,11 @@ def _part_characters(tables: list[Rows], nodes: Nodes, others: list[Raw]) -> lis
                 inverse[j] &= ~(1 << i)
             table[i] = 0
         right[i] = left[i] = 0
-    others.extend(_loose_hands(nodes, right, left))
+    others.extend(_hands_without_character(nodes, right, left))
     return _held_once(found)
 
 
-def _loose_hands(nodes: Nodes, right: Rows, left: Rows) -> Iterator[Raw]:
+def _hands_without_character(nodes: Nodes, right: Rows, left: Rows) -> Iterator[Raw]:
     ids = nodes.ids
     for name, rows in (("HOLDS_RH", right), ("HOLDS_LH", left)):
         if any(rows):

@@ -1,4 +1,4 @@
-"""What one world has that another has not, at a cost that follows what moved: `schemas.change` for worlds."""
+"""The difference of two worlds, at a cost that follows what moved: `schemas.change` for worlds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EdgeTurn = tuple[int, str, int, bool]
 
 
 def encode(before: WorldState, after: WorldState) -> Change:
-    """What must be done to `before` to get `after`.
+    """The change from `before` to `after`.
 
     Nodes that only one of them has are left out, but their edges and states are not. Cost follows what differs between
     worlds of one home and of homes derived from one another (see `edit`); other homes are compared whole.
@@ -44,7 +44,7 @@ def encode(before: WorldState, after: WorldState) -> Change:
 
 
 def encode_whole(before: WorldState, after: WorldState, edges: Set[Edge] | None = None) -> Change:
-    """What must be done to `before` to get `after`, nodes included; both at their start, and their homes may be any.
+    """The change from `before` to `after`, nodes included; both at their start, and their homes may be any.
 
     Args:
         before, after: starts.
@@ -110,7 +110,7 @@ def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator
 
 
 def _agent_changes(old: Agent, new: Agent) -> Iterator[EdgeTurn]:
-    """What came and went of a character's own edges, both ways."""
+    """The changes of a character's own edges, both ways."""
     me = new.index
     for fields, outwards in ((AGENT_OUT, True), (AGENT_IN, False)):
         for relation, field in fields.items():

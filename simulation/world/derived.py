@@ -24,7 +24,7 @@ from hearth.simulation.world.nodes import states_of
 
 
 class Movable(NamedTuple):
-    """A new thing put somewhere, in short: what many things are added by.
+    """A new thing with its place: the short form in which many things are added.
 
     Attributes:
         node: the thing.
@@ -62,13 +62,13 @@ def extended(
 ) -> Home:
     """A home with more nodes, more and fewer edges, and other states; the given home stays as it is.
 
-    Nothing is checked against the knowledge: what is given is taken as it is.
+    Nothing is checked against the knowledge.
 
     Args:
         home: to start from. Many homes may be derived from one.
         nodes: new ones, characters included. Fast when their ids are above all that the home has.
         edges: new ones; either end may be a new node. CLOSE is symmetric: one direction is enough.
-        removed_edges: taken away before `edges` are added; one that is not there is no error.
+        removed_edges: taken away before `edges` are added; missing ones are ignored.
         states: node id -> the simulated states it is in, instead of those it had; new nodes bring their own.
         movable: more new nodes, their ids above all others; fast where there are many.
 
@@ -200,7 +200,7 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
 
 
 def _enter(states: list[int], bit: int, names: Iterable[str]) -> None:
-    """Of two states that exclude each other the one said first holds."""
+    """Of two states that exclude each other the first holds."""
     for name in names:
         number = STATE_ID.get(name)
         if number is not None and not states[number ^ 1] & bit:

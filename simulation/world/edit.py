@@ -46,7 +46,7 @@ def edit(
         place: node id -> (`ON` or `INSIDE`, id of the place): it leaves hands and all it was ON, INSIDE and CLOSE to,
             both ways, and is in the place's room, ON or INSIDE the place, and CLOSE to it.
         link: edges that come; of BETWEEN only those of new nodes.
-        unlink: edges that go; one that is not there is no error.
+        unlink: edges to remove; missing ones are ignored.
         set: (node id, state): it enters the state and leaves the opposite.
         clear: (node id, state): it leaves the state.
         check: whether `place`, `link` and `set` must fit the knowledge: placements, seat limits, possible states.

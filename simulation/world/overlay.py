@@ -35,9 +35,9 @@ def linked(world: World, edges: Iterable[Numbered]) -> World:
 
 
 def unlinked(world: World, edges: Iterable[Numbered]) -> World:
-    """With fewer edges; one that is not there is no error.
+    """With fewer edges; missing ones are ignored.
 
-    A home's own edge can't be taken out of its shared row: the end of it that has fewer edges of the relation is made
+    A home's own edge can't be taken out of its shared row: the end of it that has fewer edges of the relation is
     removed from the relation, and what it keeps becomes extra.
     """
     for i, relation, j in edges:

@@ -1,7 +1,7 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; what a graph cannot say, where grabbed things came
-from, stands beside it under `memories`.
+The graph is the release's own format, so that other tools read it; the origins of grabbed things, which a graph cannot
+hold, stand beside it under `memories`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
     """The world that was exported; a plain scene graph under `graph` will do.
 
     Raises:
-        HearthError: BAD_GRAPH: it is no exported world, or a memory names a node that the graph lacks.
+        HearthError: BAD_GRAPH: it is not an exported world, or a memory names a node that the graph lacks.
     """
     try:
         graph, memories = data["graph"], list(data.get("memories", ()))

@@ -1,4 +1,4 @@
-"""What the state of a world is made of: all that reading its rows needs (see `rows`)."""
+"""The state of a world: all that reading its rows needs (see `rows`)."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class World(WorldState):
         return encode(since, self)
 
     def key(self) -> tuple[object, ...]:
-        """What makes it equal to another: its difference from its home, and what the agents remember."""
+        """Its identity: its difference from its home, and the agents' memories."""
         try:
             return self._key
         except AttributeError:

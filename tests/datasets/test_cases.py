@@ -91,7 +91,7 @@ def as_read(value):
     return [as_read(part) for part in value] if isinstance(value, list) else value
 
 
-def test_nodes_that_are_gone_or_other_than_at_home(homes):
+def test_nodes_that_are_removed_or_other_than_at_home(homes):
     home = homes.home("cabin")
     graph = World.start(home).graph()
     nodes = [node for node in graph.nodes if node.id != 21]
@@ -156,7 +156,7 @@ def break_binding(case):
 
 
 @pytest.mark.parametrize("damage", [break_tick, break_count, break_failure, break_environment, break_binding])
-def test_what_does_not_replay_is_told(homes, damage):
+def test_what_does_not_replay_is_reported(homes, damage):
     case = copy.deepcopy(case_of(homes, PROGRAMS[1]))
     damage(case)
     assert difference_on_replay(case, homes)
@@ -174,7 +174,7 @@ def test_publishing_refuses_what_does_not_replay(homes, made):
     assert case["execution_id"] in refused.diagnostics[0].found
 
 
-def test_a_home_at_rest_is_what_environments_differ_from(homes, inputs):
+def test_a_home_in_its_default_state_is_what_environments_differ_from(homes, inputs):
     assert prepared(homes.home("cabin")).home.states == homes.home("cabin").states
 
 

@@ -20,7 +20,7 @@ from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import FORMATS, export
 from hearth.datasets.export.release_layout import ROOT
 from hearth.datasets.export.triples import iri, text
-from hearth.kb.language.phrases import hear
+from hearth.kb.language.phrases import parses
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.names import file_name
@@ -63,7 +63,7 @@ def test_words_name_the_same_actions_and_objects(ds, tmp_path):
     assert [row["program_id"] for row in rows] == list(ds)
     for row in rows:
         for said, step in zip(row["steps"], ds[row["program_id"]].program.steps, strict=True):
-            meant = {(action.name, names) for action, names in hear(default(), said)}
+            meant = {(action.name, names) for action, names in parses(default(), said)}
             assert (step.action, tuple(ref.name for ref in step.objects)) in meant
 
 

@@ -72,7 +72,7 @@ def test_what_the_program_provides_is_not_needed(knowledge):
 
 
 @pytest.mark.parametrize(
-    ("steps", "needing", "spoiling"),
+    ("steps", "needing", "violating"),
     [
         (["[Walk] <television> (1)", "[SwitchOn] <television> (1)", "[SwitchOn] <television> (1)"], 3, 2),
         (["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Open] <fridge> (1)"], 3, 2),
@@ -88,12 +88,12 @@ def test_what_the_program_provides_is_not_needed(knowledge):
         ),
     ],
 )
-def test_a_contradiction_names_both_steps(knowledge, steps, needing, spoiling):
+def test_a_contradiction_names_both_steps(knowledge, steps, needing, violating):
     found = conditions_of(knowledge, *steps)
     assert isinstance(found, Failure)
     assert found.code is Code.CONTRADICTION
     assert found.expected.endswith(f"at step {needing}")
-    assert f"by step {spoiling}," in found.actual
+    assert f"by step {violating}," in found.actual
 
 
 def test_a_third_thing_in_two_hands_is_a_contradiction(knowledge):

@@ -1,4 +1,4 @@
-"""Homes by lot: always sound, always the same for the same seed, and plans that people can go on editing."""
+"""Procedural homes: always sound, the same for the same seed, written as plans that people can edit."""
 
 import pytest
 

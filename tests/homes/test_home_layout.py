@@ -146,7 +146,7 @@ def test_whatever_is_put_anywhere_does_not_overlap_or_stick_out(where, items):
 
 @settings(max_examples=25)
 @given(st.randoms(use_true_random=False))
-def test_a_spoilt_plan_is_read_or_refused_but_never_breaks(pick):
+def test_a_damaged_plan_is_read_or_refused_but_never_breaks(pick):
     lines = library._file("maple", None).read_text().splitlines()
     for _ in range(pick.randint(1, 4)):
         i = pick.randrange(len(lines))
@@ -160,7 +160,7 @@ def test_a_spoilt_plan_is_read_or_refused_but_never_breaks(pick):
         else:
             lines[i] = "".join(pick.choice("0-9 :[]{}*,x") if pick.random() < 0.1 else c for c in lines[i])
     try:
-        read("\n".join(lines), "spoilt.yaml", default())
+        read("\n".join(lines), "damaged.yaml", default())
     except HearthError as error:
         assert error.diagnostics
-        assert all(fault.file == "spoilt.yaml" for fault in error.diagnostics)
+        assert all(fault.file == "damaged.yaml" for fault in error.diagnostics)

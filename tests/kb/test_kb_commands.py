@@ -77,10 +77,10 @@ def test_export_writes_other_forms(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("show", "frige"), "`frige` is no object"),
-        (("action", "Opne"), "`Opne` is no action"),
-        (("find", "--in", "frige"), "`frige` is no object"),
-        (("path", "cup", "frige"), "`frige` is no object"),
+        (("show", "frige"), "`frige` is not a known object"),
+        (("action", "Opne"), "`Opne` is not a known action"),
+        (("find", "--in", "frige"), "`frige` is not a known object"),
+        (("path", "cup", "frige"), "`frige` is not a known object"),
         (("mine", "nowhere"), "no programs table here"),
         (("diff", "nowhere"), "is not a directory of knowledge files"),
     ],
@@ -90,7 +90,7 @@ def test_bad_input_is_one_message_and_status_1(arguments, message):
 
 
 def test_a_form_that_there_is_not_is_wrong_usage():
-    assert "`yaml` is no form" in run("export", "yaml", status=2)
+    assert "`yaml` is not a form" in run("export", "yaml", status=2)
 
 
 @pytest.mark.parametrize("command", ["show", "action", "find", "path", "lint", "diff", "mine", "export"])

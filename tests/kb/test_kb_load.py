@@ -38,15 +38,15 @@ def test_one_error_lists_every_fault_of_every_file(tmp_path):
         "cup,ON\n"
     )
     assert lines(faults(tmp_path)) == [
-        "affordances.yaml:1: BAD_TABLE: `CUTABLE` is no property",
+        "affordances.yaml:1: BAD_TABLE: `CUTABLE` is not a known property",
         "affordances.yaml:2: BAD_TABLE: `Cut` stands twice, first in line 1",
-        "affordances.yaml:3: UNKNOWN_ACTION: `Fly` is no action",
+        "affordances.yaml:3: UNKNOWN_ACTION: `Fly` is not a known action",
         "aliases.csv:2: BAD_TABLE: `loo` is a synonym of itself in a circle",
         "aliases.csv:3: BAD_TABLE: `john` is a synonym of itself in a circle",
-        "aliases.csv:4: UNKNOWN_OBJECT: `bensh` is no object",
-        "placements.csv:3: UNKNOWN_OBJECT: `tabel` is no object",
-        "placements.csv:4: BAD_TABLE: `UPON` is no relation",
-        "placements.csv:5: BAD_TABLE: `9` is no weight",
+        "aliases.csv:4: UNKNOWN_OBJECT: `bensh` is not a known object",
+        "placements.csv:3: UNKNOWN_OBJECT: `tabel` is not a known object",
+        "placements.csv:4: BAD_TABLE: `UPON` is not a known relation",
+        "placements.csv:5: BAD_TABLE: `9` is not a weight",
         "placements.csv:6: BAD_TABLE: 2 cells",
     ]
 
@@ -69,15 +69,15 @@ def test_faults_of_objects(tmp_path):
         + "9004,gadget,Props,tool,,,,,,,ours\n"
     )
     assert lines(faults(tmp_path)) == [
-        "objects_things.csv:2: BAD_TABLE: `GRABABLE` is no property",
+        "objects_things.csv:2: BAD_TABLE: `GRABABLE` is not a known property",
         "objects_things.csv:2: BAD_TABLE: `sleepy` is neither a state nor a group of states",
-        "objects_things.csv:2: BAD_TABLE: `big` is no size",
+        "objects_things.csv:2: BAD_TABLE: `big` is not a size",
         "objects_things.csv:3: BAD_TABLE: `widget` has the id 9000 of `gadget`",
         "objects_things.csv:3: BAD_TABLE: `contraption` is neither a kind nor a class",
         "objects_things.csv:4: BAD_TABLE: `thingy` has no id",
         "objects_things.csv:5: BAD_TABLE: `this` is a synonym of itself in a circle",
         "objects_things.csv:6: BAD_TABLE: `that` is a synonym of itself in a circle",
-        "objects_things.csv:7: UNKNOWN_OBJECT: `nobody` is no object",
+        "objects_things.csv:7: UNKNOWN_OBJECT: `nobody` is not a known object",
         f"objects_things.csv:9: BAD_TABLE: `gadget` stands twice, first in {tmp_path}/objects_things.csv:2",
     ]
 
@@ -107,18 +107,18 @@ def test_faults_of_actions(tmp_path):
         "  effects: [{like: Nothing}]\n"
     )
     assert [d.message for d in faults(tmp_path)] == [
-        "`{'NOT_NEAR': 'close(a, o)'}` is no check",
+        "`{'NOT_NEAR': 'close(a, o)'}` is not a check",
         "in `close(a o)`: expected ) but found `o`",
-        "`{'like': 'Nothing'}` is no effect",
+        "`{'like': 'Nothing'}` is not an effect",
         "`Wave` has the id 900 of `Fly`",
-        "in `close(a, s)`: `s` is no argument of Wave and is not bound",
+        "in `close(a, s)`: `s` is not an argument of Wave and is not bound",
         "in `nearish(a, o)`: nothing says what `nearish` is",
         "`flies` is not part of an action",
         "Fly has 1 roles but needs for 0",
         "Fly takes 1 objects, not 0",
         "`Hop` has no id",
         "`Jump` is not a mapping",
-        "`rope` is no requirement",
+        "`rope` is not a requirement",
     ]
 
 
@@ -130,12 +130,12 @@ def test_faults_of_repairs_and_associations(tmp_path):
         "name,relation,other,weight,evidence\npen,serves,Wright,3,ours\npen,likes,paper,3,ours\npenn,goes_with,paper,x,ours\n"
     )
     assert [d.message for d in faults(tmp_path)] == [
-        "`Wright` is no action",
-        "`likes` is no association",
-        "`penn` is no object",
-        "`x` is no weight",
-        "`Fly` is no action",
-        "`SLEEPY` is no failure code",
+        "`Wright` is not a known action",
+        "`likes` is not a known association",
+        "`penn` is not a known object",
+        "`x` is not a weight",
+        "`Fly` is not a known action",
+        "`SLEEPY` is not a failure code",
         "`do` is not part of a repair",
     ]
 

@@ -36,11 +36,11 @@ def test_the_nearest_valid_instruction_keeps_its_score(knowledge, sentence, acti
 
 
 def test_what_is_equally_near_to_two_things_is_ambiguous(knowledge):
-    heard = understand(knowledge, "Put the plat on the tabel")
-    assert heard.ambiguous
-    assert {each.names[0] for each in heard.candidates[:2]} == {"plate", "plant"}
+    found = understand(knowledge, "Put the plat on the tabel")
+    assert found.ambiguous
+    assert {each.names[0] for each in found.candidates[:2]} == {"plate", "plant"}
 
 
 def test_the_hopeless_is_not_taken_for_anything(knowledge):
-    heard = understand(knowledge, "Contemplate the meaning of life")
-    assert heard.meant is None and not heard.ambiguous
+    found = understand(knowledge, "Contemplate the meaning of life")
+    assert found.meant is None and not found.ambiguous

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.kb.language.phrases import hear, say
+from hearth.kb.language.phrases import parses, say
 from hearth.kb.tools import views
 from hearth.kb.tools.action_table import action_table
 from hearth.kb.tools.export import export
@@ -116,11 +116,11 @@ def test_the_database_answers(knowledge):
     assert names == set(views.tables(knowledge))
 
 
-def test_steps_are_said_and_heard(knowledge):
+def test_steps_are_phrases_that_parse(knowledge):
     for action in knowledge.actions.values():
         names = ("coffee_cup", "kitchen_table")[: action.arity]
         said = say(action, names)
-        assert (action, names) in hear(knowledge, said), said
+        assert (action, names) in parses(knowledge, said), said
 
 
 @pytest.mark.parametrize(
@@ -140,13 +140,13 @@ def test_steps_are_said_and_heard(knowledge):
         ("Walk to flux capacitor", "Walk", ("flux_capacitor",)),
     ],
 )
-def test_sentences_are_heard(knowledge, text, action, names):
-    heard = hear(knowledge, text)
-    assert (heard[0][0].name, heard[0][1]) == (action, names)
+def test_sentences_are_parsed(knowledge, text, action, names):
+    found = parses(knowledge, text)
+    assert (found[0][0].name, found[0][1]) == (action, names)
 
 
-def test_what_means_nothing_is_not_heard(knowledge):
-    assert hear(knowledge, "quickly") == ()
+def test_a_sentence_without_meaning_has_no_parse(knowledge):
+    assert parses(knowledge, "quickly") == ()
 
 
 def test_the_domain_is_well_formed(knowledge):
@@ -170,6 +170,6 @@ def test_other_forms(knowledge, tmp_path):
     assert (tmp_path / "kb.graphml").read_text().count("<node ") > 700
     assert export(knowledge, "duckdb", tmp_path / "kb.duckdb") == ""
     assert (tmp_path / "kb.duckdb").stat().st_size > 0
-    for form, message in (("yaml", "`yaml` is no form"), ("duckdb", "a database needs a file")):
+    for form, message in (("yaml", "`yaml` is not a form"), ("duckdb", "a database needs a file")):
         with pytest.raises(HearthError, match=message):
             export(knowledge, form)

@@ -1,4 +1,4 @@
-"""What is made otherwise, how often, and that environments are then so."""
+"""Perturbations: which conditions, how often, and that environments then have them."""
 
 from __future__ import annotations
 
@@ -159,10 +159,10 @@ def test_the_thesis_own_perturbations_are_as_likely_as_there():
     ("old", "new", "fault"),
     [
         ("open: 0.7", "opne: 0.7", "`opne` is none of the kinds"),
-        ("open: 0.7", "open: 7", "7 is no probability of `open`"),
+        ("open: 0.7", "open: 7", "7 is not a probability of `open`"),
         ("each: 6", "eech: 6", "`eech` is none of the draws"),
         ("draws:", "drawn:", "`kinds` or `draws` is missing"),
-        ("most: 6", "most: none", "`most` is no count"),
+        ("most: 6", "most: none", "`most` is not a count"),
     ],
 )
 def test_a_fault_in_the_probabilities_is_named(old, new, fault, tmp_path):

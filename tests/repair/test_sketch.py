@@ -85,6 +85,6 @@ def test_people_agree_more_than_with_the_baselines(real_data):
     found = scripts([str(real_data / "activityprograms-sample.zip")], known)
     programs = [one for one in found if not isinstance(one, Reject)]
     places = [Home.from_graph(library.load_graph(name, default()), name, known) for name in library.names()[:3]]
-    told = judge(annotated(real_data / "sketch_annotation.json", "s", programs, known), places, known).summary()
-    assert told["programs"] >= 111
-    assert told["inferred"]["f1"] > max(0.86, told["keeping_what_people_usually_keep"]["f1"])
+    summary = judge(annotated(real_data / "sketch_annotation.json", "s", programs, known), places, known).summary()
+    assert summary["programs"] >= 111
+    assert summary["inferred"]["f1"] > max(0.86, summary["keeping_what_people_usually_keep"]["f1"])

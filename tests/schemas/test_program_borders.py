@@ -1,4 +1,4 @@
-"""Where a program ends: a title that nobody wrote steps for is told apart from its neighbour."""
+"""Borders of programs: a title without steps is distinguished from its neighbour."""
 
 import pytest
 

@@ -65,7 +65,7 @@ def test_of_two_who_grab_one_cup_the_lower_number_gets_it():
     after, failures = tick(world, {0: do("Grab", CUP), 1: do("Grab", CUP, agent=1)})
     assert after.holding() == {0: (CUP,), 1: ()}
     assert codes(failures) == {1: Code.CONFLICT}
-    # Who has lost the cup's CLOSE edge with the grab is told so; either way it is the other's doing.
+    # An agent that has lost the cup's CLOSE edge with the grab gets that failure; either way the other caused it.
     assert failures[1].actual.endswith("after what the other did in this tick")
     program = Program(steps=(do("Grab", CUP), do("Grab", CUP, agent=1)))
     program = program.with_steps(

@@ -82,7 +82,7 @@ def drawn(seed: int) -> tuple[World, Plain, list[Literal], dict]:
     edges = sorted(world.edges())
     mine = [edge for edge in edges if edge.source in agents or edge.target in agents]
     loaded = [edge[::-1] for edge in edges if edge.relation == "ON"]
-    stowed = [edge for edge in edges if edge.relation == "INSIDE" and world.has_state(edge.target, "CLOSED")]
+    enclosed = [edge for edge in edges if edge.relation == "INSIDE" and world.has_state(edge.target, "CLOSED")]
 
     def term(node: int) -> object:
         """The node, its class, another name of that, or something else."""
@@ -91,7 +91,7 @@ def drawn(seed: int) -> tuple[World, Plain, list[Literal], dict]:
         return rng.choice(kinds)
 
     def literal(name: str, terms: int) -> Literal:
-        edge = rng.choice(rng.choice((edges, mine, loaded or edges, stowed or edges)))
+        edge = rng.choice(rng.choice((edges, mine, loaded or edges, enclosed or edges)))
         ends = edge[::2] if rng.random() < 0.8 else edge[::-2]
         return Literal(name, tuple(map(term, ends[:terms])), rng.random() < 0.2)
 

@@ -1,0 +1,75 @@
+"""Files use the words of the field: none has a phrase that its readers would have to decode."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from hearth.schemas.literals import RENAMED
+
+ROOT = Path(__file__).resolve().parents[2]
+
+ROOMS = (
+    "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair",
+    "tests/schemas", "tests/storage", "tests/kb", "tests/homes", "tests/simulation", "tests/grounding", "tests/repair",
+    "tests/augment", "tests/oracles", "tests/golden",
+)  # fmt: skip
+"""The folders that are held to it."""
+
+KINDS = frozenset({".py", ".yaml", ".md", ".expected", ".txt"})
+"""Endings of the files that are read; pages and YAML too."""
+
+PHRASES = {
+    "told": "stored, reported or given",
+    "untold": "not stored",
+    "tells": "reports, or decides",
+    "heard": "understood, or parsed",
+    "stances": "hand and base pose",
+    "surroundings": "build context",
+    "spoils|spoilt|spoiling": "violates",
+    "rehears\\w*": "coverage",
+    "by lot": "random, or procedural",
+    "in vain": "failed attempts",
+    "at rest": "in its default state",
+    "made otherwise": "perturbed",
+    "so many": "the count's name",
+    "no text": "not text",
+    "clumsiness|idleness|loyalty": "rank, priority, switch penalty",
+    "stowed|averted|shut_in": "in_closed_container, facing_away, doors_closed",
+    "HEARD_NEARLY": "FUZZY_MATCH",
+    "(?<!there )is no (?!more\\b|longer\\b)": "is not a",
+}
+"""A phrase as a regular expression, and the words to write instead."""
+
+ALLOWED = {
+    ("schemas/literals.py", "stowed|averted|shut_in"),  # names that readers of older datasets accept
+    ("schemas/failures.py", "HEARD_NEARLY"),
+    ("tests/schemas/test_failures.py", "HEARD_NEARLY"),
+}
+"""Files that may have a phrase."""
+
+
+def files():
+    for room in ROOMS:
+        yield from (path for path in sorted((ROOT / room).rglob("*")) if path.suffix in KINDS and path.is_file())
+
+
+@pytest.mark.parametrize("phrase", PHRASES)
+def test_no_file_has_a_phrase_that_readers_have_to_decode(phrase):
+    pattern = re.compile(rf"(?<![\w`])(?:{phrase})" + ("" if phrase.endswith(")") else r"\b"), re.IGNORECASE)
+    found = [
+        f"{name}:{number}: {line.strip()[:100]}"
+        for path in files()
+        if ((name := path.relative_to(ROOT).as_posix()), phrase) not in ALLOWED
+        for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1)
+        if pattern.search(line)
+    ]
+    assert not found, f"write {PHRASES[phrase]}:\n" + "\n".join(found)
+
+
+def test_the_old_names_of_conditions_are_used_by_readers_alone():
+    quoted = re.compile("|".join(f'"{name}"' for name in RENAMED))
+    used = {path.relative_to(ROOT).as_posix() for path in files() if quoted.search(path.read_text(errors="replace"))}
+    assert {name for name in used if not name.startswith("tests/")} == {"schemas/literals.py"}
