@@ -209,14 +209,12 @@ class Knowledge:
 
     def seat_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer sit down."""
-        return self._limit("sit", name)
+        limits = self._limits["sit"]
+        return limits.get(name) or limits["default"]
 
     def bed_limit(self, name: str) -> int:
         """How many things may be ON it before one may no longer lie down."""
-        return self._limit("lie", name)
-
-    def _limit(self, posture: str, name: str) -> int:
-        limits = self._limits[posture]
+        limits = self._limits["lie"]
         return limits.get(name) or limits["default"]
 
     def default_states(self, name: str) -> tuple[str, ...]:
