@@ -22,6 +22,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
 from hearth.simulation.world.home import Home
+from hearth.storage.inputs import read_input
 
 
 class Completeness(IntEnum):
@@ -85,7 +86,7 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
     found: dict[str, list[Completeness]] = defaultdict(list)
     faults: list[Diagnostic] = []
     for path in paths:
-        text = decode(path.read_bytes(), str(path))
+        text = decode(read_input(path), str(path))
         if isinstance(text, Diagnostic):
             faults.append(text)
             continue

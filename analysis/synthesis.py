@@ -15,6 +15,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
+from hearth.storage.inputs import load_yaml
 
 DEFAULT_COUNT = 5_193
 """As many as the thesis's SyntheticPrograms has (table 4.1)."""
@@ -99,16 +100,14 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     Raises:
         HearthError: every unknown action, object or slot, wrong number of objects and thing that does not afford it.
     """
-    import yaml
-
+    data = load_yaml(path)
     try:
-        data = yaml.safe_load(path.read_text("utf-8"))
         told = float(data["told"])
         tasks = {name: _task(name, entry, told) for name, entry in data["tasks"].items()}
         weights = {name: float(entry["weight"]) for name, entry in data["tasks"].items()}
         plan = Weighted.of(data["plan"])
         join, first = float(data["join"]), float(data["first"])
-    except (yaml.YAMLError, OSError, KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         message = f"no grammar of programs: {type(error).__name__} {error}"
         suggestion = "it needs plan, join, first, told and tasks"
         raise HearthError.of(Code.BAD_TABLE, message, file=str(path), suggestion=suggestion) from error

@@ -11,9 +11,9 @@ import typer
 
 from hearth.commands import inputs, options, output
 from hearth.schemas.decoding import decode
-from hearth.schemas.diagnostics import Diagnostic
-from hearth.schemas.failures import Code
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.syntax import parse_programs
+from hearth.storage.inputs import read_input
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -80,7 +80,7 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
 
     if str(path) == "-" or not path.is_file():
         return ""
-    text = decode(path.read_bytes(), str(path))
+    text = decode(read_input(path), str(path))
     if isinstance(text, Diagnostic):
         return ""
     new = fixes.fixed(text, knowledge)
@@ -93,10 +93,9 @@ def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False, l
     """Read one file and find all its faults; a file that can't be read is a fault too."""
     name = "standard input" if path == Path("-") else str(path)
     try:
-        text = decode(sys.stdin.buffer.read() if path == Path("-") else path.read_bytes(), name)
-    except OSError as error:
-        code = Code.UNSUPPORTED_FILE if isinstance(error, IsADirectoryError) else Code.MISSING_FILE
-        text = Diagnostic(code, (error.strerror or "can't be read").lower(), name)
+        text = decode(read_input(path), name)
+    except HearthError as error:
+        return Checked(name, 0, 0, error.diagnostics)
     if isinstance(text, Diagnostic):
         return Checked(name, 0, 0, (text,))
     return check_text(text, knowledge, name, affordances=affordances, lint=lint)

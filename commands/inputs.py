@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -42,9 +41,9 @@ def read_program(file: Path, known: Knowledge) -> Program:
     from hearth.schemas.decoding import decode
     from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.schemas.syntax import parse_program
+    from hearth.storage.inputs import read_input
 
-    data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
-    text = decode(data, str(file))
+    text = decode(read_input(file), str(file))
     if isinstance(text, Diagnostic):
         raise HearthError(text)
     written, faults = parse_program(text, str(file))

@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
+from hearth.storage.inputs import read_input
 
 IDS = ".ids.csv"
 """A plan `maple.yaml` may have its node ids fixed in `maple.ids.csv`, with columns id and name."""
@@ -123,7 +124,7 @@ def _graph(path: Path) -> EnvironmentGraph:
     import orjson
 
     try:
-        data = orjson.loads(_bytes(path))
+        data = orjson.loads(read_input(path))
     except orjson.JSONDecodeError as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
     if isinstance(data, dict) and "init_graph" in data:
@@ -137,18 +138,11 @@ def _graph(path: Path) -> EnvironmentGraph:
 def _layout(path: Path, knowledge: Knowledge) -> Layout:
     from dataclasses import replace
 
-    text = decode(_bytes(path), str(path))
+    text = decode(read_input(path), str(path))
     if not isinstance(text, str):
         raise HearthError(text)
     layout = read(text, str(path), knowledge)
     return replace(layout, plan=replace(layout.plan, ids=_ids(path.with_name(path.stem + IDS))))
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise HearthError.of(Code.MISSING_FILE, f"cannot read it: {error.strerror}", file=str(path)) from error
 
 
 def _ids(path: Path) -> dict[str, int]:

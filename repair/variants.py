@@ -21,6 +21,7 @@ from hearth.schemas.rng import rng
 from hearth.simulation.engine import Execution
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.home import Home
+from hearth.storage.inputs import load_yaml
 
 DRAWS = 3
 """Environments drawn for one perturbation before it is given up."""
@@ -138,9 +139,7 @@ def load_chances(path: Path) -> Chances:
     Raises:
         HearthError: BAD_TABLE, naming an unknown perturbation or draw, or a value that is not a probability.
     """
-    import yaml
-
-    data = yaml.safe_load(path.read_text("utf-8"))
+    data = load_yaml(path)
     faults = list(_faults(data))
     if faults:
         raise HearthError.of(Code.BAD_TABLE, "; ".join(faults), file=str(path), suggestion=_PARTS)

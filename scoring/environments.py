@@ -12,6 +12,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.scoring.predictions import Pair
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
+from hearth.storage.names import inside
 
 Environments = Callable[[Pair], World | None]
 """Gives the world a pair's programs start in, or None when none is known."""
@@ -29,14 +30,15 @@ def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: P
         graph: the environment of rows that say neither.
         homes: a folder of the user's own homes.
 
-    The result raises HearthError for a file or home that is not there, naming the row.
+    The result raises HearthError, naming the row, for a home or file that is not there, a file outside the folder of
+    the predictions, or one that is not a regular file.
     """
 
     def environment(pair: Pair) -> World | None:
         named, home = pair.more.get(GRAPH), pair.more.get(HOME)
         try:
             if named is not None:
-                return _from_file(file.parent / str(named), knowledge)
+                return _from_file(inside(file.parent, str(named)), knowledge)
             if home is not None:
                 return _from_home(str(home), homes, knowledge)
             return _from_file(graph, knowledge) if graph else None

@@ -7,6 +7,7 @@ from pathlib import Path
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
+from hearth.storage.inputs import read_input
 
 FINAL = "final_graph"
 
@@ -19,11 +20,9 @@ def final_graph(path: Path) -> EnvironmentGraph:
     """
     import orjson
 
+    content = read_input(path)
     try:
-        data = orjson.loads(path.read_bytes())
-    except OSError as error:
-        reason = (error.strerror or "can't be read").lower()
-        raise HearthError.of(Code.MISSING_FILE, reason, file=str(path)) from None
+        data = orjson.loads(content)
     except orjson.JSONDecodeError as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from None
     if isinstance(data, dict) and FINAL in data:

@@ -12,6 +12,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.lines import Source
+from hearth.storage.inputs import LARGEST_TABLE, read_input
 
 PARQUET = b"PAR1"
 """How a Parquet file begins, whatever its name."""
@@ -42,7 +43,7 @@ def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named:
     Raises:
         HearthError: there is no such file, or it is neither JSON Lines nor Parquet.
     """
-    data = _bytes(path)
+    data = read_input(path, LARGEST_TABLE)
     needed = columns[1:] if named else columns
     records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
     for line, given in records:
@@ -86,17 +87,6 @@ def _step(item: Any) -> Step | None:
         return Step(item["action"], objects, int(item.get("agent") or 0), bool(item.get("joins")))
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(path)) from None
-    except OSError as error:
-        raise HearthError.of(
-            Code.UNSUPPORTED_FILE, error.strerror or "can't be read", file=str(path), suggestion="a JSON Lines file"
-        ) from None
 
 
 def _json_lines(data: bytes, path: Path, faults: list[Diagnostic]) -> Iterator[tuple[int, dict[str, Any]]]:

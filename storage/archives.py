@@ -23,10 +23,10 @@ ZSTD = b"\x28\xb5\x2f\xfd"
 LARGEST_MEMBER = 4_000_000_000
 """Bytes that a packed file may unpack to while it is read as a stream."""
 
-MOST_PACKED = 200
+MOST_PACKED = 50
 """How many times its size a packed file may unpack to, once that is more than `_HARMLESS` bytes."""
 
-_HARMLESS = 64_000_000
+_HARMLESS = 8_000_000
 
 _READ = 1 << 15
 """Bytes unpacked at a time: where a file breaks off, no more than these are lost."""

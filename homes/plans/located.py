@@ -8,6 +8,7 @@ import yaml
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.yaml_extent import LIMITS, LOADER, too_much
 
 
 class Text(str):
@@ -56,10 +57,13 @@ def read(text: str, file: str) -> Any:
     """YAML text as Mapping, Sequence, Text, Number, bool and None.
 
     Raises:
-        HearthError: SYNTAX at the place YAML stopped, or EMPTY.
+        HearthError: SYNTAX at the place YAML stopped, EMPTY, or FILE_TOO_LARGE.
     """
+    why = too_much(text)
+    if why:
+        raise HearthError.of(Code.FILE_TOO_LARGE, why, file=file, suggestion=LIMITS)
     try:
-        node = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        node = yaml.compose(text, Loader=LOADER)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (0, 0)

@@ -16,6 +16,7 @@ import yaml
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
+from hearth.schemas.yaml_extent import LARGEST, LIMITS, LOADER, too_much
 
 
 class Entry(NamedTuple):
@@ -38,57 +39,16 @@ class Faults(list[Diagnostic]):
         self.add(entry.file, entry.line, message, suggestion, code)
 
 
-_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-
-LARGEST = 4 << 20
-"""Largest size of a file of an overlay, in bytes."""
-MOST = 100_000
-"""Values in one, aliases written out."""
-DEEPEST = 20
-"""Values that stand in one another."""
-
-
 def check_extent(path: Path, faults: Faults) -> None:
-    """Refuse a file that is too costly to read, by its size or by aliases that expand to too many values.
-
-    Our own files are not checked. Faults of form are left to the reader.
-    """
-    remedy = f"at most {LARGEST:,} bytes, {MOST:,} values, {DEEPEST} in one another"
+    """Refuse a file of others' knowledge that takes too much to read; ours need no such check."""
     size = path.stat().st_size
     if size > LARGEST:
-        faults.add(str(path), 0, f"{size:,} bytes are too many", remedy, Code.FILE_TOO_LARGE)
-    elif path.suffix != ".csv" and not _is_small(path):
-        faults.add(str(path), 0, "it holds too many values, or itself", remedy, Code.FILE_TOO_LARGE)
-
-
-def _is_small(path: Path) -> bool:
-    text = decode(path.read_bytes())
-    known: dict[str | None, int] = {}
-    open_values: list[tuple[str | None, int]] = [(None, 0)]
-    try:
-        for event in yaml.parse(text if isinstance(text, str) else "", _Loader):
-            anchor = getattr(event, "anchor", None)
-            if isinstance(event, yaml.CollectionStartEvent):
-                known.pop(anchor, None)
-                open_values.append((anchor, 1))
-                if len(open_values) > DEEPEST:
-                    return False
-                continue
-            number = 0
-            if isinstance(event, yaml.AliasEvent):
-                number = known.get(anchor, MOST)
-            elif isinstance(event, yaml.ScalarEvent):
-                number = known[anchor] = 1
-            elif isinstance(event, yaml.CollectionEndEvent):
-                anchor, number = open_values.pop()
-                known[anchor] = number
-            outer, before = open_values[-1]
-            open_values[-1] = (outer, before + number)
-            if before + number > MOST:
-                return False
-    except yaml.YAMLError:
-        pass
-    return True
+        faults.add(str(path), 0, f"{size:,} bytes are too many", LIMITS, Code.FILE_TOO_LARGE)
+    elif path.suffix != ".csv":
+        text = decode(path.read_bytes())
+        why = too_much(text) if isinstance(text, str) else ""
+        if why:
+            faults.add(str(path), 0, why, LIMITS, Code.FILE_TOO_LARGE)
 
 
 def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
@@ -96,7 +56,7 @@ def read_yaml(path: Path, faults: Faults) -> dict[str, Entry]:
     text = _text(path, faults)
     if text is None:
         return {}
-    loader = _Loader(text)
+    loader = LOADER(text)
     try:
         node = loader.get_single_node()
         if node is None:

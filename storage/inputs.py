@@ -1,0 +1,81 @@
+"""Bytes of a file that somebody names: a regular file, no larger than its kind is."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from pathlib import Path
+from typing import Any
+
+from hearth.schemas.decoding import decode
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+
+LARGEST = 64 << 20
+"""Bytes of a program, plan, graph or list of ratings; a home of a thousand things has two million."""
+
+LARGEST_TABLE = 1 << 30
+"""Bytes of a file with a row for each of many programs."""
+
+
+_INHERITED = ("/dev/stdin", "/dev/fd/")
+"""Where a shell puts what it opened for a command, as in `check <(make_programs)`."""
+
+
+def read_input(path: Path, largest: int = LARGEST) -> bytes:
+    """The bytes of a file; `-` is standard input.
+
+    Devices, sockets and named pipes are refused: they may never end, or never begin.
+
+    Raises:
+        HearthError: MISSING_FILE, UNSUPPORTED_FILE or FILE_TOO_LARGE.
+    """
+    if str(path) == "-":
+        return _limited(sys.stdin.buffer.read(largest + 1), "standard input", largest)
+    inherited = str(path).startswith(_INHERITED)
+    try:
+        # Not waiting for whoever writes into a pipe; of regular files the flag changes nothing.
+        descriptor = os.open(path, os.O_RDONLY | (0 if inherited else os.O_NONBLOCK))
+    except (OSError, ValueError) as error:
+        missing = isinstance(error, FileNotFoundError | NotADirectoryError | PermissionError)
+        reason = (getattr(error, "strerror", None) or "can't be read").lower()
+        raise HearthError.of(Code.MISSING_FILE if missing else Code.UNSUPPORTED_FILE, reason, file=str(path)) from None
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if not stat.S_ISREG(mode) and not (inherited and stat.S_ISFIFO(mode)):
+            what = "is a directory" if stat.S_ISDIR(mode) else "is not a regular file"
+            raise HearthError.of(Code.UNSUPPORTED_FILE, what, file=str(path), suggestion="name a file")
+        with os.fdopen(descriptor, "rb", closefd=False) as file:
+            return _limited(file.read(largest + 1), str(path), largest)
+    finally:
+        os.close(descriptor)
+
+
+def _limited(data: bytes, name: str, largest: int) -> bytes:
+    if len(data) > largest:
+        raise HearthError.of(Code.FILE_TOO_LARGE, f"more than {largest:,} bytes", file=name)
+    return data
+
+
+def load_yaml(path: Path) -> Any:
+    """The plain value of a YAML file.
+
+    Raises:
+        HearthError: the file cannot be read, is not text or YAML, or holds too much.
+    """
+    import yaml
+
+    from hearth.schemas.yaml_extent import LARGEST as LARGEST_YAML
+    from hearth.schemas.yaml_extent import LIMITS, LOADER, too_much
+
+    text = decode(read_input(path, LARGEST_YAML), str(path))
+    if isinstance(text, Diagnostic):
+        raise HearthError(text)
+    why = too_much(text)
+    if why:
+        raise HearthError.of(Code.FILE_TOO_LARGE, why, file=str(path), suggestion=LIMITS)
+    try:
+        return yaml.load(text, LOADER)
+    except (yaml.YAMLError, ValueError) as error:  # ValueError: a date of month 13
+        raise HearthError.of(Code.BAD_TABLE, f"not YAML: {error}", file=str(path)) from error
