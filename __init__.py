@@ -1,6 +1,6 @@
 """Hearth turns what people say they do at home into datasets that machines can run.
 
-What most programs need can be had from here, as `hearth.run`; modules are imported when a name is first used.
+The usual entry points are attributes of this package, as `hearth.run`; each is imported when it is first used.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ _MODULES = {name: module for module, names in _NAMES.items() for name in names.s
 
 
 def __getattr__(name: str) -> Any:
-    """An entry point, imported when it is first asked for."""
+    """An entry point, imported when it is first used."""
     from importlib import import_module
 
     if name == "Env":
@@ -93,7 +93,7 @@ def __getattr__(name: str) -> Any:
 
 
 def _env() -> type[Env]:
-    """The environment, with our own knowledge where none is given."""
+    """The environment, by default with our own knowledge."""
     from hearth.simulation import env
     from hearth.simulation.rules import DEFAULT, Rules
 
@@ -149,7 +149,7 @@ def knowledge(overlay: str | None = None) -> Knowledge:
 
 
 def home(name: str, knowledge: Knowledge | None = None) -> Home:
-    """One of our homes by name (`homes.library.names()` has all), read with our knowledge if no other is given.
+    """One of our homes by name (`homes.library.names()` lists them), by default with our knowledge.
 
     Raises:
         HearthError: UNKNOWN_HOME.
@@ -166,13 +166,13 @@ def home(name: str, knowledge: Knowledge | None = None) -> Home:
 
 
 def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
-    """Read a program from text, its names made canonical by the grammar (thesis 2.3.3).
+    """Read a program from text, with canonical names by the grammar (thesis 2.3.3).
 
-    A title and a description may stand first. Then one instruction a line: `[Action] <object> (instance)`.
+    The text is an optional title and description, then one instruction a line: `[Action] <object> (instance)`.
     `schemas.syntax.parse_program` and `kb.grammar.check` return faults instead of raising them.
 
     Raises:
-        HearthError: every fault of syntax and grammar, with its line and column.
+        HearthError: all faults of syntax and grammar, with line and column.
 
     Examples:
         >>> hearth.parse_program("[WALK] <Fridge> (1)").steps[0].action

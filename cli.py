@@ -129,7 +129,7 @@ class Commands(TyperGroup):
             import difflib
 
             close = difflib.get_close_matches(args[0], list(COMMANDS_BY_NAME), n=1)
-            ctx.fail(f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""))
+            ctx.fail(f"Unknown command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""))
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

@@ -87,7 +87,7 @@ def _chances(kinds: list[str] | None) -> Chances | None:
     unknown = [kind for kind in kinds if kind not in PERTURBATIONS]
     if unknown:
         known = f"kinds are {', '.join(PERTURBATIONS)}"
-        raise HearthError.of(Code.UNKNOWN_ID, f"there is no perturbation `{unknown[0]}`", suggestion=known)
+        raise HearthError.of(Code.UNKNOWN_ID, f"unknown perturbation `{unknown[0]}`", suggestion=known)
     return Chances(dict.fromkeys(kinds, 1.0), {"each": 1.0})
 
 

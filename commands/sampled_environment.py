@@ -32,7 +32,7 @@ def draw(program: Program | None, goals: Sequence[str], home: Home, seed: int, n
     """An environment for a program, for a goal, or for neither.
 
     Raises:
-        HearthError: both are given, a goal can't be read, or there is no such environment.
+        HearthError: both are given, a goal can't be read, or the home has none.
     """
     from hearth.grounding.environments.sampling import Size
 

@@ -98,7 +98,7 @@ def _judge(
     from hearth.schemas.failures import Code
 
     if not file.is_file():
-        raise HearthError.of(Code.MISSING_FILE, "there is no such file", file=str(file))
+        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(file))
     found = judge(annotated(file, file.name, programs, known), places, known, seed)
     if not found.rows:
         hint = "give the programs that the sketches are of: the release they were drawn for"

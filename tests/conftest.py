@@ -1,4 +1,4 @@
-"""What several test folders share: the release sample (or why it is skipped), and a home of our own."""
+"""Fixtures of several test folders: the release sample (skipped if missing), and a home of our own."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def maple(knowledge):
 
 @pytest.fixture(scope="session")
 def module():
-    """A way to load a script of the checkout that is not a part of the package, by its path from the root."""
+    """A function that loads a script outside the package, by its path from the root."""
 
     def load(path: str):
         file = Path(__file__).resolve().parents[1] / path

@@ -22,13 +22,13 @@ ENTRY_POINTS = {
         "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors",
         "hearth.datasets.dataset:Run.graph", "hearth:verify", "hearth:export",
     ),
-    "What is known": ("hearth:knowledge", "hearth:find", "hearth:understand"),
+    "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (
         "hearth:home", "hearth:load_graph", "hearth:Home.from_graph", "hearth:generate", "hearth.homes.lint:lint",
     ),
     "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
-    "Goals and reasons": ("hearth:holds", "hearth:Progress", "hearth.simulation.explain:checks"),
+    "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth.simulation.explain:checks"),
     "Environments and variants": (
         "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.loop:repair", "hearth:sketch",
     ),
@@ -39,7 +39,7 @@ ENTRY_POINTS = {
     ),
     "A dataset of one's own": ("hearth:build", "hearth.analysis.corpus_statistics:gather"),
 }  # fmt: skip
-"""What most programs need, as `module:name`, in the order in which they need it."""
+"""The entry points as `module:name`, in the order of their use."""
 
 PREPARED = """\
 import hearth
@@ -58,12 +58,12 @@ execution = hearth.run(world, hearth.bind(program, world).apply(program))
 Path("milk.txt").write_text(text)
 folder = hearth.build(["milk.txt"], "milk", homes=("maple",), pictures=0).dataset
 """
-"""What the examples of the entry points have at hand."""
+"""The definitions that the examples use."""
 
 
 def python_api() -> str:
     """The entry points, each with its signature, its meaning and its example."""
-    lines = ["# Python API", "", "What most programs need. Every example stands after this one, and is tested:"]
+    lines = ["# Python API", "", "The usual entry points. All examples follow this one, and are tested:"]
     lines += ["", "```python", PREPARED.rstrip(), "```"]
     for group, places in ENTRY_POINTS.items():
         lines += ["", f"## {group}"]
@@ -77,13 +77,13 @@ def python_api() -> str:
 
 
 def documented(place: str) -> tuple[str, str]:
-    """The first paragraph of an entry point's docstring, and its example; "" where it has none."""
+    """The first paragraph of an entry point's docstring, and its example, or ""."""
     text = inspect.getdoc(resolve_name(place)) or ""
     return text.split("\n\n")[0], inspect.cleandoc(text.partition("\nExamples:\n")[2])
 
 
 def signature(place: str) -> str:
-    """How an entry point is called, with defaults as the code names them; of a class that others make, its name."""
+    """The signature of an entry point, with its defaults as in the code; only the name of a class of another module."""
     found, name = resolve_name(place), place.partition(":")[2]
     made = inspect.isclass(found)
     if made and found.__module__ != "hearth":

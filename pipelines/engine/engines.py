@@ -58,11 +58,11 @@ def engine(name: str, count: int = 1, scheduler: str = "") -> Engine:
         scheduler: address of a running cluster's scheduler; "" for a cluster of our own.
 
     Raises:
-        HearthError: UNKNOWN_ID, there is no such engine; CONTRADICTION, the local engine has no scheduler.
+        HearthError: UNKNOWN_ID, the engine is unknown; CONTRADICTION, the local engine has no scheduler.
     """
     if name not in ENGINES:
         known = " and ".join(ENGINES)
-        raise HearthError.of(Code.UNKNOWN_ID, f"no engine `{name}`", suggestion=f"there are {known}")
+        raise HearthError.of(Code.UNKNOWN_ID, f"unknown engine `{name}`", suggestion=f"there are {known}")
     if scheduler and name == "local":
         message = "the local engine has no scheduler"
         raise HearthError.of(Code.CONTRADICTION, message, suggestion="add --engine dask")

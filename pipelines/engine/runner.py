@@ -117,7 +117,7 @@ def _total(stage: Stage, settings: Settings) -> int | None:
 
 
 def _clear(job: Job) -> None:
-    """Make the folder say that it is not complete, and drop what was half written; what people read stays."""
+    """Remove the manifest, which marks a complete stage, and files written in part; a folder in use is kept."""
     if job.stage.exchanged:
         folder = job.settings.folder(job.stage.name)
         start_from(folder, [*folder.rglob("part-*.parquet"), *folder.glob(REJECTS), *folder.glob(".rejects-*.parquet")])
@@ -129,7 +129,7 @@ def _clear(job: Job) -> None:
 
 
 def _put_in_place(job: Job) -> None:
-    """Give what is complete its name, here and in the store."""
+    """Move a complete stage to its place, here and in the store."""
     name = job.stage.name
     if job.stage.exchanged:
         put_in_place(job.settings.folder(name))
@@ -139,7 +139,7 @@ def _put_in_place(job: Job) -> None:
 
 
 def _tidy(job: Job) -> None:
-    """Remove what a build that was stopped just after its end had still to remove."""
+    """Remove files that a build left if it was stopped just after its end."""
     folder = job.settings.folder(job.stage.name)
     _drop_gathered(folder)
     if job.stage.exchanged:

@@ -73,14 +73,14 @@ class Stage:
         select: whether a row of the input is a record.
         identify: the id of a record.
         columns: columns of the input to read; None for all.
-        batch: how many records' rows are turned into Arrow together, of a partition.
-        tally: a label under which a row is counted, or None.
-        finish: writes what needs all partitions, before the manifest.
-        facts: what else the manifest says.
-        patience: how many times the usual limit a record may take.
-        share: rows of a part that make a partition, where parts are too large to spread over workers; None for all.
-        gather: parts are put together in one partition up to so many rows; 0 to leave each by itself.
-        exchanged: people read its folder while it is built: it is written beside, and takes its place in one step.
+        batch: the number of records whose rows are converted to Arrow together.
+        label: a label by which rows are counted, or None.
+        finish: writes the tables that need all partitions, before the manifest.
+        facts: further entries of the manifest.
+        time_factor: multiplies the time limit of a record.
+        share: rows of a part that make a partition, for parts too large to spread over workers; None for all.
+        gather: rows up to which parts are gathered in one partition; 0 for one partition a part.
+        exchanged: whether the folder is read during a build; it is then written elsewhere and replaced in one step.
 
     Workers find a stage by its module, which must name it `STAGE` and define `process`.
     """

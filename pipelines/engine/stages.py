@@ -27,6 +27,6 @@ def stage(name: str) -> Stage:
     """
     if name not in STAGES:
         suggestion = f"stages are {', '.join(STAGES)}"
-        raise HearthError.of(Code.UNKNOWN_ID, f"there is no stage `{name}`", suggestion=suggestion)
+        raise HearthError.of(Code.UNKNOWN_ID, f"unknown stage `{name}`", suggestion=suggestion)
     found: Stage = importlib.import_module(STAGES[name]).STAGE
     return found

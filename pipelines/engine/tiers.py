@@ -32,5 +32,5 @@ def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict
         return dict(options)
     if tier not in TIERS:
         suggestion = f"tiers are {', '.join(TIERS)}"
-        raise HearthError.of(Code.UNKNOWN_ID, f"no tier is called `{tier}`", suggestion=suggestion)
+        raise HearthError.of(Code.UNKNOWN_ID, f"unknown tier `{tier}`", suggestion=suggestion)
     return {**options, **{name: value for name, value in TIERS[tier].items() if name not in given}}

@@ -39,7 +39,7 @@ def test_a_question_is_answered_as_a_table_and_for_machines(dataset):
     assert all(str(row["n"]) in shown.stdout for row in rows)
 
 
-def test_only_so_many_rows_are_printed_and_that_is_said(dataset):
+def test_a_limited_number_of_rows_is_printed_with_a_note(dataset):
     shown = run("query", dataset, "SELECT program_id FROM programs ORDER BY ALL", "--rows", "1")
     assert shown.exit_code == 0
     assert "... more than 1 rows; --rows 0 prints all" in shown.stdout
@@ -76,7 +76,7 @@ def test_two_datasets_that_are_the_same_differ_in_nothing(dataset, changed):
     assert not any(table["changed"] or table["added"] or table["removed"] for table in answer("diff", dataset, changed))
 
 
-def test_what_was_augmented_is_told_beside_the_thesis(dataset, tmp_path):
+def test_augmented_programs_are_compared_with_the_thesis(dataset, tmp_path):
     figures = answer("augmented", dataset)
     counted = {row["origin"]: row["n"] for row in answer("query", dataset, SQL)}
     assert figures["table"]["augmented"]["ours"]["programs"] == counted["augmented"]
@@ -100,7 +100,7 @@ def test_an_unknown_format_is_refused_with_those_there_are(dataset, tmp_path):
 
 
 @pytest.mark.parametrize("command", ["query", "verify", "augmented", "report"])
-def test_no_dataset_is_said_to_be_none(tmp_path, command):
+def test_a_missing_dataset_is_reported(tmp_path, command):
     more = ["SELECT 1"] if command == "query" else []
     result = run(command, tmp_path / "nowhere", *more)
     assert result.exit_code == 1

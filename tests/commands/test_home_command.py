@@ -66,7 +66,7 @@ def test_bad_input_is_one_clear_error(arguments, code):
 
 
 @pytest.mark.parametrize(("name", "data"), [("x.json", b"{"), ("x.json", b"[]"), ("x.yaml", b"\x00"), ("x.yaml", b"")])
-def test_files_that_are_no_homes_are_refused(tmp_path, name, data):
+def test_files_that_are_not_homes_are_refused(tmp_path, name, data):
     (tmp_path / name).write_bytes(data)
     result = run("show", tmp_path / name)
     assert result.exit_code == 1

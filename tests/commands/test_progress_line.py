@@ -44,7 +44,7 @@ def test_a_terminal_sees_how_far_it_is():
     assert output == "clean\n"
 
 
-def test_nobody_is_told_where_there_is_no_terminal(capsys):
+def test_nothing_is_shown_without_a_terminal(capsys):
     with bar("cups washed") as seen:
         seen(1, 3)
     assert capsys.readouterr() == ("", "")

@@ -51,14 +51,14 @@ def test_json_says_the_same(monkeypatch):
         assert step in page
 
 
-def test_an_unknown_kind_is_told_with_those_there_are():
+def test_an_unknown_kind_is_reported_with_the_known_ones():
     result = repair(GOLDEN / "watch_tv.txt", "--perturb", "colour")
     assert result.exit_code == 2
-    assert "there is no perturbation `colour`" in result.output
+    assert "unknown perturbation `colour`" in result.output
     assert "at_reach" in result.output
 
 
-def test_a_program_that_relies_on_nothing(tmp_path):
+def test_a_program_without_preconditions(tmp_path):
     path = tmp_path / "turn.txt"
     path.write_text("Turn\n\n\n[TurnTo] <television> (1)\n")
     result = repair(path, "--perturb", "open")

@@ -28,7 +28,7 @@ def test_a_program_is_shown_with_the_steps_that_are_kept(tmp_path):
     assert "* [Read] <novel> (1)" in run(tmp_path / "read.txt").stdout
 
 
-def test_sketches_of_other_programs_are_no_judges(tmp_path):
+def test_sketches_of_other_programs_are_an_error(tmp_path):
     (tmp_path / "read.txt").write_text(PROGRAM)
     result = run(tmp_path / "read.txt", "--judge", drawn(tmp_path, "Something else"))
     assert "no sketch is of one of these programs" in result.output

@@ -64,7 +64,7 @@ def test_version():
     ("arguments", "message"),
     [
         (["chekc"], "Did you mean `check`?"),
-        (["nothing-like-it"], "There is no command `nothing-like-it`."),
+        (["nothing-like-it"], "Unknown command `nothing-like-it`."),
         (["check"], "Missing argument"),
         (["check", "--nope", "x"], "--nope"),
         (["run", "x", "--seed", "many"], "--seed"),

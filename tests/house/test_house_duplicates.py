@@ -67,7 +67,7 @@ def test_other_names_of_variables_do_not_hide_it():
     assert twice({"a.py": ONE, "b.py": other.replace("total", "found")}) == [["a.py:2 one", "b.py:2 two"]]
 
 
-def test_other_functions_attributes_and_numbers_tell_them_apart():
+def test_other_functions_attributes_and_numbers_distinguish_them():
     for changed in (ONE.replace("> least", "> least + 1"), ONE.replace("+= row", "+= abs(row)"),
                     ONE.replace("total += row", "total += least")):  # fmt: skip
         assert twice({"a.py": ONE, "b.py": changed}) == []

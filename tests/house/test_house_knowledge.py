@@ -1,4 +1,4 @@
-"""Which knowledge counts is said by a dataset, a build's settings or a command: code below them gets it passed in."""
+"""A dataset, a build's settings or a command names the knowledge; code below commands gets it as an argument."""
 
 import ast
 from pathlib import Path

@@ -50,9 +50,9 @@ def test_the_example_is_true(place, prepared, monkeypatch):
     monkeypatch.chdir(folder)
     example = doctest.DocTestParser().get_doctest(PAGE.documented(place)[1], dict(names), place, None, None)
     assert example.examples, "no example in the docstring"
-    said = []
-    doctest.DocTestRunner().run(example, out=said.append)
-    assert not said, "".join(said)
+    printed = []
+    doctest.DocTestRunner().run(example, out=printed.append)
+    assert not printed, "".join(printed)
 
 
 def test_thirty_and_more_have_examples_and_stand_on_the_page_once():

@@ -95,7 +95,7 @@ def test_a_bad_program_is_a_reject_with_line_and_column(write, built, line, code
     assert [row["program_id"] for row in stages.rows("validate")] == ["text:p/a.txt"]
 
 
-def test_every_fault_of_a_program_is_told(write, built):
+def test_every_fault_of_a_program_is_reported(write, built):
     text = PROGRAM + "[Fly] <television> (1)\n[Walk] <televison> (1)\n[Walk] <tv> (x)\n"
     stages = built(write("a.txt", text))
     stages.run("ingest", "validate")

@@ -51,7 +51,7 @@ def test_one_answer_for_many_descriptions_is_refused_every_time():
     assert refused(same[:2]) == []
 
 
-def test_answers_that_are_no_text_are_compared_too():
+def test_answers_that_are_not_text_are_compared_too():
     broken = [*STEPS, "[Find] <caf\udce9> (1)"]
     assert refused([written(number, broken, described=f"D{number}") for number in range(1, 4)]) == ["p1", "p2", "p3"]
     assert refused([answer(1, f"{WORDS} \udce9"), answer(2, f"{WORDS} \udce9", worker="V")]) == ["d2"]

@@ -1,4 +1,4 @@
-"""What is told before a long build, and what is told while it goes on."""
+"""The estimate before a long build, and its progress."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_short_builds_are_not_worth_a_word(tmp_path):
     assert "executions" in forecast(100_000, Settings(out=str(tmp_path), pictures=0), 2, force=True)
 
 
-def test_a_disk_that_is_too_small_is_said_before_the_work(built, inputs, monkeypatch, tmp_path):
+def test_a_disk_that_is_too_small_is_reported_before_the_work(built, inputs, monkeypatch, tmp_path):
     usage = namedtuple("usage", "total used free")
     monkeypatch.setattr("shutil.disk_usage", lambda path: usage(10, 9, 1))
     with pytest.raises(HearthError) as error:

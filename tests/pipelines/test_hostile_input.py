@@ -1,4 +1,4 @@
-"""Input that means harm, or that a spreadsheet would run: refused or made harmless, and said so."""
+"""Hostile input, and input that a spreadsheet would run: refused or made harmless, and reported."""
 
 import csv
 import gzip

@@ -1,4 +1,4 @@
-"""A worker that is killed, a build that is stopped at the keyboard: what to do is said, and nothing is lost."""
+"""A killed worker and a build stopped at the keyboard: the remedy is printed, and nothing is lost."""
 
 from __future__ import annotations
 

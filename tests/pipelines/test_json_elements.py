@@ -53,7 +53,7 @@ def test_a_list_under_a_key(tmp_path, cut, other, listed, order, size):
     [("[1,2", [1], 1), ("[1,,2]", [1, 2], 1), ("[1,]", [1], 1), ("[1] x", [1], 1), ("x[1]", [], 1), ("[1}", [1], 1),
      ('["a', [], 1), ("\n\n[1,\n\nx]", [1], 5)],
 )  # fmt: skip
-def test_what_is_broken_is_told_once_and_where(tmp_path, text, good, line):
+def test_a_broken_document_is_reported_once_with_its_line(tmp_path, text, good, line):
     file = tmp_path / "a.json"
     file.write_text(text)
     found = values(file)

@@ -38,14 +38,14 @@ def test_programs_alone_are_taken_as_they_are(write, built):
     assert build.codes("ingest") == []
 
 
-def test_a_text_that_is_no_activity(write, built):
+def test_a_text_that_is_not_an_activity(write, built):
     rows = (described("D1"), described("D2", "Nice task, thank you. Hope to do more of your tasks."))
     build = built(write("a.csv", table(DESCRIPTIONS, *rows)))
     build.run("ingest")
     assert build.codes("ingest") == [("crowd:D2", "OFF_TOPIC")]
 
 
-def test_a_replaced_special_block_is_told(write, built):
+def test_a_replaced_special_block_is_reported(write, built):
     build = built(write("a.txt", "Go\nThe toilet.\n\n[Walk] <toilet> (1)\n[Special] <flush the toilet>\n"))
     build.run("ingest", "validate")
     ((warning,),) = [row["warnings"] for row in build.rows("validate")]

@@ -62,7 +62,7 @@ def test_words_about_other_things(knowledge, description, is_off):
         ("[SwitchOn] <laptop> (1)", "Iron", "Iron the shirts.", True),
     ],
 )
-def test_words_that_tell_of_a_thing_without_naming_it(knowledge, steps, title, description, is_off):
+def test_words_related_to_a_thing_without_its_name(knowledge, steps, title, description, is_off):
     given = grammar.check(program(steps + "\n", title, description), knowledge)[0]
     assert bool(list(topics.off_topic(given, knowledge))) == is_off
 
@@ -77,7 +77,7 @@ def test_words_that_tell_of_a_thing_without_naming_it(knowledge, steps, title, d
         ("Save the leftovers in the fridge, click the light off.", None),
     ],
 )
-def test_texts_that_are_no_activity(text, kind):
+def test_texts_that_are_not_activities(text, kind):
     found = topics.no_activity(text)
     assert (found[0] if found else None) == kind
 
@@ -86,7 +86,7 @@ def test_going_is_an_effect_where_the_title_says_so():
     assert not list(programs.without_effect(program("[Run] <kitchen> (1)\n", "Running in circles"), default()))
 
 
-def test_lamps_and_what_hardly_goes_without_are_within_reach(knowledge):
+def test_lamps_and_associated_things_are_within_reach(knowledge):
     for steps in ("[Walk] <bedroom> (1)\n[SwitchOn] <light> (1)\n", "[Walk] <bathtub> (1)\n[SwitchOn] <faucet> (1)\n"):
         assert not list(programs.not_close(grammar.check(program(steps), knowledge)[0], knowledge))
 

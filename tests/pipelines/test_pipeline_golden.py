@@ -122,7 +122,7 @@ def test_the_ledger_adds_up_from_stage_to_stage(out):
     assert found["publish"]["records_in"] == sum(found["sample"]["rows"].values()) + found["augment"]["rows"][""]
 
 
-def test_augment_keeps_sketches_and_what_was_tried_in_vain(out):
+def test_augment_keeps_sketches_and_failed_attempts(out):
     programs = {row["program_id"]: row for row in [*read(out / "sample"), *read(out / "augment")]}
     sketches = {row["program_id"]: row for row in read(out / "publish" / "sketches")}
     assert set(sketches) >= {row["program_id"] for row in read(out / "augment")}

@@ -93,7 +93,7 @@ def test_a_bad_program_costs_no_other_program_of_its_file(write):
     assert faults(found) == [("NOT_TEXT", "tv.txt", 7)]
 
 
-def test_a_line_beyond_all_bounds_is_told(write):
+def test_a_line_beyond_all_bounds_is_reported(write):
     ((_, reject),) = read(write("a.txt", "Walk\n\n[Walk] <" + "x" * 3_000_000 + "> (1)\n"))
     assert "more than 10,000 characters" in reject.diagnostics[0].message
 
@@ -342,7 +342,7 @@ def test_names_do_not_matter(write, release, tmp_path):
     assert next(recognise(write("program.csv.old", PROGRAM), "x")).reader == "text"
 
 
-def test_sources_that_share_a_name_are_told_apart(write):
+def test_sources_that_share_a_name_are_distinguished(write):
     found = read(write("one/tv.txt", PROGRAM), write("two/tv.txt", PROGRAM))
     assert [row["program_id"] for row in rows(found)] == ["text:tv.txt", "text:tv.txt~2"]
 

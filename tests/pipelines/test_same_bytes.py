@@ -23,7 +23,7 @@ if __name__ == "__main__":
 
 @pytest.fixture(scope="module")
 def kills(module):
-    """What kills builds, and tells what differs."""
+    """Kills builds, and compares the results."""
     return module("benchmarks/kills.py")
 
 

@@ -178,7 +178,7 @@ def test_a_share_that_changed_is_made_again_alone(settings, monkeypatch):
     assert len([row for row in rejects(result) if not row["partial"]]) == 30
 
 
-def test_parts_that_are_no_more_go(settings):
+def test_parts_that_no_longer_exist_are_removed(settings):
     folder = run_stage(STAGE, settings).manifest.folder
     fewer = replace(STAGE, partitions=lambda job: (p for p in partitions(job) if p.number < 2))
     run_stage(fewer, replace(settings, sources=(*settings.sources, settings.sources[0])))

@@ -28,8 +28,8 @@ def test_every_option_is_one_of_a_build(name):
     assert Settings((), "out", **tiered(name, PLAIN, []))
 
 
-def test_no_such_tier():
-    with pytest.raises(HearthError, match="no tier is called `huge`") as caught:
+def test_an_unknown_tier():
+    with pytest.raises(HearthError, match="unknown tier `huge`") as caught:
         tiered("huge", PLAIN, [])
     assert caught.value.diagnostics[0].suggestion == "tiers are mini, full, frames"
 

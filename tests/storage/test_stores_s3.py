@@ -71,6 +71,6 @@ def test_built_verified_and_queried(run, bucket, made, engine):
     assert "programs/part-00000.parquet" in run("verify", "s3://homes/evening", status=1)
 
 
-def test_a_bucket_that_is_not_there_is_said(run, made):
+def test_a_missing_bucket_is_reported(run, made):
     printed = run("build", made.settings.sources[1], "--out", "s3://nowhere/x", status=1)
     assert "s3://nowhere/x" in printed and "Traceback" not in printed
