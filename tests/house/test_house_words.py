@@ -14,9 +14,10 @@ ROOT = Path(__file__).resolve().parents[2]
 ROOMS = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair",
     "tests/schemas", "tests/storage", "tests/kb", "tests/homes", "tests/simulation", "tests/grounding", "tests/repair",
-    "tests/augment", "tests/oracles", "tests/golden",
+    "tests/augment", "tests/oracles", "tests/golden", "pipelines", "docs", "benchmarks/README.md", "README.md",
+    "CONTRIBUTING.md", "cli.py", "__init__.py", "version.py", "tests/pipelines", "tests/commands",
 )  # fmt: skip
-"""The folders that are held to it."""
+"""The folders and files that are checked."""
 
 KINDS = frozenset({".py", ".yaml", ".md", ".expected", ".txt"})
 """Endings of the files that are read; pages and YAML too."""
@@ -47,13 +48,16 @@ ALLOWED = {
     ("schemas/literals.py", "stowed|averted|shut_in"),  # names that readers of older datasets accept
     ("schemas/failures.py", "HEARD_NEARLY"),
     ("tests/schemas/test_failures.py", "HEARD_NEARLY"),
+    ("tests/commands/test_run_command.py", "stances"),  # a key of `run --json`
+    ("pipelines/engine/final_tables.py", "told"),  # a type of datasets/format/splits.py
 }
 """Files that may have a phrase."""
 
 
 def files():
     for room in ROOMS:
-        yield from (path for path in sorted((ROOT / room).rglob("*")) if path.suffix in KINDS and path.is_file())
+        paths = sorted((ROOT / room).rglob("*")) if (ROOT / room).is_dir() else [ROOT / room]
+        yield from (path for path in paths if path.suffix in KINDS and path.is_file())
 
 
 @pytest.mark.parametrize("phrase", PHRASES)
