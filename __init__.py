@@ -45,37 +45,17 @@ if TYPE_CHECKING:
 
 __version__ = VERSION
 
-_NAMES = {
-    "datasets.dataset": "Dataset",
-    "datasets.export.formats": "export",
-    "datasets.verify": "verify",
-    "grounding.binding": "bind",
-    "grounding.environments.sampling": "sample",
-    "grounding.preconditions.infer": "infer",
-    "homes.library": "load_graph",
-    "homes.procedural.generate": "generate",
-    "kb.language.understanding": "understand",
-    "kb.tools.find": "find Query",
-    "pipelines.build": "build",
-    "rendering.film.snapshots": "trajectory_of",
-    "rendering.film.video": "record",
-    "rendering.modalities": "render",
-    "rendering.scene.prepared": "scene_of",
-    "repair.sketch": "sketch",
-    "repair.variants": "augment",
-    "schemas.goals": "Goal",
-    "schemas.literals": "Literal",
-    "scoring.evaluate": "evaluate",
-    "scoring.metrics.executability": "executability",
-    "scoring.predictions": "read_pairs",
-    "simulation.engine": "run",
-    "simulation.goals": "Progress",
-    "simulation.holds": "holds",
-    "simulation.world.edit": "edit",
-    "simulation.world.home": "Home",
-    "simulation.world.world": "World",
-}
-_MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
+_PLACES = """
+datasets.dataset:Dataset datasets.export.formats:export datasets.verify:verify grounding.binding:bind
+grounding.environments.sampling:sample grounding.preconditions.infer:infer homes.library:load_graph
+homes.procedural.generate:generate kb.language.understanding:understand kb.tools.find:find kb.tools.find:Query
+pipelines.build:build rendering.film.snapshots:trajectory_of rendering.film.video:record rendering.modalities:render
+rendering.scene.prepared:scene_of repair.sketch:sketch repair.variants:augment schemas.goals:Goal
+schemas.literals:Literal scoring.evaluate:evaluate scoring.metrics.executability:executability
+scoring.predictions:read_pairs simulation.engine:run simulation.goals:Progress simulation.holds:holds
+simulation.world.edit:edit simulation.world.home:Home simulation.world.world:World
+"""
+_MODULES = {name: module for module, name in (place.split(":") for place in _PLACES.split())}
 
 
 def __getattr__(name: str) -> Any:

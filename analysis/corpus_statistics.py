@@ -87,7 +87,7 @@ class Corpus:
 
 
 def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
-    """Read and check whatever form the sources are in, as `ingest` and `validate` do; nothing is written.
+    """Read and check whatever form the sources are in, as `ingest` and `validate` do; nothing is written (thesis 3.4).
 
     Raises:
         HearthError: a source is missing or of no known form.

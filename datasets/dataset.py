@@ -205,9 +205,9 @@ class Dataset:
         return cache(partial(_Home.read, self))
 
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
-        """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks; see `tensors`.
+        """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks (thesis 5.4.1).
 
-        A run that is shorter gives its last graph.
+        A run that is shorter gives its last graph. `tensors.Tensors` says the shapes.
 
         Raises:
             KeyError: there is no program of that id.

@@ -38,7 +38,7 @@ class Binding:
 
 
 def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
-    """Find nodes with which every step runs.
+    """Find nodes with which every step runs (thesis 2.4.1).
 
     Objects that are bound already keep their node. Distinct instances get distinct nodes.
 

@@ -32,7 +32,7 @@ def render(
     class_ids: Mapping[str, int] | None = None,
     after: Scene | None = None,
 ) -> dict[str, Any]:
-    """Render a scene in several modalities.
+    """Render a scene in several modalities (thesis 2.4, 4.4).
 
     Args:
         scene: the scene.

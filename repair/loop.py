@@ -109,7 +109,7 @@ def repair(
     tries: int = TRIES,
     canonical_only: bool = True,
 ) -> Repaired:
-    """Repair a program until it runs and reaches its goal.
+    """Repair a program until it runs and reaches its goal (thesis 5.5.4, algorithm 4).
 
     Args:
         program: bound to nodes of the world's home.

@@ -94,7 +94,7 @@ def augment(
     options: Options = Options(),
     original: tuple[Preconditions, Execution] | None = None,
 ) -> Augmented | Failure:
-    """Repaired versions of a program for environments that violate some of its preconditions.
+    """Repaired versions of a program for environments that violate some of its preconditions (thesis 5.5.4, A.2).
 
     Args:
         program: with instances as counters.

@@ -160,7 +160,7 @@ def evaluate(
     environments: Environments | None = None,
     options: Options = Options(),
 ) -> list[Scored]:
-    """Score every prediction, in order.
+    """Score every prediction, in order (thesis 4.3, 5.6.1).
 
     Args:
         pairs: predictions with their references.

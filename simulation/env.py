@@ -115,8 +115,6 @@ class Env:
             HearthError: every fault of an instruction's text.
 
         Examples:
-            >>> env = hearth.Env()
-            >>> _ = env.reset("maple")
             >>> env.step("[Walk] <fridge> (1)").failures
             {}
             >>> tick = env.step({0: "[Close] <fridge> (1)"})
@@ -148,8 +146,6 @@ class Env:
             HearthError: UNKNOWN_AGENT; NOT_RENDERED when pictures are asked for and there is no camera sensor.
 
         Examples:
-            >>> env = hearth.Env()
-            >>> _ = env.reset("maple")
             >>> env.observe().me.holding, len(env.observe().ids) < len(env.world.home)
             ((), True)
         """
@@ -168,8 +164,6 @@ class Env:
             HearthError: UNKNOWN_AGENT.
 
         Examples:
-            >>> env = hearth.Env()
-            >>> _ = env.reset("maple")
             >>> _ = env.step("[Walk] <fridge> (1)")
             >>> [step.objects[0].name for step in env.legal() if step.action == "Open"]
             ['fridge', 'coffe_maker', 'pot', 'cupboard']

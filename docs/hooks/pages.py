@@ -50,6 +50,8 @@ graph = hearth.load_graph("maple", known)
 (fridge,) = [node.id for node in graph.nodes if node.class_name == "fridge"]
 home = hearth.home("maple")
 world = hearth.World.start(home)
+env = hearth.Env()
+env.reset("maple")
 
 text = "Fetch milk\\n\\n[Walk] <fridge> (1)\\n[Open] <fridge> (1)\\n[Grab] <milk> (1)\\n"
 program = hearth.parse_program(text)

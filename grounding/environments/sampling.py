@@ -121,7 +121,7 @@ def sample(
     rules: Rules = DEFAULT,
     must_run: bool = True,
 ) -> tuple[Environment, Execution] | Failure:
-    """Draw an environment in which the conditions hold and the program runs.
+    """Draw an environment in which the conditions hold and the program runs (thesis 5.5.2, eq. 5.10).
 
     Args:
         program: with instances as counters; node ids are ignored.

@@ -31,7 +31,7 @@ CAUSED_BY_START = frozenset(
 
 
 def infer(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Preconditions | Failure:
-    """The conditions under which a program runs, or the failure that no start prevents.
+    """The conditions under which a program runs, or the failure that no start prevents (thesis 5.5.2).
 
     A failure of a program that contradicts itself has code CONTRADICTION; its `expected` names the condition and the
     step that needs it, its `actual` the step that violates it.

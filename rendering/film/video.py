@@ -287,7 +287,7 @@ def record(
     fps: float = 15.0,
     suffixes: Sequence[str] = (".webm", ".mp4"),
 ) -> Recorded:
-    """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4`.
+    """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4` (thesis 2.4.1).
 
     Args:
         trajectory, home, view, size, fps: as in `film`.

@@ -112,7 +112,7 @@ def executability(
     reference: Program | None = None,
     rules: Rules = DEFAULT,
 ) -> Executability:
-    """Run a predicted program in an environment.
+    """Run a predicted program in an environment (thesis 4.5.2, A.3).
 
     Args:
         lines: the prediction.

@@ -71,7 +71,7 @@ def score(
     match: MatchBy = "best",
     scope: Scope = "either",
 ) -> GraphScore:
-    """Compare the final graph of a prediction with the reference's.
+    """Compare the final graph of a prediction with the reference's (thesis 5.6.1, A.3).
 
     Only tuples with an end in a named object or a character count. Rooms and doors are no such objects, but an object's
     relation to its room counts. With scope `either`, named objects are those of either program, in both graphs; with

@@ -61,7 +61,7 @@ def similarity(predicted: Lines, reference: Lines, level: Level = "step", instan
 
 
 def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsScore:
-    """The scores of one pair at every level.
+    """The scores of one pair at every level, from 0 to 1 (thesis eq. 4.1).
 
     Examples:
         >>> from hearth.scoring.lines import read

@@ -48,6 +48,7 @@ def test_the_example_is_true(place, prepared, monkeypatch):
         pytest.importorskip("open3d", reason="rendering needs open3d")
     folder, names = prepared
     monkeypatch.chdir(folder)
+    names["env"].reset("maple")
     example = doctest.DocTestParser().get_doctest(PAGE.documented(place)[1], dict(names), place, None, None)
     assert example.examples, "no example in the docstring"
     printed = []
