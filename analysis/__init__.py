@@ -1,1 +1,1 @@
-"""Studies of a corpus and of a dataset: statistics, figures, ratings, synthesis, coverage, agreement."""
+"""Studies of corpora and datasets: statistics, figures, ratings, synthesis, coverage, agreement of preconditions."""

@@ -1,4 +1,4 @@
-"""Preconditions beside those that the release's rules name, over all programs of a source (thesis 5.5.2)."""
+"""Agreement of inferred preconditions with those of the release's rules, over a source (thesis 5.5.2)."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from hearth.storage.rejects import Reject
 
 
 def agreement(programs: Iterable[Script | Reject], knowledge: Knowledge) -> dict[str, Any]:
-    """How many conditions of each name the rules have, what became of them here, and what they miss.
+    """Counts of the rules' conditions by name and agreement, and of inferred conditions that the rules lack.
 
     Returns:
-        `programs`, `impossible` (with no start; told by `sample`), and `conditions`: for each name the rules' count,
-        how many of those are ours, not needed, or refused because the program would stop; and how many of ours the
-        rules do not name, those that a step needs and those that its author takes for granted.
+        `programs`, `impossible` (programs without a satisfying start), and `conditions`: by name the rules' count,
+        the numbers of those that are inferred, not needed, or refused because the program would stop; and the numbers
+        of inferred conditions that the rules lack, required ones and defaults.
     """
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     read = impossible = 0

@@ -1,4 +1,4 @@
-"""What augmenting gave: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
+"""Results of augmentation: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ THESIS: dict[str, dict[str, float | None]] = {
     "augmented": {"programs": 27284, "average_length": 18.58, "average_nodes": 290, "average_edges": 4305},
     "all": {"programs": 32761, "average_length": 18.79, "average_nodes": 289, "average_edges": 4319},
 }
-"""Table 5.1. Its parts do not add up: 1,387 + 27,284 is 28,671, not 32,761."""
+"""Table 5.1. Its parts do not sum up: 1,387 + 27,284 is 28,671, not 32,761."""
 
 SHOWN_CLASSES = ("cup", "sauce_pan")
-"""The classes whose conditions figure 5-4 shows."""
+"""Classes in figure 5-4."""
 
 
 def outcome(folder: Path) -> dict[str, Any]:
-    """Pairs of a program and a perturbed environment that were tried, and what became of them, by code.
+    """Numbers of tried pairs of a program and a perturbed environment, by outcome.
 
     Raises:
-        HearthError: MISSING_FILE, when the stage has not been run.
+        HearthError: MISSING_FILE, if the stage has not run.
     """
     import orjson
     import pyarrow.parquet as pq
@@ -54,7 +54,7 @@ def outcome(folder: Path) -> dict[str, Any]:
 
 
 GIVEN_UP = (Code.NO_HANDLER, Code.HANDLER_ERROR, Code.LOOP, Code.TOO_MANY_TRIES, Code.GOAL_LOST)
-"""Why a pair was not repaired; the others were, or needed no repair, or could not be drawn."""
+"""Codes of pairs that were not repaired; other pairs were repaired, ran without repair, or were not sampled."""
 
 LENGTHS = (5, 10, 15, 20, 25, 30, 40, 50)
 """Upper ends of the classes in which lengths are counted."""
@@ -63,7 +63,7 @@ _GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NUL
 
 
 def figures(dataset: Path) -> dict[str, Any]:
-    """What table 5.1 and figure 5-4 show, of a published dataset, beside the thesis.
+    """The numbers of table 5.1 and figure 5-4 for a published dataset, beside the thesis.
 
     Returns:
         `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`: programs by length before and
@@ -72,7 +72,7 @@ def figures(dataset: Path) -> dict[str, Any]:
         `executable_share`: of the programs that were valid, those with an environment in which they run.
 
     Raises:
-        HearthError: MISSING_FILE, when no dataset is there.
+        HearthError: MISSING_FILE, if there is no dataset.
     """
     from hearth.datasets.dataset import Dataset
 
@@ -88,7 +88,7 @@ def figures(dataset: Path) -> dict[str, Any]:
 
 
 def _row(data: Any, group: str) -> dict[str, float | None]:
-    """One column of table 5.1; nodes and edges as the executions' environments have them."""
+    """One column of table 5.1; nodes and edges are those of the executions' environments."""
     if group == "collected":
         (found,) = data.rows("SELECT records_through FROM ledger WHERE stage = 'validate'")[1]
         return {"programs": found[0], "average_length": None, "average_nodes": None, "average_edges": None}
@@ -106,7 +106,7 @@ def _row(data: Any, group: str) -> dict[str, float | None]:
 
 
 def _lengths(data: Any, group: str) -> dict[str, int]:
-    """Programs by length, in classes named by their upper end; the last is open."""
+    """Numbers of programs by length class, named by its upper end; the last is open."""
     rows = data.rows(f"SELECT len(steps), count(*) FROM programs WHERE {_GROUPS[group]} GROUP BY 1")[1]
     found = dict.fromkeys([*(f"up to {end}" for end in LENGTHS), "more"], 0)
     for length, count in rows:
@@ -116,13 +116,13 @@ def _lengths(data: Any, group: str) -> dict[str, int]:
 
 
 def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
-    """How often each condition of the start names a class first: shares of all that do, before and after."""
+    """Shares of the conditions whose first object is of a class, before and after augmentation."""
     found: dict[str, dict[str, float]] = {}
     for label, where in (("before", "IS NULL"), ("after", "IS NOT NULL")):
         query = f"""
-            WITH told AS (SELECT unnest(v.conditions) AS c FROM environments v JOIN programs p USING (program_id)
+            WITH literal AS (SELECT unnest(v.conditions) AS c FROM environments v JOIN programs p USING (program_id)
                           WHERE p.parent_id {where})
-            SELECT c.name, count(*) FROM told WHERE c.objects[1].name = $name GROUP BY 1 ORDER BY 2 DESC, 1"""
+            SELECT c.name, count(*) FROM literal WHERE c.objects[1].name = $name GROUP BY 1 ORDER BY 2 DESC, 1"""
         rows = data.rows(query, name=name)[1]
         total = sum(count for _, count in rows) or 1
         for condition, count in rows:
@@ -131,25 +131,25 @@ def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
 
 
 def _near_duplicates(data: Any) -> int:
-    """Augmented programs that have the steps of a sibling in the same home, or of their parent."""
+    """Number of augmented programs with the steps of a sibling in the same home."""
     query = """
         WITH child AS (SELECT DISTINCT p.program_id, p.parent_id, e.home, p.steps
                        FROM programs p JOIN executions e USING (program_id) WHERE p.parent_id IS NOT NULL),
-             told AS (SELECT program_id, parent_id, home,
-                             list_transform(steps, lambda s: {'a': s.action, 'o': s.objects, 'g': s.agent}) AS said
+             steps_of AS (SELECT program_id, parent_id, home,
+                             list_transform(steps, lambda s: {'a': s.action, 'o': s.objects, 'g': s.agent}) AS plain
                       FROM child)
-        SELECT count(*) - count(DISTINCT (parent_id, home, said)) FROM told"""
+        SELECT count(*) - count(DISTINCT (parent_id, home, plain)) FROM steps_of"""
     return int(data.rows(query)[1][0][0])
 
 
 def _share(data: Any) -> float | None:
-    """Programs that run somewhere, of all that are valid."""
+    """Share of valid programs with an environment in which they run."""
     rows = dict(data.rows("SELECT stage, records_through FROM ledger WHERE stage IN ('validate', 'sample')")[1])
     return round(rows["sample"] / rows["validate"], 4) if rows.get("validate") else None
 
 
 def _bytes(dataset: Path, data: Any) -> int | None:
-    """What programs, environments, executions and repairs take on disk, for each execution."""
+    """Bytes of programs, environments, executions and repairs on disk, per execution."""
     tables = ("programs", "environments", "executions", "repairs")
     size = sum(path.stat().st_size for table in tables for path in dataset.rglob(f"{table}/part-*.parquet"))
     (count,) = data.rows("SELECT count(*) FROM executions")[1][0]

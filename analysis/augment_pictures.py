@@ -1,4 +1,4 @@
-"""Figure 5-4 and the lengths of programs, drawn: what augmenting changes, at a glance."""
+"""Charts of figure 5-4 and of program lengths, before and after augmentation."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ COLOURS = {"before": "#9aa5b1", "after": "#b5651d"}
 
 
 def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
-    """Draw what `augment_figures.figures` found, each as PNG and SVG; the files."""
+    """Draw the result of `augment_figures.figures`, each chart as PNG and SVG; returns the files."""
     folder.mkdir(parents=True, exist_ok=True)
     files = saved(conditions(found["conditions"]), folder / "conditions")
     return files + saved(lengths(found["lengths"]), folder / "lengths")
 
 
 def conditions(shares: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Figure:
-    """Shares of the conditions that name a class, before and after, a panel a class (figure 5-4)."""
+    """Shares of the conditions of a class, before and after, one panel per class (figure 5-4)."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5.2 * len(shares), 4), layout="constrained")
@@ -34,7 +34,7 @@ def conditions(shares: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Figur
 
 
 def lengths(counts: Mapping[str, Mapping[str, int]]) -> Figure:
-    """Shares of programs by length, originals and augmented."""
+    """Shares of programs by length, of originals and of augmented ones."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 4), layout="constrained")

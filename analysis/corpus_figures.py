@@ -1,4 +1,4 @@
-"""The figures of thesis 3.4 for any corpus, as PNG and SVG, and the numbers behind them as Parquet."""
+"""The figures of thesis 3.4 for any corpus, as PNG and SVG, and their data as Parquet."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BARS = 50
-"""Actions and objects in a histogram (figure 3-4)."""
+"""Number of actions and objects in a histogram (figure 3-4)."""
 
 USED_TOGETHER = 30
-"""Objects in the picture of which are used together."""
+"""Number of objects in the matrix of common use."""
 
 _BLUE, _GREY = "#31688e", "#b8b8b8"
 
 
 def write(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
-    """Write every figure and every table of numbers; the files, in order."""
+    """Write every figure and every table of numbers; returns the files, in order."""
     folder.mkdir(parents=True, exist_ok=True)
     actions, objects = numbers.frequencies(found)
     figures = {
@@ -100,7 +100,7 @@ def _figure(width: float, height: float) -> tuple[Figure, Any]:
 
 
 def saved(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure twice; the same numbers give the same bytes."""
+    """Write a figure as PNG and SVG, deterministically."""
     import matplotlib as mpl
 
     files = []
@@ -135,7 +135,7 @@ def _bars(counts: Counter[str], label: str) -> Figure:
     figure, axes = _figure(11, 3.8)
     shown = _ranked(counts)[:BARS]
     axes.bar(range(len(shown)), [count for _, count in shown], color=_BLUE)
-    axes.set_xticks(range(len(shown)), [_said(name) for name, _ in shown], rotation=90, fontsize=8)
+    axes.set_xticks(range(len(shown)), [_label(name) for name, _ in shown], rotation=90, fontsize=8)
     axes.set_ylabel(label)
     axes.margins(x=0.01)
     axes.spines[["top", "right"]].set_visible(False)
@@ -143,7 +143,7 @@ def _bars(counts: Counter[str], label: str) -> Figure:
 
 
 def _together(found: Corpus, objects: Counter[str]) -> Figure:
-    """In how many programs each two of the commonest objects are used."""
+    """Numbers of programs that use both of two frequent objects."""
     names = [name for name, _ in _ranked(objects)[:USED_TOGETHER]]
     place = {name: number for number, name in enumerate(names)}
     counts = np.full((len(names), len(names)), np.nan)
@@ -154,12 +154,12 @@ def _together(found: Corpus, objects: Counter[str]) -> Figure:
     if names:
         shown = axes.imshow(counts, cmap="viridis")
         figure.colorbar(shown, ax=axes, shrink=0.7, label="programs that use both")
-    axes.set_xticks(range(len(names)), list(map(_said, names)), rotation=90, fontsize=8)
-    axes.set_yticks(range(len(names)), list(map(_said, names)), fontsize=8)
+    axes.set_xticks(range(len(names)), list(map(_label, names)), rotation=90, fontsize=8)
+    axes.set_yticks(range(len(names)), list(map(_label, names)), fontsize=8)
     return figure
 
 
-def _said(name: str) -> str:
+def _label(name: str) -> str:
     return name.removeprefix("food_").replace("_", " ")
 
 

@@ -1,4 +1,4 @@
-"""What a corpus looks like, in the numbers of thesis 3.4 and table 4.1."""
+"""Statistics of a corpus, as in thesis 3.4 and table 4.1."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ THESIS_FUNNEL = {
     "more programs": 1564,
     "programs": 2821,
 }
-"""Thesis 3.4. First programs are one a description, those with Special blocks left out."""
+"""Thesis 3.4. First programs are one per description, without those with Special blocks."""
 
 THESIS_VARIETY = {"activities": 576, "actions": 75, "objects": 308, "unique steps": 2709}
 
@@ -67,15 +67,15 @@ class Written:
 
 @dataclass(slots=True)
 class Corpus:
-    """The words and programs of some sources, and what was refused of them.
+    """Descriptions and programs of some sources, and counts of rejected records.
 
     Attributes:
         descriptions: text by id.
-        programs: the valid ones.
-        attempted: ids of descriptions that some program was written for, valid or not.
-        refused: how many records by code.
-        specials: free text of Special blocks without a replacement, with how often it came: the actions to add next.
-        warnings: how many by code.
+        programs: the valid programs.
+        attempted: ids of descriptions with a program, valid or not.
+        refused: number of rejected records by code.
+        specials: free text of Special blocks without a replacement, with counts: candidates for new actions.
+        warnings: number of warnings by code.
     """
 
     descriptions: dict[str, str] = field(default_factory=dict)
@@ -87,10 +87,10 @@ class Corpus:
 
 
 def gather(paths: Iterable[str], known: Knowledge) -> Corpus:
-    """Read and check whatever form the sources are in, as `ingest` and `validate` do; nothing is written (thesis 3.4).
+    """Read and check sources as `ingest` and `validate` do, without writing tables (thesis 3.4).
 
     Raises:
-        HearthError: a source is missing or of no known form.
+        HearthError: a source is missing or of unknown form.
 
     Examples:
         >>> from hearth.analysis.corpus_statistics import gather, variety
@@ -120,8 +120,8 @@ def _take(corpus: Corpus, row: IngestedRow, known: Knowledge) -> None:
             corpus.specials.update(_free_text(f.found) for f in valid.diagnostics if f.code is Code.SPECIAL_BLOCK)
         else:
             corpus.warnings.update({warning["code"] for warning in valid["warnings"]})
-            told = Written(row["program_id"], valid["title"], described, steps_of(valid["steps"]))
-            corpus.programs.append(told)
+            written = Written(row["program_id"], valid["title"], described, steps_of(valid["steps"]))
+            corpus.programs.append(written)
 
 
 def _free_text(block: str) -> str:
@@ -132,7 +132,7 @@ def _free_text(block: str) -> str:
 
 
 def funnel(corpus: Corpus) -> dict[str, int]:
-    """What became of the descriptions, as thesis 3.4 tells it."""
+    """Numbers of descriptions and programs after each filter (thesis 3.4)."""
     first = len({written.description_id for written in corpus.programs})
     return {
         "descriptions": len(corpus.descriptions),
@@ -144,7 +144,7 @@ def funnel(corpus: Corpus) -> dict[str, int]:
 
 
 def variety(corpus: Corpus) -> dict[str, int]:
-    """How many different activities, actions, objects and steps there are; instances do not count."""
+    """Numbers of different activities, actions, objects and steps, ignoring instances."""
     steps = [step for written in corpus.programs for step in written.steps]
     return {
         "activities": len({activity_id(written.title) for written in corpus.programs}),
@@ -155,7 +155,7 @@ def variety(corpus: Corpus) -> dict[str, int]:
 
 
 def averages(corpus: Corpus) -> tuple[int, float, float, float]:
-    """A row of table 4.1: programs, steps a program, sentences and words a description."""
+    """A row of table 4.1: programs, steps per program, sentences and words per description."""
     texts = [text for text in corpus.descriptions.values() if text.strip()]
     sentences = [max(1, len(_SENTENCE.findall(text))) for text in texts]
     words = [len(_WORD.findall(text)) for text in texts]
@@ -164,14 +164,14 @@ def averages(corpus: Corpus) -> tuple[int, float, float, float]:
 
 
 def frequencies(corpus: Corpus) -> tuple[Counter[str], Counter[str]]:
-    """How often each action and each object occurs in steps (figure 3-4)."""
+    """Frequencies of actions and objects in steps (figure 3-4)."""
     steps = [step for written in corpus.programs for step in written.steps]
     objects = Counter(ref.name for step in steps for ref in step.objects)
     return Counter(step.action for step in steps), objects
 
 
 def together(corpus: Corpus) -> Counter[tuple[str, str]]:
-    """In how many programs two objects are used together; rooms count as objects."""
+    """Numbers of programs that use both of two objects; rooms count as objects."""
     found: Counter[tuple[str, str]] = Counter()
     for written in corpus.programs:
         found.update(combinations(sorted({ref.name for step in written.steps for ref in step.objects}), 2))
@@ -180,7 +180,7 @@ def together(corpus: Corpus) -> Counter[tuple[str, str]]:
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """An activity's programs compared with each other, over all pairs (table 3.1)."""
+    """Similarity of an activity's programs, over all pairs (table 3.1)."""
 
     name: str
     title: str
@@ -191,11 +191,11 @@ class Activity:
 
 @dataclass(slots=True)
 class Similarities:
-    """How alike programs and activities are (3.4): activities with their diversity, and the matrix between them.
+    """Similarity of programs within and between activities (thesis 3.4).
 
     Attributes:
-        activities: commonest first.
-        order: numbers of the activities compared, so that blocks show.
+        activities: with their diversity, the most frequent first.
+        order: indices of the compared activities, clustered so that blocks show.
         matrix: mean similarity between their programs, in that order; shape (len(order), len(order)).
     """
 
@@ -205,7 +205,7 @@ class Similarities:
 
 
 def similarities(corpus: Corpus, most: int = 60, workers: int = -1) -> Similarities:
-    """Compare all pairs of programs, within activities and between the commonest `most` of them."""
+    """Compare all pairs of programs, within activities and between the `most` most frequent ones."""
     from hearth.scoring.metrics.lcs import matrix
 
     programs = [written.steps for written in corpus.programs]
@@ -249,7 +249,7 @@ def _between(pairs: NDArray[np.float32], one: list[int], other: list[int]) -> fl
 
 
 def _sorted(between: NDArray[np.float32]) -> list[int]:
-    """An order in which what is alike stands together: leaves of a hierarchical clustering (figure 3-6)."""
+    """An order with similar activities adjacent: leaves of a hierarchical clustering (figure 3-6)."""
     if len(between) < 3:
         return list(range(len(between)))
     from scipy.cluster.hierarchy import leaves_list, linkage
@@ -262,7 +262,7 @@ def _sorted(between: NDArray[np.float32]) -> list[int]:
 
 
 def beside_thesis(activities: Sequence[Activity]) -> Iterator[tuple[str, tuple[int, float, float], Activity | None]]:
-    """The rows of table 3.1 with ours of the same name, where there is one."""
+    """The rows of table 3.1, each with our activity of the same name, if any."""
     ours = {normal_name(one.title): one for one in activities} | {one.name: one for one in activities}
     for title, row in THESIS_DIVERSITY.items():
         yield title, row, ours.get(activity_id(title))

@@ -1,6 +1,6 @@
-"""Rehearsing: every program of some sources in every home, each in an environment sampled for it; nothing is written.
+"""Coverage: runs every program of some sources in every home, in environments sampled for it; writes nothing.
 
-What can't be is proven: by the two steps that contradict each other, or by the fact that forbids it in any home.
+Impossible programs are proven: by two contradictory steps, or by a fact that forbids the program in any home.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from hearth.schemas.structs import DifferenceRow
 from hearth.storage.rejects import Reject
 
 ANY_HOME = "any home"
-"""Where a program is impossible that contradicts itself."""
+"""The place of programs that are impossible because they contradict themselves."""
 
 
 class Script(NamedTuple):
-    """A program of a source, its instances counters."""
+    """An unbound program of a source."""
 
     program_id: str
     place: str
@@ -43,18 +43,18 @@ class Script(NamedTuple):
 
 
 @dataclass(slots=True)
-class Rehearsal:
-    """What became of every program in every home.
+class Coverage:
+    """The results of all pairs of a program and a home.
 
     Attributes:
         homes: names.
-        programs: how many were read, and `rejected` how many could not be.
-        ran: pairs of a program and a home for which an environment was sampled, checked, and run to the program's end.
-        impossible: programs that no environment of `ANY_HOME`, or of the home named, lets run, each with why.
-        failed: pairs that ought to run and did not, each with why.
-        seconds: (wall, processor) spent sampling and checking, inference included; reading and building homes is not.
-        nodes: of the environments.
-        size: bytes that the environments take in Parquet, all together, as what differs from their homes.
+        programs: number of programs read; `rejected`: number of unreadable ones.
+        ran: number of pairs whose environment was sampled and checked, and whose program ran to its end.
+        impossible: programs proven impossible in `ANY_HOME`, or in the named home, each with the failure.
+        failed: other pairs that did not run, each with the failure.
+        seconds: (wall, processor) of inference, sampling and checking, without reading and building homes.
+        nodes: numbers of nodes of the environments.
+        size: bytes of all environments in Parquet, as differences from their homes.
     """
 
     homes: tuple[str, ...]
@@ -69,7 +69,7 @@ class Rehearsal:
 
     @property
     def pairs(self) -> int:
-        """Programs times homes."""
+        """Number of programs times number of homes."""
         return self.programs * len(self.homes)
 
     def _homes_of(self, where: str) -> int:
@@ -98,7 +98,7 @@ class Rehearsal:
 
 
 def scripts(sources: Iterable[str], knowledge: Knowledge) -> Iterator[Script | Reject]:
-    """The programs of sources in canonical names, stripped of node ids; graphs that came with them stay unread."""
+    """The programs of sources with canonical names and without node ids; graphs of a release are not read."""
     for _, item in ingest.items(labelled(sources)):
         for row in ingest.read(_without_graphs(item)):
             if isinstance(row, Reject):
@@ -121,24 +121,24 @@ def _checked(row: IngestedRow, knowledge: Knowledge) -> Iterator[Script | Reject
             yield Script(row["program_id"], row["place"], program_of(found).unbound())
 
 
-def rehearse(
+def measure_coverage(
     programs: Iterable[Script | Reject], homes: Homes, names: Sequence[str], seed: int = 0, size: Size = USUAL
-) -> Rehearsal:
+) -> Coverage:
     """Sample an environment for every program in every home, check it, and run the program in it.
 
     Args:
-        programs: as of `scripts`.
-        homes: where homes come from.
-        names: which.
+        programs: as `scripts` gives them.
+        homes: the source of homes.
+        names: of the homes.
         seed: of the sampling.
-        size: nodes wanted; `Size(280, 300)` as the release has.
+        size: number of nodes; `Size(280, 300)` as in the release.
     """
-    found = Rehearsal(tuple(names))
+    found = Coverage(tuple(names))
     stored = _Stored()
     for name in names:
-        # What is found out once for a home is no part of the time.
+        # Properties computed once per home are not part of the measured time.
         _ = size.base(homes.home(name)).fillers, homes.edges(name)
-    # Homes stay: the garbage collector need not look at them again and again (half of the time).
+    # Homes stay in memory: without this the garbage collector scans them repeatedly (half of the time).
     with Workers():
         for script in programs:
             if isinstance(script, Reject):
@@ -153,7 +153,7 @@ def rehearse(
 
 
 def _in_every_home(
-    script: Script, homes: Homes, found: Rehearsal, seed: int, size: Size
+    script: Script, homes: Homes, found: Coverage, seed: int, size: Size
 ) -> list[tuple[str, Environment]]:
     environments: list[tuple[str, Environment]] = []
     wall, processor = perf_counter(), process_time()
@@ -174,7 +174,7 @@ def _in_every_home(
 
 
 class _Stored:
-    """How many bytes environments take in Parquet, written to memory in groups as the tables are."""
+    """Measures the bytes of environments in Parquet, written to memory in row groups as in the tables."""
 
     _FULL = 500
 
@@ -192,7 +192,7 @@ class _Stored:
         self._writer = pq.ParquetWriter(self._bytes, self._schema, compression="zstd")
 
     def add(self, environments: list[DifferenceRow]) -> None:
-        """Take more."""
+        """Add environments."""
         self._rows.extend({"environment": environment} for environment in environments)
         if len(self._rows) >= self._FULL:
             self._flush()

@@ -1,6 +1,6 @@
-"""Where things are in sampled environments beside where a release's stored start graphs have them (figure B-4).
+"""Distribution of objects over places, in sampled environments and in a release's stored start graphs (figure B-4).
 
-And how much environments of one program differ from each other (5.5.2, figure 5-4).
+Also the diversity of one program's environments (5.5.2, figure 5-4).
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY, STATE_ID, STATES
 from hearth.storage.rejects import Reject
 
 Counts = dict[str, Counter[str]]
-"""How often a class (or a class's state pair) is found at each place (or in each state)."""
+"""Class -> counts of its places; or class and state pair -> counts of its states."""
 
 NOWHERE = "floor"
-"""The place of what stands on and in nothing but its room."""
+"""The place of things on and in nothing but their room."""
 
 
 def observed(path: Path, knowledge: Knowledge, limit: int | None = None) -> tuple[Counts, Counts]:
@@ -91,7 +91,7 @@ def _pair(state: str) -> str:
 def sampled(
     path: Path, homes: Homes, names: Sequence[str], seed: int = 0, limit: int | None = None, size: Size = USUAL
 ) -> tuple[Counts, Counts]:
-    """The same for environments sampled for the same programs, each in the next of the homes in turn."""
+    """The same for environments sampled for these programs, with the homes in turn."""
     places: Counts = defaultdict(Counter)
     states: Counts = defaultdict(Counter)
     for number, script in enumerate(_programs(path, homes.knowledge, limit)):
@@ -115,7 +115,7 @@ def _programs(path: Path, knowledge: Knowledge, limit: int | None) -> Iterator[S
 
 
 def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
-    """For each class of both: total variation distance (0 to 1), and how many were seen of each."""
+    """For each common class: total variation distance (0 to 1), and the number of observations in both."""
     found = {}
     for kind in sorted(one.keys() & other.keys()):
         a, b = one[kind], other[kind]
@@ -125,19 +125,19 @@ def distances(one: Counts, other: Counts) -> dict[str, tuple[float, int, int]]:
 
 
 def held(counts: Counts) -> Counts:
-    """Without what is on and in nothing: the release leaves most of what it adds in the middle of a room."""
+    """The counts without `NOWHERE`: the release leaves most added things in the middle of a room."""
     found = {kind: Counter({p: n for p, n in places.items() if p != NOWHERE}) for kind, places in counts.items()}
     return {kind: places for kind, places in found.items() if places}
 
 
 def overall(found: Mapping[str, tuple[float, int, int]]) -> float | None:
-    """The mean distance, each class weighted by how often the release has it."""
+    """The mean distance, weighted by the classes' frequency in the release."""
     total = sum(seen for _, seen, _ in found.values())
     return round(sum(apart * seen for apart, seen, _ in found.values()) / total, 3) if total else None
 
 
 def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int = 0) -> dict[str, Any]:
-    """How many different environments there are among samples of one program, and what they need of each class."""
+    """Number of different environments among samples of one program, and their conditions by class."""
     conditions = infer(program, homes.knowledge)
     if isinstance(conditions, Failure):
         return {"samples": 0, "distinct": 0, "impossible": conditions.message()}
@@ -162,7 +162,7 @@ def diversity(program: Program, homes: Homes, name: str, samples: int, seed: int
 
 
 def _key(environment: Environment) -> tuple[Any, ...]:
-    """What makes two environments of one home equal: the graph, whatever it was made by."""
+    """A key that is equal for environments of one home with equal graphs."""
     kinds = tuple((node.id, node.class_name) for node in environment.nodes)
     home = environment.world.home
     return kinds, tuple(home.on), tuple(home.inside), tuple(home.close), home.states, tuple(home.agent_rows)
@@ -178,7 +178,7 @@ def bars(conditions: Preconditions | Iterable[Any]) -> dict[str, dict[str, int]]
 
 
 def of_programs(path: Path, knowledge: Knowledge, classes: Sequence[str], limit: int | None = None) -> Counts:
-    """How often each precondition is about things of some classes, over the programs of a source."""
+    """Counts of preconditions on some classes, over the programs of a source."""
     found: Counts = {name: Counter() for name in classes}
     for script in _programs(path, knowledge, limit):
         conditions = infer(script.program, knowledge)
@@ -189,7 +189,7 @@ def of_programs(path: Path, knowledge: Knowledge, classes: Sequence[str], limit:
 
 
 def of_cases(folder: Path, classes: Sequence[str]) -> Counts:
-    """The same over a stage's cases (`sample` or `augment`), spoilt conditions as they were spoilt."""
+    """The same over a stage's cases (`sample` or `augment`), with violated conditions as perturbed."""
     from hearth.storage.partitions import read_rows
 
     found: Counts = {name: Counter() for name in classes}
@@ -203,7 +203,7 @@ def of_cases(folder: Path, classes: Sequence[str]) -> Counts:
 
 
 def heat_map(counts: Counts, title: str) -> str:
-    """Figure B-4 as SVG: objects down, places across, darker where more often (of that object)."""
+    """Figure B-4 as SVG: rows are objects, columns places; darkness is the share of the object's observations."""
     kinds = sorted(counts)
     places = sorted({place for found in counts.values() for place in found}, key=lambda p: (p == NOWHERE, p))
     cell, left, above = 14, 150, 140
@@ -229,7 +229,7 @@ COLOURS = ("#1b4f72", "#d68910", "#1e8449")
 
 
 def bar_chart(groups: Mapping[str, Counts], names: Sequence[str]) -> str:
-    """Figure 5-4 as SVG: for each class one row of bars, as long as the share of a condition in each group."""
+    """Figure 5-4 as SVG: for each class a block of bars, whose lengths are the shares of conditions in each group."""
     left, wide, bar, gap = 110, 320, 11, 8
     lines: list[str] = []
     y = 34

@@ -1,4 +1,4 @@
-"""How well faults are found in a corpus whose faults are known: precision and recall, fault by fault."""
+"""Error detection: precision and recall of faults in a corpus with known faults."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from hearth.schemas.rows import IngestedRow
 from hearth.storage.rejects import Reject
 
 IGNORED = frozenset({"NOT_SIMULATED"})
-"""Warnings that are no fault of whoever wrote the program."""
+"""Warnings that do not indicate a fault of the author."""
 
 
 @dataclass(slots=True)
 class Found:
-    """What was found: codes by record, and how many records there were."""
+    """Detected codes by record, and the number of records."""
 
     codes: dict[str, set[str]] = field(default_factory=dict)
     records: int = 0
@@ -29,7 +29,7 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """How well one kind of fault was found."""
+    """Detection of one kind of fault."""
 
     fault: str
     labelled: int
@@ -38,13 +38,13 @@ class Score:
 
     @property
     def recall(self) -> float:
-        """Share of the labelled that were found, by whatever code."""
+        """Share of the labelled records that were found, by any code."""
         return self.found / self.labelled if self.labelled else 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """All kinds, and everything together; `false` are records found faulty that the key says nothing about."""
+    """Scores by fault, and overall; `false` counts detected records that the key does not list."""
 
     scores: tuple[Score, ...]
     false: tuple[tuple[str, int], ...]
@@ -54,7 +54,7 @@ class Report:
 
 
 def find(paths: Iterable[str], known: Knowledge) -> Found:
-    """Read and check sources as `ingest` and `validate` do; what is refused or warned of, by record."""
+    """Read and check sources as `ingest` and `validate` do; returns rejects and warnings by record."""
     found = Found()
     for _, item in items(labelled(paths)):
         found.records += 1
@@ -77,13 +77,13 @@ def _codes(row: IngestedRow | Reject, known: Knowledge) -> set[str]:
 
 
 def read_key(path: Path) -> dict[str, str]:
-    """Record -> its fault, of a CSV with the columns HITId and fault."""
+    """Record -> its fault, from a CSV with the columns HITId and fault."""
     with path.open(encoding="utf-8-sig", newline="") as file:
         return {row["HITId"]: row["fault"] for row in csv.DictReader(file)}
 
 
 def score(found: Found, key: dict[str, str]) -> Report:
-    """Compare what was found with what is labelled. Codes of refusals begin with `!`, the others are warnings."""
+    """Compare detected with labelled faults. Codes of rejects begin with `!`, the others are warnings."""
     kinds = Counter(key.values())
     scores = []
     for fault, count in sorted(kinds.items()):

@@ -1,4 +1,4 @@
-"""How complete programs are (thesis 3.4.1): estimated from what repairing has to insert, and as people rate it."""
+"""Completeness of programs (thesis 3.4.1): estimated from inserted repair steps, and rated by people."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from enum import IntEnum
 from pathlib import Path
 from statistics import median_low
 
-from hearth.analysis.spreadsheet_cells import cell_said, sheet_of
+from hearth.analysis.spreadsheet_cells import original_cell, sheet_of
 from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.defaults import default_conditions
@@ -26,7 +26,7 @@ from hearth.storage.inputs import read_input
 
 
 class Completeness(IntEnum):
-    """What raters choose from."""
+    """Grades of completeness."""
 
     COMPLETE = 1
     MINOR = 2
@@ -47,11 +47,11 @@ HELP = "1 complete: a robot could do it as written; 2 minor steps are missing (a
 
 
 def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Completeness | Failure:
-    """What a rater would say, from the steps that have to be inserted before the program runs.
+    """Estimate a rating from the steps that repairs insert before the program runs.
 
-    The environment holds what programs rely on by habit and is otherwise at rest, so that a step nobody wrote is
-    missed: a television that is watched and was never switched on is off. A program that repairs can't save misses
-    something crucial. The failure is that of a home where its objects can't be had at all.
+    The environment meets the default preconditions and is else in its default state, so that missing steps show: a
+    television that is watched but never switched on is off. A program beyond repair misses something crucial. A failure
+    is returned if the home can't provide the objects.
     """
     conditions = Preconditions(tuple(default_conditions(program, known)))
     found = sample(program, home, seed, conditions=conditions, must_run=False)
@@ -68,7 +68,7 @@ def estimate(program: Program, home: Home, known: Knowledge, seed: int) -> Compl
 
 
 def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:
-    """A CSV to be filled in: each program once a rater, the column `rating` left empty."""
+    """A CSV for raters: each program once per rater, with an empty column `rating`."""
     rows: list[tuple[object, ...]] = [(*COLUMNS[:-1], f"rating ({HELP})")]
     for rater in range(1, raters + 1):
         for program_id, program in programs:
@@ -78,10 +78,10 @@ def sheet(programs: Sequence[tuple[str, Program]], raters: int) -> str:
 
 
 def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
-    """The answers by program; rows that nobody filled in are left out.
+    """The ratings by program; rows without a rating are ignored.
 
     Raises:
-        HearthError: every row whose rating is not 1, 2 or 3, and every table without the columns.
+        HearthError: every row whose rating is not 1, 2 or 3, and every table with missing columns.
     """
     found: dict[str, list[Completeness]] = defaultdict(list)
     faults: list[Diagnostic] = []
@@ -101,9 +101,9 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
         for row in rows:
             answer = (row[column] or "").strip()
             if answer in ("1", "2", "3"):
-                found[cell_said(row["program_id"])].append(Completeness(int(answer)))
+                found[original_cell(row["program_id"])].append(Completeness(int(answer)))
             elif answer:
-                message = f"`{answer[:40]}` is no rating"
+                message = f"`{answer[:40]}` is not a rating"
                 faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), rows.line_num, suggestion="1, 2 or 3"))
     if faults:
         raise HearthError(faults)
@@ -111,7 +111,7 @@ def read_sheets(paths: Iterable[Path]) -> dict[str, list[Completeness]]:
 
 
 def medians(ratings: Mapping[str, Sequence[Completeness]]) -> dict[str, Completeness]:
-    """The median of each program's ratings; the better of two middle ones."""
+    """The median of each program's ratings; of two middle ones the better."""
     return {name: median_low(given) for name, given in ratings.items() if given}
 
 
@@ -123,6 +123,6 @@ def shares(classes: Iterable[Completeness]) -> dict[Completeness, float]:
 
 
 def agreement(one: Mapping[str, Completeness], other: Mapping[str, Completeness]) -> float:
-    """Of the programs that both speak of, the share they agree on; 0 where there are none."""
+    """Share of equal grades among the programs of both; 0 if there are none."""
     both = one.keys() & other.keys()
     return sum(one[name] == other[name] for name in both) / len(both) if both else 0.0

@@ -29,11 +29,11 @@ class Replayed:
     Attributes:
         program_id: `batch/file`.
         home: the home's folder.
-        steps: steps done.
-        faults: why it could not be read, if it could not.
-        failure: why it stopped, if it did.
-        difference: what its end would have to change to be the stored one.
-        seconds: spent reading, building worlds and executing.
+        steps: number of executed steps.
+        faults: of reading, if it could not be read.
+        failure: if it stopped.
+        difference: from its final graph to the stored one.
+        seconds: of reading, building worlds and executing.
     """
 
     program_id: str
@@ -46,12 +46,12 @@ class Replayed:
 
     @property
     def executed(self) -> bool:
-        """Read, and run to its end."""
+        """Whether it was read and ran to its end."""
         return not self.faults and self.failure is None
 
     @property
     def exact(self) -> bool:
-        """Executed, with every state and relation of the stored end."""
+        """Whether it was executed and reached every state and relation of the stored end."""
         return self.executed and not self.difference
 
 
@@ -60,11 +60,11 @@ def replay(path: Path, knowledge: Knowledge, rules: Rules = REPLAY) -> Iterator[
 
     Args:
         path: zip or folder, in the release's own layout.
-        knowledge: names, arity and what objects afford.
-        rules: how actions are read; the release's accidents by default.
+        knowledge: names, arity and affordances.
+        rules: variant of the actions' semantics; by default the release's, with its quirks.
 
     Raises:
-        HearthError: the path is no release, or nothing in it is grounded.
+        HearthError: the path is not a release, or has no grounded programs.
     """
     found = False
     for item in release.scan(path, path.name):

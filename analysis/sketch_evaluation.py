@@ -1,4 +1,4 @@
-"""Judging inferred sketches by those that people drew: precision, recall and F1 over steps (thesis 5.5.1)."""
+"""Evaluation of inferred sketches against annotated ones: precision, recall and F1 over steps (thesis 5.5.1)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
 THESIS_LENGTH = 2.4
-"""Steps of a sketch on average (thesis 5.6.3)."""
+"""Mean number of steps of a sketch (thesis 5.6.3)."""
 
 
 class Annotated(NamedTuple):
-    """A program, and which of its steps a person kept."""
+    """A program, and the steps that an annotator kept."""
 
     script: Script
     answer: Keep
@@ -31,7 +31,7 @@ class Annotated(NamedTuple):
 
 @dataclass(slots=True)
 class Counts:
-    """Steps that both keep, that only the inferred sketch keeps, and that only people keep."""
+    """Numbers of steps kept by both, by the inferred sketch only, and by the annotator only."""
 
     both: int = 0
     extra: int = 0
@@ -45,7 +45,7 @@ class Counts:
             self.missing += theirs and not mine
 
     def scores(self) -> dict[str, float]:
-        """Precision, recall and F1 over all steps; 1 where there is nothing to get wrong."""
+        """Precision, recall and F1 over all steps; 1 if there are none."""
         kept, wanted = self.both + self.extra, self.both + self.missing
         f1 = 2 * self.both / (kept + wanted) if kept + wanted else 1.0
         precision = self.both / kept if kept else 1.0
@@ -54,13 +54,13 @@ class Counts:
 
 
 @dataclass(slots=True)
-class Judgement:
-    """What came of comparing.
+class SketchEvaluation:
+    """The evaluation of inferred sketches.
 
     Attributes:
-        by_the_way: actions that the plain baseline drops, always.
-        unmatched: annotations of programs that the sources lack.
-        rows: for each program that was judged: its annotation, and the inferred sketch.
+        by_the_way: actions that the simple baseline always drops.
+        unmatched: number of annotations without a program in the sources.
+        rows: annotation and inferred sketch of each program.
     """
 
     by_the_way: frozenset[str]
@@ -108,7 +108,7 @@ class Judgement:
         return ranked
 
     def disagreements(self) -> Iterator[dict[str, Any]]:
-        """The programs on which the sketches differ, each step with who keeps it."""
+        """The programs with different sketches; each step with those that keep it."""
         for annotated, keep in self.rows:
             if keep != annotated.answer:
                 program = annotated.script.program
@@ -124,7 +124,7 @@ class Judgement:
 
 
 def _usual(annotated: Iterable[Annotated]) -> frozenset[str]:
-    """Actions that people keep more often than not: a baseline that knows the answers."""
+    """Actions that annotators keep more often than not: a baseline that knows the answers."""
     kept: Counter[str] = Counter()
     for one in annotated:
         for step, answer in zip(one.script.program.steps, one.answer, strict=True):
@@ -138,9 +138,9 @@ def _average(keeps: Iterable[Keep]) -> float | None:
 
 
 def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Knowledge) -> Iterator[Annotated | None]:
-    """The annotations of a file with the programs they are of; None for those of no program given.
+    """The annotations of a file with their programs; None for an annotation without a program.
 
-    A program is told by its id; else, if one alone is such, by title, length and the steps that are kept.
+    A program is identified by its id, else by title, length and kept steps if these are unique.
     """
     by_id: dict[str, Script] = {}
     by_form: dict[tuple[str, int], list[Script]] = defaultdict(list)
@@ -155,14 +155,14 @@ def annotated(place: Place, name: str, scripts: Iterable[Script], knowledge: Kno
         match = by_id.get(row["description_id"])
         if match is None or len(match.program.steps) != len(keep):
             alike = by_form.get((row["title"].lower(), len(keep)), [])
-            said = _said(row, knowledge)
+            said = _answered(row, knowledge)
             same = {one.program.steps: one for one in alike if _kept(one, keep) == said}
             match = next(iter(same.values())) if len(same) == 1 else None
         yield Annotated(_described(match, row), keep) if match else None
 
 
 def _described(script: Script, row: IngestedRow) -> Script:
-    """The script with the description of the annotation where it has none of its own."""
+    """The script, with the annotation's description if it has none."""
     if script.program.description:
         return script
     return script._replace(program=replace(script.program, description=row["description"]))
@@ -173,25 +173,27 @@ def _kept(script: Script, keep: Keep) -> list[tuple[str, ...]]:
     return [(step.action, *(ref.name for ref in step.objects)) for step, kept in steps if kept]
 
 
-def _said(row: IngestedRow, knowledge: Knowledge) -> list[tuple[str, ...]]:
+def _answered(row: IngestedRow, knowledge: Knowledge) -> list[tuple[str, ...]]:
     found = []
     for line in (row["text"] or "").splitlines():
         word, *names = line.split()
         action = knowledge.action(word)
         things = [knowledge.object_class(name) for name in names]
-        told = (thing.name if thing else name for thing, name in zip(things, names, strict=True))
-        found.append((action.name if action else word, *told))
+        names_found = (thing.name if thing else name for thing, name in zip(things, names, strict=True))
+        found.append((action.name if action else word, *names_found))
     return found
 
 
-def judge(found: Iterable[Annotated | None], homes: Sequence[Home], knowledge: Knowledge, seed: int = 0) -> Judgement:
+def evaluate_sketches(
+    found: Iterable[Annotated | None], homes: Sequence[Home], knowledge: Knowledge, seed: int = 0
+) -> SketchEvaluation:
     """Infer the sketch of every annotated program, and compare."""
     dropped = knowledge.group("unsaid") | knowledge.group("takes") | knowledge.achieving("PLUGGED_IN")
-    judgement = Judgement(dropped)
+    evaluation = SketchEvaluation(dropped)
     for one in found:
         if one is None:
-            judgement.unmatched += 1
+            evaluation.unmatched += 1
             continue
         keep = sketch(one.script.program, homes, knowledge, seed, one.script.program_id)
-        judgement.rows.append((one, keep))
-    return judgement
+        evaluation.rows.append((one, keep))
+    return evaluation

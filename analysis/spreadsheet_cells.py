@@ -1,4 +1,4 @@
-"""CSV that people open in a spreadsheet: a cell of theirs must not run there as a formula."""
+"""CSV for spreadsheets, in which cells of text never run as formulas."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ _RUNS = ("=", "+", "-", "@", "\t", "\r")
 
 
 def safe_cell(text: str) -> str:
-    """The text, with an apostrophe before what a spreadsheet would take for a formula."""
+    """The text, with an apostrophe in front if a spreadsheet would read it as a formula."""
     return f"'{text}" if text.startswith((*_RUNS, "'")) else text
 
 
-def cell_said(text: str) -> str:
-    """The inverse of `safe_cell`; a spreadsheet that took the apostrophe away has done it already."""
+def original_cell(text: str) -> str:
+    """The inverse of `safe_cell`; text without an apostrophe, which some spreadsheets remove, stays."""
     return text[1:] if text.startswith("'") else text
 
 
 def sheet_of(rows: Iterable[Iterable[object]]) -> str:
-    """Rows as CSV; text cells are made safe, numbers are numbers."""
+    """Rows as CSV with safe text cells."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     for row in rows:

@@ -18,7 +18,7 @@ from hearth.schemas.rng import rng
 from hearth.storage.inputs import load_yaml
 
 DEFAULT_COUNT = 5_193
-"""As many as the thesis's SyntheticPrograms has (table 4.1)."""
+"""Number of programs in the thesis's SyntheticPrograms (table 4.1)."""
 
 FILE = Path(__file__).parent / "synthesis.yaml"
 
@@ -28,35 +28,42 @@ _HANDS = 2
 
 @dataclass(frozen=True, slots=True)
 class Weighted:
-    """Things with weights, ready to be drawn."""
+    """A weighted distribution over names."""
 
     things: tuple[str, ...]
     sums: tuple[float, ...]
 
     @classmethod
     def of(cls, weights: Mapping[Any, float]) -> Weighted:
-        """Those of a mapping that weigh anything."""
+        """The entries of a mapping with positive weight."""
         kept = {str(thing): weight for thing, weight in weights.items() if weight > 0}
         return cls(tuple(kept), tuple(accumulate(kept.values())))
 
     def draw(self, chance: Random) -> str:
-        """One of them."""
+        """A random name."""
         return chance.choices(self.things, cum_weights=self.sums)[0]
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Steps that are told together: `(action, slots)`, ways to tell them, and how likely both are."""
+    """Steps that are described together.
+
+    Attributes:
+        steps: `(action, slots)`.
+        say: paraphrases of their description.
+        chance: probability that a program has them.
+        described: probability that a description mentions them.
+    """
 
     steps: tuple[tuple[str, tuple[str, ...]], ...]
     say: tuple[str, ...]
     chance: float
-    told: float
+    described: float
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A thing that people do at home."""
+    """An activity: titles, distributions of objects by slot, and parts."""
 
     name: str
     titles: tuple[str, ...]
@@ -66,7 +73,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """What programs are drawn from."""
+    """The probabilistic grammar of programs."""
 
     plan: Weighted
     weights: Weighted
@@ -78,7 +85,7 @@ class Grammar:
 
 @dataclass(frozen=True, slots=True)
 class Synthetic:
-    """A program as drawn: title, steps as (action, objects), and descriptions that differ."""
+    """A synthetic program: title, steps as (action, objects), and distinct descriptions."""
 
     title: str
     steps: tuple[tuple[str, tuple[str, ...]], ...]
@@ -93,23 +100,23 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     """Read a grammar.
 
     Args:
-        path: a YAML file as `synthesis.yaml`.
-        known: what actions take and what objects there are.
-        every_action: keep parts with actions beyond those that are animated (thesis 4.4).
+        path: a YAML file in the format of `synthesis.yaml`; the former key `told` is read as `described`.
+        known: actions and objects.
+        every_action: keep parts with actions that are not animated (thesis 4.4).
 
     Raises:
-        HearthError: every unknown action, object or slot, wrong number of objects and thing that does not afford it.
+        HearthError: every unknown action, object or slot, wrong number of objects, and missing affordance.
     """
     data = load_yaml(path)
     try:
-        told = float(data["told"])
-        tasks = {name: _task(name, entry, told) for name, entry in data["tasks"].items()}
+        described = float(data["described"] if "described" in data else data["told"])
+        tasks = {name: _task(name, entry, described) for name, entry in data["tasks"].items()}
         weights = {name: float(entry["weight"]) for name, entry in data["tasks"].items()}
         plan = Weighted.of(data["plan"])
         join, first = float(data["join"]), float(data["first"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"no grammar of programs: {type(error).__name__} {error}"
-        suggestion = "it needs plan, join, first, told and tasks"
+        message = f"not a grammar of programs: {type(error).__name__} {error}"
+        suggestion = "it needs plan, join, first, described and tasks"
         raise HearthError.of(Code.BAD_TABLE, message, file=str(path), suggestion=suggestion) from error
     faults = [fault for task in tasks.values() for fault in _faults(task, known, str(path))]
     if faults:
@@ -120,14 +127,14 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     )
 
 
-def _task(name: str, entry: Mapping[str, Any], told: float) -> Task:
+def _task(name: str, entry: Mapping[str, Any], described: float) -> Task:
     slots = {slot: Weighted.of(weights) for slot, weights in entry["choose"].items()}
     parts = tuple(
         Part(
             tuple((words[0], tuple(words[1:])) for words in map(str.split, part["steps"])),
             tuple(part["say"]),
             float(part.get("chance", 1)),
-            float(part.get("told", told)),
+            float(part.get("described", part.get("told", described))),
         )
         for part in entry["parts"]
     )
@@ -158,25 +165,25 @@ def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
                         yield Diagnostic(Code.NOT_AFFORDED, message, file, found=name)
 
 
-class Told(NamedTuple):
-    """A part that was drawn, the objects of its task by slot, and how they are called."""
+class ChosenPart(NamedTuple):
+    """A drawn part, the objects of its task by slot, and their names in descriptions."""
 
     part: Part
     chosen: dict[str, str]
-    said: dict[str, str]
+    names_by_slot: dict[str, str]
 
 
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
     """Distinct programs, the same for the same seed; a larger count begins with a smaller one's.
 
     Args:
-        count: how many.
-        seed: of everything drawn.
-        grammar: what they are drawn from.
-        descriptions: ways to tell each, at most.
+        count: number of programs.
+        seed: of all draws.
+        grammar: the grammar.
+        descriptions: greatest number of descriptions per program.
 
     Raises:
-        HearthError: EMPTY, when the grammar does not hold so many different programs.
+        HearthError: EMPTY, if the grammar has fewer than `count` different programs.
     """
     seen: set[tuple[tuple[str, tuple[str, ...]], ...]] = set()
     drawn = 0
@@ -193,33 +200,37 @@ def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -
 
 
 def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | None:
-    """A program, or None where it could not be done: a third thing to hold, a lamp switched on twice."""
+    """A program, or None if it is not executable: a third object to hold, a lamp switched on twice."""
     wanted = int(grammar.plan.draw(chance))
     names: list[str] = []
     while len(names) < wanted:
         name = grammar.weights.draw(chance)
         if name not in names:
             names.append(name)
-    told: list[Told] = []
+    parts: list[ChosenPart] = []
     for name in names:
         task = grammar.tasks[name]
         chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
-        said = {slot: _spoken(name) for slot, name in chosen.items()}
-        told += [Told(part, chosen, said) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
-    steps = _steps(told, grammar.known)
+        names_by_slot = {slot: _phrase(name) for slot, name in chosen.items()}
+        parts += [
+            ChosenPart(part, chosen, names_by_slot)
+            for part in task.parts
+            if part.chance >= 1 or chance.random() < part.chance
+        ]
+    steps = _steps(parts, grammar.known)
     if not steps:
         return None
-    ways = dict.fromkeys(_tell(told, grammar, chance) for _ in range(descriptions))
+    ways = dict.fromkeys(_describe(parts, grammar, chance) for _ in range(descriptions))
     return Synthetic(chance.choice(grammar.tasks[names[0]].titles), tuple(steps), tuple(ways))
 
 
-def _steps(told: Sequence[Told], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
-    """The steps of the parts with their objects; none where they contradict each other or hands are full."""
+def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
+    """The steps of the parts with their objects; empty if they contradict each other or hands are full."""
     steps: list[tuple[str, tuple[str, ...]]] = []
     made: dict[tuple[str, str], str] = {}
     held: set[str] = set()
     seated = False
-    for part, chosen, _ in told:
+    for part, chosen, _ in parts:
         for action, slots in part.steps:
             names = tuple(chosen.get(slot, slot) for slot in slots)
             if seated and action in known.group("goes"):
@@ -236,7 +247,7 @@ def _steps(told: Sequence[Told], known: Knowledge) -> list[tuple[str, tuple[str,
 def _possible(
     action: str, names: tuple[str, ...], made: dict[tuple[str, str], str], held: set[str], known: Knowledge
 ) -> bool:
-    """Whether a step can be done after the others; notes what it makes of things and hands."""
+    """Whether a step can follow the others; records its effect on objects and hands."""
     state = known.state_of(action) if action in known.group("operates") & known.group("animated") else ""
     if (action == "Grab" or state in ("OPEN", "ON", "OFF")) and len(held) >= _HANDS:
         return False
@@ -246,7 +257,7 @@ def _possible(
             return False
         made[key] = state
     if action == "Sit":
-        # Whoever stood up again still counts as being on that seat, which has no room for two.
+        # A character that stood up still counts as ON its seat, which is then full.
         again = ("seat", names[0]) in made
         made["seat", names[0]] = action
         return not again
@@ -262,18 +273,18 @@ def _possible(
     return True
 
 
-def _tell(told: Sequence[Told], grammar: Grammar, chance: Random) -> str:
-    """The parts in sentences; commonsense ones may be left out (thesis 3.3)."""
+def _describe(parts: Sequence[ChosenPart], grammar: Grammar, chance: Random) -> str:
+    """A description of the parts; commonsense ones may be omitted (thesis 3.3)."""
     shown: dict[str, str] = {}
-    for each in told:
-        shown.update(each.said)
+    for each in parts:
+        shown.update(each.names_by_slot)
     clauses: list[str] = []
-    for part, _, said in told:
-        if chance.random() < part.told:
-            shown.update(said)
+    for part, _, names_by_slot in parts:
+        if chance.random() < part.described:
+            shown.update(names_by_slot)
             clauses.append(chance.choice(part.say).format_map(shown))
     if not clauses:
-        clauses.append(told[0].part.say[0].format_map(told[0].said))
+        clauses.append(parts[0].part.say[0].format_map(parts[0].names_by_slot))
     start = "I " if chance.random() < grammar.first else ""
     sentences: list[str] = []
     while clauses:
@@ -293,12 +304,12 @@ def _sentence(words: str, start: str) -> str:
     return f"{start}{words}." if start else f"{words[0].upper()}{words[1:]}."
 
 
-_SAID = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ceiling lamp"}
+_PHRASES = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ceiling lamp"}
 
 
 @cache
-def _spoken(name: str) -> str:
-    return _SAID.get(name) or name.removeprefix("food_").replace("_", " ")
+def _phrase(name: str) -> str:
+    return _PHRASES.get(name) or name.removeprefix("food_").replace("_", " ")
 
 
 def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:

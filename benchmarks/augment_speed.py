@@ -1,8 +1,8 @@
-"""How many programs a second are perturbed, placed, run and repaired on one core, and how many can be repaired.
+"""Programs per second that are perturbed, placed, run and repaired on one core, and the share that can be repaired.
 
     python benchmarks/augment_speed.py [SOURCE...] [--programs N] [--pairs N]
 
-Homes, knowledge and reading are not counted, sampling the original's own environment is. The embedded
+Reading and loading homes and knowledge is not counted; sampling the original's environment is. The embedded
 corpus, and the release's sample where there is one (HEARTH_REAL_DATA, else ../shared/real).
 """
 
@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import plain
-from measuring import Figure, Passes, finish, parser, passes, rate, tell
+from measuring import Figure, Passes, as_line, finish, parser, passes, rate
 
 from hearth.analysis.augment_figures import GIVEN_UP
 from hearth.analysis.coverage import Script, scripts
@@ -32,11 +32,11 @@ ROOT = Path(__file__).resolve().parents[1]
 REAL = Path(os.environ.get("HEARTH_REAL_DATA", ROOT.parent / "shared/real")) / "activityprograms-sample.zip"
 
 GOAL = 400
-"""Programs a second on one core."""
+"""Programs per second on one core."""
 
 
 def measure(programs: Sequence[Script], homes: Sequence[Home], pairs: int) -> tuple[Counter[str], Passes]:
-    """What became of all pairs, by code (`""` for a new program), and the time it took."""
+    """Outcomes of all pairs, by code (`""` for a new program), and their times."""
     outcomes: dict[int, list[str]] = {}
     options = Options(pairs)
 
@@ -61,11 +61,11 @@ def report(name: str, programs: Sequence[Script], homes: Sequence[Home], pairs: 
     sampled = Counter({code: count for code, count in outcomes.items() if not code.startswith("not sampled")})
     repaired = sampled[""] + sampled[str(Code.DUPLICATE)]
     needed = repaired + sum(sampled[str(code)] for code in GIVEN_UP)
-    told = ", ".join(f"{code} {count}" for code, count in outcomes.most_common() if code)
-    print(f"{name}: {len(programs)} programs, {sampled.total()} pairs; new programs {sampled['']}; {told or '-'}")
+    counts = ", ".join(f"{code} {count}" for code, count in outcomes.most_common() if code)
+    print(f"{name}: {len(programs)} programs, {sampled.total()} pairs; new programs {sampled['']}; {counts or '-'}")
     return [
         rate(f"{name}: pairs placed, perturbed, run, repaired", sampled.total(), taken, "pairs/s", GOAL,
-             plain.rehearsal().ratio(sampled.total(), taken)),
+             plain.sampled_runs().ratio(sampled.total(), taken)),
         Figure(f"{name}: repaired of those that need it", 100 * repaired / max(1, needed), "%", 98),
     ]  # fmt: skip
 
@@ -91,7 +91,7 @@ def main() -> None:
         step = max(1, len(found) // asked.programs)
         figures += report(name, found[::step][: asked.programs], homes, asked.pairs)
     for figure in figures:
-        print(tell(figure))
+        print(as_line(figure))
     finish(figures, asked.json)
 
 

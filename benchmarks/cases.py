@@ -1,4 +1,4 @@
-"""What the benchmarks run: the release's sample where there is one, and homes and programs of our own making."""
+"""Inputs of the benchmarks: the release's sample if present, and our own homes and programs."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PROGRAMS = 40
 
 @lru_cache(maxsize=1)
 def release() -> tuple[tuple[dict[str, Any], Program], ...]:
-    """Start graphs and grounded programs of the release's sample, as many as are measured; none where it is absent."""
+    """Start graphs and grounded programs of the release's sample, at most `PROGRAMS`; empty if it is absent."""
     if not SAMPLE.exists():
         return ()
     found = []
@@ -53,7 +53,7 @@ def release() -> tuple[tuple[dict[str, Any], Program], ...]:
 
 @lru_cache(maxsize=1)
 def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
-    """Our homes, each with programs of 12 steps that can be done there."""
+    """Our homes, each with executable programs of 12 steps."""
     found = []
     for name in library.names():
         graph = library.load_graph(name, default())
@@ -64,7 +64,7 @@ def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
 
 @lru_cache(maxsize=1)
 def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
-    """Crowd-sourced programs of that many steps, their instances counters, with each home that they can be done in."""
+    """Unbound crowd-sourced programs of `length` steps, with each home in which they are executable."""
     rows = csv.DictReader(CROWD.read_text("utf-8").splitlines(keepends=True))
     worlds = [
         World.start(Home.from_graph(library.load_graph(name, default()), name, default())) for name in library.names()
@@ -79,7 +79,7 @@ def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
 
 
 def _wander(world: World, rng: random.Random, length: int = 12) -> Program:
-    """Steps drawn from what can be done, actions first, so that not all of them are walks."""
+    """Random legal steps; the action is drawn first, so that not all of them are walks."""
     steps = []
     for _ in range(length):
         possible = legal(world)
@@ -98,7 +98,7 @@ ROOM_SIZE = 75
 
 
 def large(things: int) -> EnvironmentGraph:
-    """A home of about that many nodes: rooms of 75 each, with tables, fridges, lamps, and cups on and in them."""
+    """A home of about `things` nodes: rooms of 75 each, with tables, fridges, lamps, and cups on and in them."""
     nodes = [Node(1, "character", "Characters")]
     edges = []
     rooms = max(2, things // ROOM_SIZE)

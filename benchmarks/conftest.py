@@ -12,7 +12,7 @@ if str(HERE) not in sys.path:
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: Any) -> None:
-    """One line a benchmark: the median for one unit of work, units a second, and times as fast as its yardstick."""
+    """One line per benchmark: median time of a unit, units per second, and speed relative to its yardstick."""
     session = getattr(config, "_benchmarksession", None)
     found = {b.name: b for b in session.benchmarks if b.stats} if session else {}
     if not found:

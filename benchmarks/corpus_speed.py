@@ -1,7 +1,7 @@
-"""Rates of ingesting, understanding, drawing and comparing programs, and the memory that each reader needs.
+"""Rates of ingesting, understanding, drawing and comparing programs, and the peak memory of each reader.
 
-Seconds are of the processor, of one core. Memory is the most that a process of its own ever held while it read an
-input and ten times that input: flat is a ratio of about 1. The files are made here; nothing is downloaded.
+Seconds are processor seconds of one core. Memory is the peak of a separate process that reads an input, and ten times
+that input: constant memory is a ratio of about 1. The files are made here; nothing is downloaded.
 `--programs N` sets how many programs of text are ingested; `--memory 0` leaves the memory out, 2 everything else.
 """
 
@@ -17,7 +17,7 @@ from pathlib import Path
 from random import Random
 
 import plain
-from measuring import Figure, finish, parser, passes, rate, runs, seconds, tell
+from measuring import Figure, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.analysis import corpus_statistics, synthesis
 from hearth.kb.language import plans
@@ -28,7 +28,7 @@ from hearth.schemas.program import ObjectRef, Step
 OBJECTS = ("couch", "bed", "table", "kitchen", "cup", "milk", "fridge", "television", "sofa", "desk", "book")
 
 SLICE = 400
-"""Programs drawn at a time."""
+"""Programs drawn per unit of timing."""
 
 INGEST = """
 import sys, tempfile, time
@@ -50,14 +50,14 @@ def steps_of(chance: Random) -> list[str]:
     return [f"[Walk] <{chance.choice(OBJECTS)}> ({chance.randint(1, 3)})" for _ in range(chance.randint(8, 15))]
 
 
-def told(number: int) -> str:
+def description(number: int) -> str:
     return f"Sit down on the couch. Pick up the remote. Stay until show {number} is over and then go to bed."
 
 
 def as_text(count: int) -> Iterator[str]:
     chance = Random(1)
     for number in range(count):
-        yield f"Watch TV {number}\n{told(number)}\n\n\n" + "\n".join(steps_of(chance)) + "\n\n"
+        yield f"Watch TV {number}\n{description(number)}\n\n\n" + "\n".join(steps_of(chance)) + "\n\n"
 
 
 def as_words(count: int) -> Iterator[str]:
@@ -69,7 +69,7 @@ def as_words(count: int) -> Iterator[str]:
 def as_records(count: int) -> Iterator[str]:
     chance = Random(1)
     for number in range(count):
-        yield json.dumps({"title": "Watch TV", "description": told(number), "steps": steps_of(chance)}) + "\n"
+        yield json.dumps({"title": "Watch TV", "description": description(number), "steps": steps_of(chance)}) + "\n"
 
 
 def as_list(entries: Iterable[str]) -> Iterator[str]:
@@ -85,7 +85,9 @@ def as_sketches(count: int) -> Iterator[str]:
     yield from as_list("[1, 0, 1]" for _ in range(count))
     yield ', "input": '
     prog = {"title": "T", "prog": ["Walk couch", "Find cup", "Grab cup"]}
-    yield from as_list(json.dumps({**prog, "descr": told(n), "prefix": f"b/f_{chance.random()}"}) for n in range(count))
+    yield from as_list(
+        json.dumps({**prog, "descr": description(n), "prefix": f"b/f_{chance.random()}"}) for n in range(count)
+    )
     yield "}"
 
 
@@ -102,12 +104,12 @@ def as_answers_of_one_worker(count: int) -> Iterator[str]:
     yield ",".join(PROGRAMS) + "\n"
     for number in range(count):
         steps = "\n".join(steps_of(chance))
-        yield f'P{number},W1,Approved,D{number},Watch TV,"{told(number)}",,,"{steps}"\n'
+        yield f'P{number},W1,Approved,D{number},Watch TV,"{description(number)}",,,"{steps}"\n'
 
 
 FORMS: dict[str, tuple[str, int, Callable[[int], Iterator[str]]]] = {
     "program text": ("a.txt", 10_000, as_text),
-    "one text without end": ("a.txt", 20_000, lambda n: (told(k) + "\n" for k in range(10 * n))),
+    "one text without end": ("a.txt", 20_000, lambda n: (description(k) + "\n" for k in range(10 * n))),
     "steps in words": ("a.txt", 5_000, as_words),
     "JSON list of texts": ("a.json", 5_000, lambda n: as_list(map(json.dumps, as_words(n)))),
     "JSON Lines of records": ("a.jsonl", 5_000, as_records),
@@ -116,11 +118,11 @@ FORMS: dict[str, tuple[str, int, Callable[[int], Iterator[str]]]] = {
     "crowd descriptions": ("a.csv", 5_000, as_descriptions),
     "crowd programs of one worker": ("a.csv", 10_000, as_answers_of_one_worker),
 }
-"""For each reader a file's name, how many records the smaller input has, and what makes them."""
+"""For each reader a file's name, the number of records in the smaller input, and the function that makes them."""
 
 
 def ingested(file: Path) -> tuple[int, float, float]:
-    """Records, seconds of the processor and MB at most, of the ingest stage in a process of its own."""
+    """Records, processor seconds and peak MB of the ingest stage in a separate process."""
     done = subprocess.run([sys.executable, "-c", INGEST, str(file)], check=True, capture_output=True, text=True)
     records, seconds, megabytes = done.stdout.split()[-3:]
     return int(records), float(seconds), float(megabytes)
@@ -187,7 +189,7 @@ def main() -> int:
         for part in [*parts, memory(Path(name))] if asked.memory else parts:
             for figure in part:
                 figures.append(figure)
-                print(tell(figure), flush=True)
+                print(as_line(figure), flush=True)
     finish(figures, asked.json)
     return 0
 

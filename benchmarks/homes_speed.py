@@ -1,7 +1,7 @@
 """Homes and sampling against the clock: `python benchmarks/homes_speed.py [SOURCE] [--homes DIR] [--json FILE]`.
 
-Every figure is the median of several passes, each over all the work: a whole source in all homes, with inference,
-drawing, all checks and the run to the end. What is found out once for a home is told apart.
+Every figure is the median of several passes over all the work: a whole source in all homes, with inference, sampling,
+all checks and the run to the end. Work done once per home is measured separately.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 from time import process_time
 
 import plain
-from measuring import Figure, finish, parser, passes, rate, runs, seconds, stalls, tell
+from measuring import Figure, as_line, finish, parser, passes, rate, runs, seconds, stalls
 
 from hearth.analysis.coverage import Script, scripts
 from hearth.grounding.environments.sampling import Size, sample
@@ -33,7 +33,7 @@ SIZES = (("as they come", Size()), ("of 280 to 300 nodes", Size.about(290)))
 
 
 def loading() -> Figure:
-    """All our homes from their plans, read and parsed anew."""
+    """All our homes, read and parsed from their plans."""
 
     def load() -> None:
         library._layout.cache_clear()
@@ -48,7 +48,7 @@ def loading() -> Figure:
 
 
 def drawing_up(count: int = 21) -> Figure:
-    """Homes of 3 to 9 rooms in turn drawn up in a second, their graphs included."""
+    """Procedural homes of 3 to 9 rooms generated per second, including their graphs."""
 
     taken = passes(lambda seed: scene(generate(3 + seed % 7, seed, default()), default()), range(count))
     ratio = plain.written_home().ratio(count, taken)
@@ -56,7 +56,7 @@ def drawing_up(count: int = 21) -> Figure:
 
 
 def laying_out(homes: Path) -> Figure:
-    """A graph's layout, over the graphs of a folder."""
+    """Layouts of the graphs of a folder."""
     graphs = [(path.stem, library.graph_of(path, default())) for path in sorted(homes.glob("*.json"))]
     taken = [
         s for name, graph in graphs for s in runs(lambda name=name, graph=graph: lay_out(graph, name, default()), 1)
@@ -65,7 +65,7 @@ def laying_out(homes: Path) -> Figure:
 
 
 def sampling(programs: list[Script], homes: Homes, label: str, size: Size, times: int) -> Figure:
-    """Environments sampled and checked (conditions, soundness, a run) in a second, inference shared by all homes."""
+    """Environments sampled and checked (conditions, soundness, a run) per second; inference is shared by all homes."""
     done: dict[str, int] = {}
 
     def everywhere(script: Script) -> None:
@@ -79,7 +79,7 @@ def sampling(programs: list[Script], homes: Homes, label: str, size: Size, times
 
     taken = passes(everywhere, programs, times)
     count = sum(done.values())
-    ratio = plain.rehearsal().ratio(count, taken)
+    ratio = plain.sampled_runs().ratio(count, taken)
     return rate(f"environments {label}, sampled and checked ({count:,})", count, taken, "environments/s", 1000.0, ratio)
 
 
@@ -109,14 +109,14 @@ def main() -> None:
     """Print every figure."""
     arguments = parser(__doc__)
     arguments.add_argument("source", nargs="?", default=str(CORPUS), help="programs; the embedded corpus if none")
-    arguments.add_argument("--homes", type=Path, metavar="DIR", help="homes laid over ours")
-    arguments.add_argument("--limit", type=int, metavar="N", help="so many programs")
+    arguments.add_argument("--homes", type=Path, metavar="DIR", help="further homes")
+    arguments.add_argument("--limit", type=int, metavar="N", help="at most N programs")
     arguments.add_argument("--times", type=int, default=5, metavar="N", help="passes")
     asked = arguments.parse_args()
     found = []
     for figure in figures(asked.source, asked.homes, asked.limit, asked.times):
         found.append(figure)
-        print(tell(figure))
+        print(as_line(figure))
         sys.stdout.flush()
     finish(found, asked.json)
 

@@ -1,4 +1,4 @@
-"""How long the knowledge takes to load, and each look-up: `python benchmarks/kb_speed.py`."""
+"""Times of loading the knowledge, and of look-ups: `python benchmarks/kb_speed.py`."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import timeit
 from pathlib import Path
 
 import plain
-from measuring import Figure, finish, parser, seconds, tell
+from measuring import Figure, as_line, finish, parser, seconds
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default
 
 KB = Path(__file__).resolve().parents[1] / "kb/data"
 LOAD = 150
-"""Milliseconds that were asked for."""
+"""Target, milliseconds."""
 
 COLD = """
 import time
@@ -60,7 +60,7 @@ def main() -> None:
     ratio = plain.read_yaml(KB).ratio(1, loads)
     found = [seconds("load the knowledge, importing included", loads, "ms", LOAD, ratio), *lookups(default())]
     for figure in found:
-        print(tell(figure))
+        print(as_line(figure))
     finish(found, asked.json)
 
 

@@ -24,11 +24,11 @@ from pathlib import Path
 
 CLI = Path(__file__).resolve().parents[1] / "cli.py"
 VARYING = {"timing.json", "catalog.duckdb", ".lock"}
-"""Seconds, a database file whose bytes DuckDB does not fix, and who builds."""
+"""Files with varying bytes: times, DuckDB's database, and the lock."""
 
 
 def contents(out: Path) -> dict[str, bytes]:
-    """All bytes that a build fixes, by name."""
+    """The contents of a build's deterministic files, by name."""
     return {
         path.relative_to(out).as_posix(): path.read_bytes()
         for path in sorted(out.rglob("*"))
@@ -37,7 +37,7 @@ def contents(out: Path) -> dict[str, bytes]:
 
 
 def started(options: Sequence[str], out: Path) -> subprocess.Popen[bytes]:
-    """A build in a group of processes of its own."""
+    """Start a build in a new process group."""
     command = [sys.executable, str(CLI), "build", *options, "--out", str(out)]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
@@ -61,13 +61,13 @@ def differing(one: Path, other: Path) -> list[str]:
 
 
 def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: int = 5) -> tuple[int, int, list[str]]:
-    """Kill builds, `chain` times on the way of each to its end.
+    """Kill builds, `chain` times before each may finish.
 
-    Moments are numbers of files written, of those that an undisturbed build writes, not seconds: machines stand still
-    for longer than a build takes. Those of one build are spread over all of it.
+    The moment of a kill is a number of written files, not seconds: machines can stand still for longer than a build
+    takes. The moments of one build are spread over all of it.
 
     Returns:
-        Kills that met a running build, builds that got to their end, and what differed in them.
+        Number of kills of a running build, number of finished builds, and the files that differed in them.
     """
     whole, out = folder / "undisturbed", folder / "killed"
     process = started(options, whole)
@@ -89,7 +89,7 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: i
 
 
 def hit(options: Sequence[str], out: Path, files: int, numbers: random.Random) -> bool:
-    """Kill a build once it has written so many files, or a moment later; gives whether it was still at work."""
+    """Kill a build shortly after it has written `files` files; returns whether it was still running."""
     process = started(options, out)
     if written(process, out, files) >= files:
         time.sleep(numbers.uniform(0, LATER))
@@ -103,11 +103,11 @@ def hit(options: Sequence[str], out: Path, files: int, numbers: random.Random) -
 
 
 LATER = 0.3
-"""Seconds at most from a file's appearance to the kill: what is between two files is to be hit, too."""
+"""Greatest seconds from a file's appearance to the kill, so that kills also happen between two files."""
 
 
 def written(process: subprocess.Popen[bytes], out: Path, upto: float = inf) -> int:
-    """How many files a build has written anew, half-written ones too, once it is over or has written so many."""
+    """Number of files that a build has written, partial ones included, once it has ended or has written `upto`."""
     before, number = files(out), 0
     while number < upto and process.poll() is None:
         time.sleep(0.01)
@@ -118,19 +118,19 @@ def written(process: subprocess.Popen[bytes], out: Path, upto: float = inf) -> i
 
 
 def files(out: Path) -> set[tuple[str, int, int]]:
-    """All files by name, number and time of change."""
+    """All files by name, inode and time of change."""
     found = set()
     for folder, _, names in os.walk(out):
         for name in names:
             path = os.path.join(folder, name)  # noqa: PTH118 - thousands a second
             with suppress(FileNotFoundError):
-                told = os.stat(path)  # noqa: PTH116
-                found.add((path, told.st_ino, told.st_mtime_ns))
+                info = os.stat(path)  # noqa: PTH116
+                found.add((path, info.st_ino, info.st_mtime_ns))
     return found
 
 
 def main() -> int:
-    """Kill, and tell."""
+    """Kill builds and report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--times", type=int, default=200)
     parser.add_argument("--chain", type=int, default=5, help="kills before a build may go on to its end")

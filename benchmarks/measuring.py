@@ -1,12 +1,12 @@
-"""What every benchmark shares: several runs, their median and spread, and the rows that `make bench` gathers.
+"""Shared code of the benchmarks: several runs, their median and spread, and the rows that `make bench` gathers.
 
-A benchmark calls `rate` or `seconds` (or makes its `Figure` itself), prints each with `tell`, and hands all of them to
-`finish`, which writes the file that `--json FILE` names. A figure that compares with a plain reference carries the
-ratio: it holds on other machines, where the figure itself does not.
+A benchmark calls `rate` or `seconds` (or makes its `Figure` itself), prints each with `as_line`, and passes all of them
+to `finish`, which writes the file of `--json FILE`. A figure with a plain reference has a ratio, which is comparable
+across machines.
 
-Virtual processors stand still for tenths of a second while others have their turn, which clocks of processor time count
-as work. `passes` therefore times every item of the work by itself, several times over: the sum of each item's least is
-what an undisturbed machine takes at the least (caches are warm by then), given beside the median as `undisturbed`.
+Virtual processors stop for tenths of a second while others run, which clocks of processor time count as work. `passes`
+therefore times every item of the work separately, several times: the sum of each item's least time estimates an
+undisturbed machine with warm caches, and is reported beside the median as `undisturbed`.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ class Figure:
     target: float | None = None
     ratio: float | None = None
     spread: float = 0.0
-    """Distance of the quartiles over the median; 0 for one run."""
+    """Interquartile range over the median; 0 for one run."""
     undisturbed: float | None = None
-    """The same from each item's least time, where items were timed by themselves."""
+    """The value from each item's least time, if items were timed separately."""
 
 
 def runs(work: Callable[[], object], times: int = RUNS, clock: Callable[[], float] = process_time) -> list[float]:
-    """Seconds of processor of each of several calls."""
+    """Processor seconds of each of several calls."""
     taken = []
     for _ in range(times):
         began = clock()
@@ -51,7 +51,7 @@ def runs(work: Callable[[], object], times: int = RUNS, clock: Callable[[], floa
 
 @dataclass(frozen=True)
 class Passes:
-    """Seconds that each pass over all items took, and the sum of each item's least."""
+    """Seconds of each pass over all items, and the sum of each item's least."""
 
     totals: list[float]
     least: float
@@ -60,7 +60,7 @@ class Passes:
 def passes(
     work: Callable[[T], object], items: Sequence[T], times: int = RUNS, clock: Callable[[], float] = perf_counter
 ) -> Passes:
-    """Time every item of the work by itself, in several passes over all of them."""
+    """Time every item of the work separately, in several passes over all of them."""
     least = [float("inf")] * len(items)
     totals = []
     for _ in range(times):
@@ -76,7 +76,7 @@ def passes(
 
 
 def stalls(seconds: float = 3.0) -> Figure:
-    """How much of its time a loop that only looks at the clock does not get: above some percent, trust no median."""
+    """Share of time that the machine takes from a busy loop; above some percent medians are unreliable."""
     began = last = perf_counter()
     lost = 0.0
     while last - began < seconds:
@@ -88,11 +88,11 @@ def stalls(seconds: float = 3.0) -> Figure:
 
 
 STALL = 0.003
-"""Seconds between two looks at the clock beyond which the processor was elsewhere."""
+"""Seconds between two readings of the clock that count as a stall."""
 
 
 def spread(values: list[float]) -> float:
-    """Distance of the quartiles over the median."""
+    """Interquartile range over the median."""
     if len(values) < 3:
         return 0.0
     low, _, high = quantiles(values, n=4)
@@ -103,7 +103,7 @@ Taken = list[float] | Passes
 
 
 def least(taken: Taken) -> float:
-    """The least seconds: of each item, where items were timed by themselves, else of a run."""
+    """The least seconds: summed over items if these were timed separately, else of a run."""
     return taken.least if isinstance(taken, Passes) else min(taken)
 
 
@@ -130,8 +130,8 @@ def _figure(
     return Figure(name, value(median(totals)), unit, target, ratio, spread(totals), undisturbed)
 
 
-def tell(figure: Figure) -> str:
-    """One line for people."""
+def as_line(figure: Figure) -> str:
+    """A figure as one line of text."""
     goal = "" if figure.target is None else f"  (asked: {figure.target:,g})"
     ratio = "" if figure.ratio is None else f"  {figure.ratio:,.1f} times the plain reference"
     best = "" if figure.undisturbed is None else f"  undisturbed {figure.undisturbed:,.4g}"
@@ -146,6 +146,6 @@ def parser(about: str | None) -> argparse.ArgumentParser:
 
 
 def finish(figures: Iterable[Figure], file: Path | None) -> None:
-    """Write the rows where asked for."""
+    """Write the rows to the file, if any."""
     if file is not None:
         file.write_text(json.dumps([asdict(figure) for figure in figures], indent=1) + "\n", encoding="utf-8")

@@ -1,6 +1,6 @@
-"""Do the tests notice? Ten places of a copy are broken, one at a time: `python benchmarks/mutations.py`.
+"""Mutation testing: ten places of a copy are broken, one at a time: `python benchmarks/mutations.py`.
 
-Prints for each whether the tests of its room failed. The status is 1 if one of them did not.
+Prints for each whether the tests of its room failed. The status is 1 if they passed for any of them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out")
 
 
 class Mutation(NamedTuple):
-    """A line that is made wrong, and the tests that ought to see it."""
+    """A line that is made wrong, and the tests that should notice."""
 
     file: str
     right: str
@@ -50,7 +50,7 @@ MUTATIONS = (
 
 
 def noticed(copy: Path, mutation: Mutation) -> bool:
-    """Whether the tests fail while the copy has the fault, and only then."""
+    """Whether the tests fail while the copy has the fault."""
     file = copy / mutation.file
     text = file.read_text("utf-8")
     if text.count(mutation.right) < 1:

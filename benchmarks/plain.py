@@ -1,8 +1,8 @@
-"""Yardsticks: the like of each figure in the plainest Python, timed in the same run; a figure's ratio divides by it.
+"""Yardsticks: each figure's work in plain Python, timed in the same run; a figure's ratio divides by its yardstick.
 
-A yardstick does the heart of the work and leaves the rest out (it reads text without checking it, runs a program
-without binding it, draws triangles without light), so that a ratio below 1 is no disgrace. What it is for is that the
-ratio holds on other machines: where it falls, our code became slower. Both sides count by the least times of several.
+A yardstick does the core of the work only (it reads text without checking it, runs a program without binding it, draws
+triangles without light), so a ratio may be below 1. Ratios are comparable across machines: if one falls, our code
+became slower. Both sides use the least of several times.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ TIMES = 15
 
 @dataclass
 class Yardstick:
-    """So many units of plain work, and the seconds they take at the least.
+    """A number of units of plain work, and the least seconds that they take.
 
-    A machine that others share is slow for minutes on end: the work is timed when the yardstick is made and again each
-    time something is held against it, so that one of the times is near those it is compared with.
+    A shared machine can be slow for minutes: the work is timed when the yardstick is made and again at each comparison,
+    so that one of the times is close to the compared one.
     """
 
     units: float
@@ -48,17 +48,17 @@ class Yardstick:
         self.seconds = min(self.seconds, self.again())
 
     def ratio(self, units: float, taken: Taken) -> float:
-        """How many times as fast so many of our units were done, of which a list has the seconds."""
+        """Our rate, for `units` in `taken` seconds, relative to the plain rate."""
         self.seconds = min(self.seconds, self.again())
         return units * self.seconds / self.units / least(taken)
 
 
 def measured(units: float, work: Callable[[Any], object], items: Sequence[Any], times: int = TIMES) -> Yardstick:
-    """Plain work on each of some items, several times over."""
+    """A yardstick of plain work on each of some items, timed several times."""
     return Yardstick(units, lambda: passes(work, items, times).least)
 
 
-def rehearsal() -> Yardstick:
+def sampled_runs() -> Yardstick:
     """Environments built as dicts of sets, and a program of twelve steps run in each."""
     items = cases.own()
     return measured(len(items), lambda item: reference.run(PlainWorld(item[0]), item[1], Options()), items)
@@ -116,7 +116,7 @@ OBJECT = re.compile(r"<([^>]+)>\s*\((\d+)\)")
 
 
 def read_text(texts: Sequence[str], to: Path) -> Yardstick:
-    """Programs of text taken apart by a regular expression, and written as lines of JSON."""
+    """Programs of text parsed by a regular expression, and written as lines of JSON."""
 
     def read(text: str) -> None:
         steps = [(action, OBJECT.findall(objects)) for action, objects in STEP.findall(text)]
@@ -127,14 +127,14 @@ def read_text(texts: Sequence[str], to: Path) -> Yardstick:
 
 
 def split_words(texts: Sequence[str]) -> Yardstick:
-    """Steps in words cut into a verb and what follows it."""
+    """Natural-language steps split into a verb and the rest."""
     return measured(
         len(texts), lambda text: [line.split(": ")[-1].split(" ", 1) for line in text.splitlines()[1:]], texts
     )
 
 
 def drawn_steps(count: int = 2_000) -> Yardstick:
-    """Programs of twelve steps drawn without regard to what they mean."""
+    """Random programs of twelve steps, without checks."""
     chance = random.Random(0)
     names = [f"thing{number}" for number in range(100)]
     return measured(
@@ -143,7 +143,7 @@ def drawn_steps(count: int = 2_000) -> Yardstick:
 
 
 def found_by_scanning(names: Iterable[str], number: int = 200) -> Yardstick:
-    """A name looked for among all, one after the other, whatever its case."""
+    """A name searched among all names in turn, ignoring case."""
     known = list(names)
     wanted = known[:: max(1, len(known) // number)]
     return measured(

@@ -1,7 +1,7 @@
-"""How fast a published dataset is scored and asked: `python benchmarks/publish_speed.py DATASET`.
+"""Speed of scoring and queries on a published dataset: `python benchmarks/publish_speed.py DATASET`.
 
-Predictions are the dataset's own programs, every second one with a step left out. Everything is done by one process;
-the `score` command uses as many as there are cores.
+Predictions are the dataset's own programs, every second one without its first step. Everything runs in one process; the
+`score` command uses one per core.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from time import perf_counter
 from typing import Any
 
 import plain
-from measuring import Figure, Passes, finish, parser, passes, rate, runs, seconds, tell
+from measuring import Figure, Passes, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import bindings_of, program_of
@@ -29,10 +29,10 @@ from hearth.scoring.evaluate import Options, Pair, lcs_of
 from hearth.scoring.metrics.lcs import matrix
 
 ASKED = 30_000
-"""Predictions and executions that the targets are about."""
+"""Numbers of predictions and executions of the targets."""
 
 SHARES, EACH = 8, 25
-"""So many shares of predictions are read, and so many of each share scored."""
+"""Number of shares of predictions that are read, and of predictions scored in each."""
 
 
 def main() -> None:
@@ -42,7 +42,7 @@ def main() -> None:
     asked = arguments.parse_args()
     found = list(figures(asked))
     for figure in found:
-        print(tell(figure))
+        print(as_line(figure))
     finish(found, asked.json)
 
 
@@ -86,7 +86,7 @@ def yardsticks() -> tuple[plain.Yardstick, plain.Yardstick]:
 
 
 def scoring(dataset: Dataset) -> Iterator[Figure]:
-    """What a prediction costs, read in shares of neighbours as the `score` command does, and scored one by one."""
+    """The cost of a prediction, read in shares of neighbours as in the `score` command, and scored one by one."""
     folder = str(dataset.folder)
     _, homes = dataset_scores.opened(folder)
     ids = [name for (name,) in dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
@@ -114,11 +114,11 @@ def scoring(dataset: Dataset) -> Iterator[Figure]:
     )
     whole = Passes([usual], least)
     yield seconds(f"score of {ASKED:,} predictions by two processors, from these", whole, target=60.0,
-                  ratio=plain.rehearsal().ratio(ASKED / 2, whole))  # fmt: skip
+                  ratio=plain.sampled_runs().ratio(ASKED / 2, whole))  # fmt: skip
 
 
 def predicted(case: dict[str, Any], place: int) -> tuple[Step, ...]:
-    """The case's own program; of every second one the first step is left out."""
+    """The case's own program; every second one without its first step."""
     return program_of(case, bindings_of(case["bindings"])).unbound().steps[place % 2 :]
 
 

@@ -1,9 +1,9 @@
 """Measure pictures: `python benchmarks/render_speed.py [--home NAME] [--frames N] [--json FILE]`.
 
-The work is what users ask for: somebody walks through the largest room of a furnished home, and ten objects move, too.
-Nothing is written to disk but where it is said. Getting ready is told apart: compiling (once an installation), and
-building a home's triangles (once a home). Frames a second are of the wall clock. The plain reference is a z-buffer in
-Python of the same home, without light: it takes seconds a picture.
+The scenario: a character walks through the largest room of a furnished home, and ten objects move. Nothing is written
+to disk unless stated. Preparation is measured separately: compiling (once per installation), and building a home's
+triangles (once per home). Frames per second are of the wall clock. The plain reference is a z-buffer in Python of the
+same home, without light, which takes seconds per picture.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import plain
-from measuring import Figure, finish, parser, rate, seconds, tell
+from measuring import Figure, as_line, finish, parser, rate, seconds
 from warm import warm
 
 from hearth.homes import library
@@ -39,14 +39,14 @@ from hearth.schemas.graph import EnvironmentGraph, Node
 
 Picture = Callable[[int, Scene], object]
 PASSES, PIECED = 3, 8
-"""How often pictures are taken by all threads, and piece by piece."""
+"""Number of passes with all threads, and piece by piece."""
 SIZE, SMALL = (640, 480), (320, 240)
 OBJECTS = 10
 BALL = Model("toy", Look((0.12, 0.12, 0.12), kind="ball"))
 
 
 def scenes(graph: EnvironmentGraph, frames: int) -> Iterator[Scene]:
-    """Somebody walks through the largest room; ten objects move with them."""
+    """Scenes of a character that walks through the largest room, while ten objects move."""
     whole = scene_of(graph, default())
     static = StaticThings(whole.things)
     (x, y, z), (w, h, d) = room_of(graph).box or home_box(graph)
@@ -70,9 +70,9 @@ def room_of(graph: EnvironmentGraph) -> Node:
 def measured(
     name: str, target: float | None, films: list[Scene], make: Callable[[], Picture], yardstick: plain.Yardstick
 ) -> Figure:
-    """Frames a second of a picture of each scene; the first one gets ready what is kept for a home.
+    """Frames per second over all scenes; the first picture prepares the home's cached data.
 
-    Every pass begins anew, as a film does: a camera that stays remembers the picture before.
+    Every pass starts without a previous picture, as a film does.
     """
     placed.cache_clear()
     figure_mesh.cache_clear()
@@ -111,7 +111,7 @@ def undisturbed(films: list[Scene], make: Callable[[], Picture]) -> float:
 
 
 class Pieces:
-    """In place of the threads: works on one piece after the other, and remembers how long each took."""
+    """Replaces the threads: processes pieces one after the other, and records their times."""
 
     def __init__(self) -> None:
         self.times: list[float] = []
@@ -125,13 +125,13 @@ class Pieces:
 
 
 def shared(runs: list[tuple[float, list[float]]]) -> float:
-    """Seconds that a picture takes at least, by runs of it: its pieces and what is done between them."""
+    """Least seconds of a picture over several runs: of its pieces, and of the work between them."""
     pieces = [min(times) for times in zip(*(times for _, times in runs), strict=True)]
     return min(alone for alone, _ in runs) + sum(pieces)
 
 
 class Stayed:
-    """A camera that stays and remembers its last picture."""
+    """A fixed camera that reuses its last picture."""
 
     def __init__(self, camera: Camera, modalities: tuple[str, ...]) -> None:
         self.camera, self.modalities, self.last = camera, modalities, None
@@ -151,9 +151,9 @@ def filmed(camera: Camera) -> Picture:
 
 
 def whole(films: list[Scene], camera: Camera, modalities: tuple[str, ...], quality: str) -> Picture:
-    """Whole pictures; the camera moves, so that nothing is known from the one before but what things look like.
+    """Whole pictures by a moving camera, which can reuse only the things' meshes.
 
-    Each scene is built once, as in a film: as the next moment of the one before.
+    Each scene is built once, as in a film: as the successor of the one before.
     """
     own = [replace(scene, things=tuple(scene.things)) for scene in films]
 
@@ -166,7 +166,7 @@ def whole(films: list[Scene], camera: Camera, modalities: tuple[str, ...], quali
 
 
 def ready(graph: EnvironmentGraph) -> list[Figure]:
-    """What is done once: seconds of one processor."""
+    """Preparation: seconds of one processor."""
     began = time.process_time()
     warm()
     compiled = time.process_time()
@@ -206,7 +206,7 @@ def main() -> None:
     figures.append(Figure("memory at the most", peak, "MiB", 1024))
     print(f"{threads.count()} threads")
     for figure in figures:
-        print(tell(figure))
+        print(as_line(figure))
     finish(figures, asked.json)
 
 

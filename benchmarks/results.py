@@ -1,10 +1,10 @@
-"""Every figure in one place: `make bench` runs each `*_speed.py`, writes RESULTS.md and results.json, and compares.
+"""All figures: `make bench` runs each `*_speed.py`, writes RESULTS.md and results.json, and compares.
 
     python benchmarks/results.py [--only NAME] [--check]
 
 A ratio to plain reference code (`plain.py`, `tests/oracles`), measured in the same run, holds on any machine: one that
 has fallen by a third against the results.json that is committed fails the run (status 1). With `--check` nothing is
-written. Each benchmark tells when it was run and how busy the machine was: a section may be older than another.
+written. Each section has the day of its run and the load of the machine: sections may differ in age.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ except ImportError:
 HERE = Path(__file__).resolve().parent
 TABLE, STORED = HERE / "RESULTS.md", HERE / "results.json"
 WORST = 2 / 3
-"""What must be left of a ratio."""
+"""Least share of a stored ratio that must remain."""
 
 LIBRARIES = ("numpy", "pyarrow", "duckdb", "open3d-cpu", "opencv-python-headless", "numba", "rapidfuzz")
 HEAD = (
@@ -43,7 +43,7 @@ Section = dict[str, Any]
 
 
 def section(name: str) -> Section:
-    """One benchmark, and what the machine was doing."""
+    """The section of one benchmark, with the machine's load."""
     before = stalls().value
     figures = measured(HERE / f"{name}_speed.py")
     still = (before + stalls().value) / 2
@@ -56,7 +56,7 @@ def section(name: str) -> Section:
 
 
 def measured(script: Path) -> list[Row]:
-    """The figures of one benchmark, run in a process of its own.
+    """The figures of one benchmark, run in a separate process.
 
     Raises:
         SystemExit: it failed.
@@ -70,7 +70,7 @@ def measured(script: Path) -> list[Row]:
 
 
 def machine() -> str:
-    """What it was measured on."""
+    """A description of the machine."""
     names = (line.split(":", 1)[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name"))
     memory = next((int(line.split()[1]) for line in _lines("/proc/meminfo") if line.startswith("MemTotal")), 0)
     processor = next(names, platform.processor() or "unknown processor")
@@ -101,12 +101,12 @@ def document(found: Mapping[str, Section]) -> str:
     ]
     for name, one in found.items():
         busy = f"at load {one['load']}; the machine stood still {one['still']}% of the time"
-        told = f"Measured on {one['day']}, {busy}."
+        head = f"Measured on {one['day']}, {busy}."
         lines += [
             "",
             f"## {name}",
             "",
-            told,
+            head,
             "",
             "| figure | measured | spread | undisturbed | asked | to the plain reference |",
         ]
@@ -122,7 +122,7 @@ def _line(row: Row) -> str:
 
 
 def fallen(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[str]:
-    """Ratios that have fallen by a third, or that a figure has no more."""
+    """Ratios that have fallen by a third, or that a figure has lost."""
     return [
         f"{name}: {figure}: {before:,.1f} times the plain reference before, {now:,.1f} now"
         for name, figure, before, now in _before_and_now(found, stored)
@@ -131,7 +131,7 @@ def fallen(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[
 
 
 def unmeasured(found: Mapping[str, Section], stored: Mapping[str, Section]) -> list[str]:
-    """Ratios that were not measured this time: what they are of may need data that are not here."""
+    """Ratios that were not measured this time, for example because their data are missing."""
     return [
         f"{name}: {figure}: {before:,.1f} times the plain reference before, not measured now"
         for name, figure, before, now in _before_and_now(found, stored)

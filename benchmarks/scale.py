@@ -1,9 +1,9 @@
-"""Does the cost stay linear and the memory flat? `python benchmarks/scale.py [--sizes 3000 30000] [--workers 2]`.
+"""Linearity of cost and memory: `python benchmarks/scale.py [--sizes 3000 30000] [--workers 2]`.
 
-Builds datasets of so many augmented programs, from sampling to publishing, from the embedded corpus and synthetic
-programs, and prints for each: wall and processor seconds a program, the largest process, bytes on disk, and which stage
-took how much of them. `--seed` draws others. 300,000 take hours: with `--keep FOLDER` what was built stays there, and
-the same command goes on with it after it was stopped (the times are then those of the last run only).
+Builds datasets of the given numbers of augmented programs, from sampling to publishing, from the embedded corpus and
+synthetic programs, and prints for each: wall and processor seconds per program, the largest process, bytes on disk, and
+the share of each stage. `--seed` draws other programs. 300,000 take hours: with `--keep FOLDER` the build stays there,
+and the same command continues it after a stop (the times are then those of the last run only).
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from measuring import Figure, finish, tell
+from measuring import Figure, as_line, finish
 
 CLI = Path(__file__).resolve().parents[1] / "cli.py"
 EACH = 6
-"""Augmented programs of an execution, about; so many pairs are asked for."""
+"""Approximate number of augmented programs per execution, requested as pairs."""
 STAGES = ("ingest", "validate", "sample", "augment", "publish")
 
 
 def main() -> None:
-    """Build and tell."""
+    """Build and report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sizes", type=int, nargs="+", default=[3_000, 30_000])
     parser.add_argument("--workers", type=int, default=2)
@@ -41,14 +41,14 @@ def main() -> None:
     for size in asked.sizes:
         with place(asked.keep, size) as folder:
             found = measured(size, asked.workers, asked.seed, folder)
-        print(*map(tell, found), sep="\n", flush=True)
+        print(*map(as_line, found), sep="\n", flush=True)
         figures += found
     finish(figures, asked.json)
 
 
 @contextlib.contextmanager
 def place(keep: Path | None, size: int) -> Iterator[Path]:
-    """The folder of one build: one that goes away, or the one for this size below `keep`."""
+    """The folder of one build: a temporary one, or that of this size below `keep`."""
     if keep is None:
         with tempfile.TemporaryDirectory() as folder:
             yield Path(folder)
@@ -80,7 +80,7 @@ def measured(size: int, workers: int, seed: int, folder: Path) -> list[Figure]:
 
 
 def of_stage(stage: str, used: Used, count: int) -> list[Figure]:
-    """What one stage took."""
+    """The cost of one stage."""
     return [
         Figure(f"  {stage}: wall", used.seconds, "s"),
         Figure(f"  {stage}: processor a program", 1e3 * used.spent / count, "ms"),
@@ -98,7 +98,7 @@ def run(*words: object) -> None:
 
 
 def augmented(out: Path) -> int:
-    """How many augmented programs a build holds."""
+    """Number of augmented programs in a build."""
     import pyarrow.parquet as pq
 
     return sum(pq.read_metadata(file).num_rows for file in (out / "augment").glob("part-*.parquet"))
@@ -106,7 +106,7 @@ def augmented(out: Path) -> int:
 
 @dataclass(frozen=True)
 class Used:
-    """Seconds on the clock, seconds of processor of all processes, and bytes in memory of the largest."""
+    """Wall seconds, processor seconds of all processes, and memory of the largest in bytes."""
 
     seconds: float
     spent: float
@@ -114,10 +114,10 @@ class Used:
 
 
 class Watch:
-    """Watches the processes below this one, every half second: the memory of the largest, the processor time of all.
+    """Samples the descendant processes every half second: memory of the largest, processor time of all.
 
-    Workers are children of a process that nobody waits for, so that what the system counts for children leaves them
-    out. What a process does in its last half second is not seen.
+    Workers are children of a process that is not waited for, so the system's counters for children miss them. The last
+    half second of a process is not seen.
     """
 
     def __init__(self) -> None:
@@ -135,7 +135,7 @@ class Watch:
         self._thread.join()
 
     def between(self, start: float, end: float) -> Used:
-        """What was used between two times of the clock (seconds since 1970); zeros where nobody looked."""
+        """The resources used between two times (seconds since 1970); zeros without samples."""
         looks = [look for look in self._looks if start <= look[0] < end]
         if not looks:
             return Used(0.0, 0.0, 0)
@@ -151,7 +151,7 @@ class Watch:
 
 
 def by_stage(watch: Watch, out: Path) -> Iterator[tuple[str, Used]]:
-    """Each stage that was run while we watched: a stage's manifest is the last file it writes."""
+    """The resources of each stage that ran meanwhile; a stage's manifest is the last file that it writes."""
     start = 0.0
     for stage in STAGES:
         end = (out / stage / "manifest.json").stat().st_mtime
@@ -165,7 +165,7 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def below() -> dict[int, float]:
-    """All processes below this one, children and theirs, and the seconds of processor that each used itself."""
+    """All descendant processes, with the processor seconds of each."""
     parents: dict[int, list[int]] = {}
     spent: dict[int, float] = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):

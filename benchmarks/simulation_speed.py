@@ -15,7 +15,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from measuring import Figure, finish, parser, tell
+from measuring import Figure, as_line, finish, parser
 
 PROCESSES = 3
 
@@ -26,11 +26,11 @@ TARGETS = {
     "test_world_from_known_home": 1 / 20e-6,
     "test_parse_and_build_release_graph": 1 / 3e-3,
 }
-"""Units a second that were asked for."""
+"""Target rates, units per second."""
 
 
 def figures(reports: Sequence[dict[str, Any]]) -> list[Figure]:
-    """What pytest-benchmark measured in each process, as rates; those with a yardstick with their ratio to it."""
+    """The measurements of pytest-benchmark in each process as rates, with the ratio to their yardstick, if any."""
     found: dict[str, list[dict[str, Any]]] = {}
     for report in reports:
         for bench in report["benchmarks"]:
@@ -74,7 +74,7 @@ def main() -> None:
     asked, more = parser(__doc__).parse_known_args()
     with tempfile.TemporaryDirectory() as folder:
         found = figures([measured(Path(folder, "report.json"), more) for _ in range(PROCESSES)])
-    print(*map(tell, found), sep="\n")
+    print(*map(as_line, found), sep="\n")
     finish(found, asked.json)
 
 

@@ -1,4 +1,4 @@
-"""How long the stages take for a record, and what 30,000 augmented programs take: `python benchmarks/stages_speed.py`.
+"""Times of the stages per record, and for 30,000 augmented programs: `python benchmarks/stages_speed.py`.
 
 Builds a small dataset as the tier `full` is built (the embedded corpus and as many synthetic programs, two homes each),
 then runs records drawn from all over each stage's input again and again by themselves; and turns their rows into
@@ -20,7 +20,7 @@ from typing import Any
 import plain
 import pyarrow as pa
 import pyarrow.parquet as pq
-from measuring import Figure, Passes, finish, parser, passes, rate, seconds, tell
+from measuring import Figure, Passes, as_line, finish, parser, passes, rate, seconds
 
 from hearth.pipelines.build import stage
 from hearth.pipelines.engine.settings import Settings
@@ -35,15 +35,15 @@ RECORDS = 60
 TIMES = 7
 
 WHOLE, ALLOWED = 30_000, 120.0
-"""Augmented programs, and the seconds that two processors are allowed for them."""
+"""Number of augmented programs, and the target in seconds on two processors."""
 
 TARGET = 4_500
-"""Augmented programs of the small dataset: as many to an execution as the tier has, about five to a program."""
+"""Augmented programs of the small dataset: as many per execution as in the tier, about five per program."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Of a record of one stage: seconds, of processing it and of its rows on their way to disk and back.
+    """Seconds per record of one stage: of processing it, and of writing and reading its rows.
 
     `written` is the yardstick of the latter: the same rows as lines of JSON.
     """
@@ -55,7 +55,7 @@ class Cost:
 
     @property
     def undisturbed(self) -> float:
-        """Seconds a record."""
+        """Seconds per record."""
         return (self.process.least + self.storage.least) / self.records
 
 
@@ -70,7 +70,7 @@ def main() -> None:
         found = []
         for figure in figures(out, Path(folder)):
             found.append(figure)
-            print(tell(figure), flush=True)
+            print(as_line(figure), flush=True)
     finish(found, asked.json)
 
 
@@ -87,16 +87,16 @@ def built(folder: Path, programs: int) -> Path:
 
 
 def figures(out: Path, folder: Path) -> Iterator[Figure]:
-    """A record's cost by stage, and what follows for the whole."""
+    """A record's cost by stage, and the extrapolation to the tier."""
     settings = Settings(out=str(out), **{**TIERS["full"], "target": TARGET})
     costs, counts = {}, {}
-    rehearsal = plain.rehearsal()
+    sampled_runs = plain.sampled_runs()
     for name in STAGES:
         job = Job(stage(name), settings, stage(name).prepare(settings))
         costs[name] = cost(job, folder)
         counts[name] = sum(1 for _ in records(job))
         own = costs[name]
-        ratio = rehearsal.ratio(own.records, own.process)
+        ratio = sampled_runs.ratio(own.records, own.process)
         yield rate(f"{name}: records processed", own.records, own.process, "records/s", ratio=ratio)
         ratio = own.written.ratio(1, own.storage)
         yield rate(f"{name}: their rows written and read", own.records, own.storage, "records/s", ratio=ratio)
@@ -107,7 +107,7 @@ def figures(out: Path, folder: Path) -> Iterator[Figure]:
 
 
 def cost(job: Job, folder: Path) -> Cost:
-    """Of records drawn evenly from all of a stage's input."""
+    """The cost of records drawn evenly from a stage's input."""
     every = list(records(job))
     some = every[:: max(1, len(every) // RECORDS)][:RECORDS]
     context = job.stage.open(job)
@@ -126,7 +126,7 @@ def cost(job: Job, folder: Path) -> Cost:
 
 
 def stores(job: Job, outputs: list[Any], folder: Path) -> Iterator[Iterator[Callable[[], object]]]:
-    """For each table the steps of writing and reading the rows of so many records as the stages do."""
+    """For each table, the steps of writing and reading the rows of as many records as in the stages."""
     for table, schema in job.stage.tables.items():
         found = [row for output in outputs for to, row in map(_addressed, output) if to == table]
         if found:

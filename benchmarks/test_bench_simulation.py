@@ -155,7 +155,7 @@ def test_bind_and_run(benchmark):
 
 @pytest.mark.benchmark(group="binding and running programs of 12 steps")
 def test_bind_and_run_reference(benchmark):
-    """The first of each class, without a search, and the world copied for each run."""
+    """The first instance of each class, without a search, and a copy of the world for each run."""
     items = [(PlainWorld(graph), graph, program) for graph, program in cases.own()]
     note(benchmark, "program", len(items))
 
@@ -179,7 +179,7 @@ def test_legal(benchmark, limits):
 
 @pytest.mark.benchmark(group="what an agent may do and sees")
 def test_legal_reference(benchmark):
-    """Every action that takes one thing is tried on everything, all in one copy of the world."""
+    """Every action with one object is tried on every object, in one copy of the world."""
     worlds = [(world, graph) for (world, _), (graph, _) in zip(plain("own homes")[::4], cases.own()[::4], strict=True)]
     single = [name for name, action in default().actions.items() if action.arity == 1 and name in reference.ACTIONS]
     note(benchmark, "world", len(worlds))

@@ -1,10 +1,9 @@
-"""What a second worker brings, and what a partition costs of which nothing is to be done.
+"""Speedup by a second worker, and the cost of an empty partition.
 
     python benchmarks/workers_speed.py [--rounds N] [--json FILE]
 
-Programs of the embedded corpus are augmented as in the tier `full`, by one worker and by two in turn, whose processes
-are there before; the figure is the median of the rounds' ratios. Where the processors are taken away from time to time,
-each is by itself, so that single rounds are far apart.
+Programs of the embedded corpus are augmented as in the tier `full`, by one worker and by two in turn, with processes
+started before; the figure is the median of the rounds' ratios. On a shared machine single rounds vary widely.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from pathlib import Path
 from statistics import median
 
 import pyarrow as pa
-from measuring import Figure, finish, parser, spread, tell
+from measuring import Figure, as_line, finish, parser, spread
 
 from hearth.pipelines.build import stage
 from hearth.pipelines.engine.runner import run_stage
@@ -30,7 +29,7 @@ from hearth.storage.parallel import unseen
 ROOT = Path(__file__).resolve().parents[1]
 CORPUS = tuple(str(ROOT / "data_raw/crowd" / name) for name in ("descriptions.csv", "programs.csv"))
 PROGRAMS = 240
-"""Enough for several partitions: sixty make one, which a second worker can do nothing about."""
+"""Enough for several partitions of sixty programs; a single one could not be shared."""
 
 PARTITIONS = 200
 
@@ -44,7 +43,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for figure in (*speedup(Path(folder) / "corpus", asked.rounds), empty(Path(folder) / "empty")):
             found.append(figure)
-            print(tell(figure), flush=True)
+            print(as_line(figure), flush=True)
     finish(found, asked.json)
 
 
@@ -69,7 +68,7 @@ SCHEMA = pa.schema([("program_id", pa.string())])
 
 
 def partitions(job: Job) -> Iterator[Partition]:
-    """Many, with nothing in them."""
+    """Many empty partitions."""
     return (Partition(number, str(number), (), 0) for number in range(PARTITIONS))
 
 
@@ -87,7 +86,7 @@ EMPTY = Stage("empty", {"": SCHEMA}, process, partitions=partitions, records=rec
 
 
 def empty(out: Path) -> Figure:
-    """Milliseconds that each of many empty partitions costs: to look, to write, to sync."""
+    """Milliseconds per empty partition: to read, to write, to sync."""
     job = Job(EMPTY, Settings((CORPUS[0],), str(out)), {})
     job.folder.mkdir(parents=True)
     taken = []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.analysis.coverage import Rehearsal, Script
+    from hearth.analysis.coverage import Coverage, Script
     from hearth.pipelines.engine.build_homes import Homes
     from hearth.schemas.failures import Failure
 
@@ -19,7 +19,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     """Run and print; with `strict` the status is 1 if a pair failed that is not proven impossible."""
     from itertools import islice
 
-    from hearth.analysis.coverage import rehearse, scripts
+    from hearth.analysis.coverage import measure_coverage, scripts
     from hearth.commands.progress_line import bar, watched
     from hearth.grounding.environments.sampling import Size
     from hearth.pipelines.engine.build_homes import Homes
@@ -29,7 +29,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     programs = islice(scripts(map(str, sources), homes.knowledge), limit)
     wanted = Size() if size is None else Size.about(size)
     with bar("programs tried") as seen:
-        found = rehearse(watched(programs, seen, limit), homes, homes.names(), settings["seed"], wanted)
+        found = measure_coverage(watched(programs, seen, limit), homes, homes.names(), settings["seed"], wanted)
     if as_json:
         pairs = {"impossible": list(_impossible(found, homes)), "failures": list(_failures(found))}
         output.emit({**found.summary(), **pairs})
@@ -42,7 +42,7 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     output.status(len(found.failed), strict=strict)
 
 
-def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
+def _impossible(found: Coverage, homes: Homes) -> Iterator[dict[str, Any]]:
     from hearth.analysis.coverage import ANY_HOME
     from hearth.grounding.preconditions.infer import at_odds
 
@@ -51,7 +51,7 @@ def _impossible(found: Rehearsal, homes: Homes) -> Iterator[dict[str, Any]]:
         yield _row(script, where, failure, steps)
 
 
-def _failures(found: Rehearsal) -> Iterator[dict[str, Any]]:
+def _failures(found: Coverage) -> Iterator[dict[str, Any]]:
     for script, home, failure in found.failed:
         yield _row(script, home, failure, (min(failure.tick, len(script.program.steps) - 1),))
 

@@ -244,12 +244,12 @@ def dataset(
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
-    from hearth.scoring.dataset_scores import judge
+    from hearth.scoring.dataset_scores import score_dataset
     from hearth.scoring.evaluate import Options
 
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
     with bar("shares scored") as seen:
-        scored = judge(Dataset.open(folder), file, split, part if split else "", how, workers, seen)
+        scored = score_dataset(Dataset.open(folder), file, split, part if split else "", how, workers, seen)
     _show(scored, how, by, as_json)
 
 

@@ -12,7 +12,7 @@ from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
     from hearth.analysis.coverage import Script
-    from hearth.analysis.sketch_evaluation import Judgement
+    from hearth.analysis.sketch_evaluation import SketchEvaluation
     from hearth.kb.knowledge import Knowledge
     from hearth.simulation.world.home import Home
 
@@ -93,13 +93,13 @@ def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None
 def _judge(
     file: Path, programs: list[Script], places: list[Home], known: Knowledge, seed: int, *, as_json: bool, every: bool
 ) -> None:
-    from hearth.analysis.sketch_evaluation import annotated, judge
+    from hearth.analysis.sketch_evaluation import annotated, evaluate_sketches
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
     if not file.is_file():
         raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(file))
-    found = judge(annotated(file, file.name, programs, known), places, known, seed)
+    found = evaluate_sketches(annotated(file, file.name, programs, known), places, known, seed)
     if not found.rows:
         hint = "give the programs that the sketches are of: the release they were drawn for"
         raise HearthError.of(Code.EMPTY, "no sketch is of one of these programs", file=str(file), suggestion=hint)
@@ -110,7 +110,7 @@ def _judge(
         _print_judgement(found, every)
 
 
-def _print_judgement(found: Judgement, every: bool) -> None:
+def _print_judgement(found: SketchEvaluation, every: bool) -> None:
     summary: dict[str, Any] = found.summary()
     kinds = ("inferred", "dropping_what_is_by_the_way", "keeping_what_people_usually_keep")
     rows = [

@@ -1,1 +1,1 @@
-"""What is published, and how it is read: the dataset, tensors, verification, differences."""
+"""Published datasets: reading, tensors, verification, differences, export, report."""

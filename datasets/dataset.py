@@ -1,4 +1,4 @@
-"""A published dataset, opened for reading: tables, SQL, and each program with all that belongs to it."""
+"""A published dataset, opened for reading: tables, SQL, and programs with their runs, repairs and sketches."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Dataset:
         """Open a dataset, or the dataset of a build's folder; of a URL that fsspec knows, a local copy of it.
 
         Raises:
-            HearthError: the path is no dataset, one that is not complete, or one that a newer version wrote.
+            HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
         """
         from hearth.storage.exchange import present
         from hearth.storage.stores import fetched
@@ -82,10 +82,10 @@ class Dataset:
 
     @cached_property
     def knowledge(self) -> Knowledge:
-        """What it was made with: our knowledge, and over it what the dataset carries.
+        """The knowledge that it was made with: ours, extended by the dataset's overlay.
 
         Raises:
-            HearthError: what it carries is not there, is not what the manifest says, or has faults.
+            HearthError: the overlay is missing, differs from the manifest, or has faults.
         """
         from hearth.datasets.dataset_knowledge import knowledge_of
 
@@ -95,10 +95,10 @@ class Dataset:
     def connection(self) -> Any:
         """A DuckDB connection with the views and macros, which reaches this folder only; `sql` refuses what changes it.
 
-        Where a build has replaced the dataset since, it is a new one, to the dataset that is there now.
+        After a build has replaced the dataset, a new connection to the current one is made.
 
         Raises:
-            HearthError: MISSING_FILE, where a table is not there; DAMAGED_FILE, where one cannot be read.
+            HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read.
         """
         now = _version(self.folder)
         if now is not None and now != self._version:
@@ -119,7 +119,7 @@ class Dataset:
         raise AssertionError
 
     def _reopen(self, version: tuple[int, int]) -> None:
-        """Read the dataset that has taken the place of the one that was opened."""
+        """Read the dataset that replaced the opened one."""
         self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, version
         for name in ("_attached", "_built", "knowledge"):
             self.__dict__.pop(name, None)
@@ -175,10 +175,10 @@ class Dataset:
         return bool(self._rows("SELECT 1 FROM programs WHERE program_id = $id", program_id))
 
     def __getitem__(self, program_id: str) -> Entry:
-        """A program with all that belongs to it.
+        """A program with its runs, repairs and sketches.
 
         Raises:
-            KeyError: there is none of that id.
+            KeyError: the id is unknown.
         """
         found = self._rows("SELECT * FROM programs WHERE program_id = $id", program_id)
         if not found:
@@ -187,16 +187,16 @@ class Dataset:
         repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
         sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
         with reading(self.folder):
-            # Asked for by literal ids, DuckDB reads only the row groups that have them; a join would read all.
+            # With literal ids DuckDB reads only the row groups that contain them; a join would read all.
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
 
     def home(self, name: str) -> EnvironmentGraph:
-        """The graph of a home, from which environments differ.
+        """The graph of a home, the base of its environments.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: the name is unknown.
         """
         return self._homes(name).graph
 
@@ -207,25 +207,25 @@ class Dataset:
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
         """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks (thesis 5.4.1).
 
-        A run that is shorter gives its last graph. `tensors.Tensors` says the shapes.
+        A shorter run contributes its last graph. `tensors.Tensors` has the shapes.
 
         Raises:
-            KeyError: there is no program of that id.
+            KeyError: an id is unknown.
 
         Examples:
             >>> tensors = hearth.load(folder).to_tensors(["text:milk.txt"])
             >>> tensors.node_class.shape, tensors.edge_index.shape[0], tensors.actions.shape
             ((376,), 2, (1, 3))
         """
-        from hearth.datasets.tensors import Moment, to_tensors
+        from hearth.datasets.tensors import GraphSample, to_tensors
 
         entries = [self[program_id] for program_id in program_ids]
-        moments = (
-            Moment(entry.program, run.graph(min(tick, len(run.row["ticks"]))), run.bindings())
+        samples = (
+            GraphSample(entry.program, run.graph(min(tick, len(run.row["ticks"]))), run.bindings())
             for entry in entries
             for run in entry.runs
         )
-        return to_tensors(moments, self.rows("SELECT kind, name, id FROM vocabulary")[1])
+        return to_tensors(samples, self.rows("SELECT kind, name, id FROM vocabulary")[1])
 
     def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Any]:
         if not ids:
@@ -268,8 +268,8 @@ class Entry:
     Attributes:
         row: as in the table `programs`.
         runs: its executions.
-        repairs: how it was made from its parent, in order; empty for originals.
-        sketches: which of its steps people kept as its gist.
+        repairs: the repairs that made it from its parent, in order; empty for originals.
+        sketches: the steps that people kept as its gist.
     """
 
     row: ProgramRow
@@ -292,20 +292,20 @@ class Entry:
 
     @property
     def description(self) -> str:
-        """What is done, in words."""
+        """The description as written."""
         return self.row["description"]
 
 
 @dataclass(frozen=True)
 class Run:
-    """One execution of a program: its row, and the graphs it went through."""
+    """One execution of a program: its row, and its graphs after each tick."""
 
     dataset: Dataset = field(repr=False)
     row: StoredRunRow
 
     @property
     def home(self) -> str:
-        """The home its environment was made from."""
+        """The name of the home that its environment was made from."""
         return self.row["home"]
 
     @property
@@ -315,18 +315,18 @@ class Run:
 
     @property
     def conditions(self) -> list[ConditionRow]:
-        """What had to hold at the start, under the names of this version."""
+        """The preconditions of its start, under the names of this version."""
         stored = self.row["environment"]["conditions"]
         return [{**row, "name": RENAMED.get(row["name"], row["name"])} for row in stored]
 
     def bindings(self) -> dict[tuple[str, int], int]:
-        """Which node each object of the program is."""
+        """(class, instance) of each object in the program -> its node id."""
         from hearth.datasets.format.codecs import bindings_of
 
         return bindings_of(self.row["bindings"])
 
     def graph(self, tick: int = 0) -> EnvironmentGraph:
-        """The graph after so many ticks; nodes by id, edges sorted.
+        """The graph after `tick` ticks; nodes by id, edges sorted.
 
         Raises:
             IndexError: the run has fewer ticks.
@@ -352,7 +352,7 @@ class Run:
 
     @property
     def final(self) -> EnvironmentGraph:
-        """The graph after the last tick that was done."""
+        """The graph after the last executed tick."""
         return self.graph(len(self.row["ticks"]))
 
     def release_json(self, tick: int = 0) -> dict[str, Any]:
@@ -368,8 +368,8 @@ class Run:
         found: networkx.MultiDiGraph = networkx.MultiDiGraph()
         graph = self.graph(tick)
         for node in graph.nodes:
-            told = {"class_name": node.class_name, "category": node.category, "states": list(node.states)}
-            found.add_node(node.id, **told, properties=list(node.properties))
+            attributes = {"class_name": node.class_name, "category": node.category, "states": list(node.states)}
+            found.add_node(node.id, **attributes, properties=list(node.properties))
         found.add_edges_from((edge.source, edge.target, edge.relation) for edge in graph.edges)
         return found
 
@@ -383,7 +383,7 @@ class Run:
 
 
 class _Home(NamedTuple):
-    """A home as it is published, and one whose nodes have their states sorted, for runs to start from."""
+    """A published home, and its working graph with sorted states, from which runs start."""
 
     graph: EnvironmentGraph
     working: WorkingGraph

@@ -1,4 +1,4 @@
-"""With which knowledge a dataset was made: its manifest says so, and what was laid over ours lies beside the tables."""
+"""The knowledge of a dataset: recorded in its manifest; the user's overlay is stored beside the tables."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from hearth.schemas.failures import Code
 from hearth.storage.files import write_bytes
 
 FOLDER = "knowledge"
-"""Where a dataset, and the stage that others get their knowledge from, have the files that were laid over ours."""
+"""Folder of the overlay's files, in a dataset and in the stage that provides knowledge to others."""
 
 FIELD = "knowledge"
-"""Of a manifest: `base`, the digest of our files, and `overlay`, null or the digest of the user's and, in a dataset,
-the path of their copy within it. Datasets from before the field were made with ours."""
+"""Field of a manifest: `base`, the digest of our files, and `overlay`, null or the digest of the user's files and, in a
+dataset, the path of their copy. Datasets without the field were made with ours."""
 
 
 def copy_overlay(overlay: str | None, folder: Path) -> None:
-    """Copy the files of the user's knowledge into a folder, and drop those of an earlier build."""
+    """Copy the user's knowledge files into a folder, replacing those of an earlier build."""
     target = folder / FOLDER
     files = {path.name: path.read_bytes() for path in files_of(Path(overlay))} if overlay else {}
     shutil.rmtree(target, ignore_errors=True)
@@ -31,7 +31,7 @@ def copy_overlay(overlay: str | None, folder: Path) -> None:
 
 
 def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
-    """The manifest's field: which knowledge a stage used, and where in its folder the overlay's copy is, if any."""
+    """The manifest's field: the digests of a stage's knowledge, and the path of the overlay's copy, if any."""
     over = {"sha256": digest(Path(overlay))} if overlay else None
     if over and (folder / FOLDER).exists():
         over["path"] = FOLDER
@@ -39,17 +39,17 @@ def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
 
 
 def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
-    """The knowledge that a dataset was made with: ours, and over it what the dataset carries.
+    """The knowledge that a dataset was made with: ours, extended by the dataset's overlay.
 
     Raises:
-        HearthError: BAD_JSON, where the manifest's field is not as `made_with` writes it; MISSING_FILE or DAMAGED_FILE,
-            where the overlay's files are not those that the manifest says; every fault of these files.
+        HearthError: BAD_JSON, for a malformed manifest field; MISSING_FILE or DAMAGED_FILE, if the overlay's files
+            differ from the manifest; every fault of these files.
     """
-    said = manifest.get(FIELD)
-    if said is None:
+    recorded = manifest.get(FIELD)
+    if recorded is None:
         return overlaid(None)
     try:
-        overlay = said["overlay"]
+        overlay = recorded["overlay"]
         path, wanted = (folder / overlay["path"], overlay["sha256"]) if overlay else (None, "")
     except (TypeError, KeyError) as error:
         message = f"the manifest does not say which knowledge: {type(error).__name__} {error}"
@@ -71,9 +71,9 @@ def _check(path: Path, wanted: str, folder: Path) -> None:
 
 
 def other_base(manifest: dict[str, Any]) -> str:
-    """A sentence where a dataset was made with another base than this version of Hearth has; else ""."""
-    said = manifest.get(FIELD)
-    base = said.get("base") if isinstance(said, dict) else None
+    """A sentence if a dataset's base knowledge differs from this version's; else ""."""
+    recorded = manifest.get(FIELD)
+    base = recorded.get("base") if isinstance(recorded, dict) else None
     if not base or base == digest():
         return ""
     made = f"the knowledge of Hearth {manifest.get('version')} ({str(base)[:8]})"

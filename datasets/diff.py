@@ -1,4 +1,4 @@
-"""What changed between two datasets, by table and by row."""
+"""Differences between two datasets, by table and row."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ KEYS = {
     "rejects": ("stage", "record_id", "code", "fault", "line", "column", "file"),
     "ledger": ("stage",),
 }
-"""What tells the rows of a table apart."""
+"""Key columns of each table."""
 
 
 @dataclass(frozen=True, slots=True)
 class Changed:
-    """A row that both have, and differs.
+    """A row of both datasets with different values.
 
     Attributes:
-        key: its key's values.
-        columns: which columns differ.
+        key: values of its key columns.
+        columns: the columns that differ.
     """
 
     key: tuple[Any, ...]
@@ -46,13 +46,13 @@ class Changed:
 
 @dataclass(frozen=True, slots=True)
 class TableDifference:
-    """What differs in one table.
+    """The differences in one table.
 
     Attributes:
         table: its name.
-        only_first, only_second: keys that one of the datasets has, sorted; at most `limit`.
+        only_first, only_second: keys in one dataset only, sorted; at most `limit`.
         changed: rows that differ, sorted; at most `limit`.
-        counts: how many there are of the three, whatever the limit.
+        counts: the numbers of the three, without limit.
     """
 
     table: str
@@ -68,14 +68,14 @@ class TableDifference:
 def compare(first: str | Path, second: str | Path, limit: int | None = None) -> list[TableDifference]:
     """Every table that differs, in the order of the tables.
 
-    Nested values are compared too. A column that only one of the datasets has differs in every row.
+    Nested values are compared too. A column in one dataset only differs in every row.
 
     Args:
         first, second: datasets, or the folders of builds.
-        limit: of rows told of each table and kind; None for all.
+        limit: number of rows listed per table and kind; None for all.
 
     Raises:
-        HearthError: one of them is no dataset, or one that a newer version wrote.
+        HearthError: one of them is not a dataset, or a newer version wrote it.
     """
     import duckdb
 
@@ -96,7 +96,7 @@ def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: in
         if any((dataset.folder / table).glob("*.parquet")):
             files = str(dataset.folder / table / "*.parquet").replace("'", "''")
             connection.execute(f"CREATE TEMP VIEW {name} AS SELECT * FROM read_parquet('{files}')")
-        else:  # a dataset from before the table was
+        else:  # a dataset of a version without the table
             connection.from_arrow(TABLES[table].empty_table()).create_view(name)
         columns.append([row[0] for row in connection.execute(f"DESCRIBE {name}").fetchall()])
     keys = KEYS[table]

@@ -1,4 +1,4 @@
-"""Graphs and steps as arrays for graph networks; ids are those of the dataset's vocabulary."""
+"""Graphs and steps as arrays for graph networks, with the ids of the dataset's vocabulary."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import PROPERTY_ID, RELATION_ID, ROOM_CATEGORY, STATE_ID
 
 INSIDE_ROOM = len(RELATION_ID)
-"""The type of an edge INSIDE a room, apart from INSIDE a thing (thesis 5.4.1); the others are `RELATION_ID`."""
+"""Type of an edge INSIDE a room, distinct from INSIDE a thing (thesis 5.4.1); other types are `RELATION_ID`."""
 
 EDGE_TYPES = (*RELATION_ID, "INSIDE_ROOM")
 
 PADDING = -1
 
 
-class Moment(NamedTuple):
-    """A program, the graph of one of its runs at some tick, and which node each of its objects is in that run."""
+class GraphSample(NamedTuple):
+    """A program, the graph of one of its runs at some tick, and the bindings of its objects in that run."""
 
     program: Program
     graph: EnvironmentGraph
@@ -29,20 +29,20 @@ class Moment(NamedTuple):
 
 
 class Tensors(NamedTuple):
-    """A batch of B graphs with N nodes and E edges together, and programs of at most T steps; `torch.from_numpy` takes
-    each array as it is.
+    """A batch of B graphs with N nodes and E edges in all, and programs of at most T steps; `torch.from_numpy` accepts
+    each array.
 
     Attributes:
-        node_class: (N,) int64, ids of classes; -1 for one the vocabulary lacks.
-        node_states: (N, 10) float32, 1 where the node is in the state.
-        node_properties: (N, 23) float32, likewise.
-        node_id: (N,) int64, the graph's own ids.
-        graph: (N,) int64, which of the B graphs a node belongs to.
-        edge_index: (2, E) int64, rows of nodes: from, to.
+        node_class: (N,) int64, ids of classes; -1 for classes that the vocabulary lacks.
+        node_states: (N, 10) float32, 1 for each state of the node.
+        node_properties: (N, 23) float32, 1 for each property of the node.
+        node_id: (N,) int64, ids in the graph.
+        graph: (N,) int64, index of the node's graph.
+        edge_index: (2, E) int64, indices of source and target nodes.
         edge_type: (E,) int64, an index of `EDGE_TYPES`.
         actions: (B, T) int64, ids of actions; -1 past the end.
-        objects: (B, T, 2) int64, rows of the nodes that a step's objects are; -1 for none.
-        lengths: (B,) int64, how many steps each program has.
+        objects: (B, T, 2) int64, indices of the nodes of a step's objects; -1 for none.
+        lengths: (B,) int64, number of steps of each program.
     """
 
     node_class: np.ndarray
@@ -57,17 +57,17 @@ class Tensors(NamedTuple):
     lengths: np.ndarray
 
 
-def to_tensors(moments: Iterable[Moment], vocabulary: Iterable[tuple[str, str, int]]) -> Tensors:
+def to_tensors(samples: Iterable[GraphSample], vocabulary: Iterable[tuple[str, str, int]]) -> Tensors:
     """Programs and graphs of their runs, as arrays.
 
     Args:
-        moments: programs with one of their graphs each.
+        samples: programs with one of their graphs each.
         vocabulary: kind (`action` or `class`), name and id.
     """
     ids = _Ids({(kind, name): number for kind, name, number in vocabulary})
     parts: dict[str, list[Any]] = {name: [] for name in Tensors._fields}
     first = 0
-    for number, (program, graph, bound) in enumerate(moments):
+    for number, (program, graph, bound) in enumerate(samples):
         row = {node.id: first + place for place, node in enumerate(graph.nodes)}
         rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
         parts["node_class"] += [ids["class", node.class_name] for node in graph.nodes]
@@ -127,7 +127,7 @@ def _steps(
 
 
 def _pad(rows: list[list[Any]], filling: object) -> None:
-    """Make all rows as long as the longest."""
+    """Pad all rows to the length of the longest."""
     longest = max(map(len, rows), default=0)
     for row in rows:
         row.extend([filling] * (longest - len(row)))

@@ -1,4 +1,4 @@
-"""Is a dataset what it says it is? Files, columns, counts, references, and every execution run again from disk."""
+"""Verification of a dataset: files, columns, counts, references, and a replay of every execution from disk."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from hearth.simulation.world.home import Home
 from hearth.storage.parallel import Seen, spread, unseen
 
 SHARE = 1_000
-"""Executions that a process runs again at a time."""
+"""Executions per unit of replay work."""
 
 SHOWN = 20
-"""Faults of one kind that are told singly; what more there is, is counted."""
+"""Faults of one kind that are listed; further ones are counted."""
 
 KEYS = {
     "activities": "activity_id",
@@ -51,7 +51,7 @@ REFERENCES = (
     ("frames", "execution_id", "executions", "execution_id"),
     ("videos", "execution_id", "executions", "execution_id"),
 )
-"""What refers to what: table and column, and the table and key in which its value must be; null refers to nothing."""
+"""References: table and column, and the table and key that must contain the value; null is no reference."""
 
 COUNTED = (
     ("homes", "nodes", "SELECT home, count(*) AS found FROM home_nodes GROUP BY 1"),
@@ -59,19 +59,19 @@ COUNTED = (
     ("activities", "programs", "SELECT activity_id, count(*) AS found FROM programs GROUP BY 1"),
     ("activities", "descriptions", "SELECT activity_id, count(*) AS found FROM descriptions GROUP BY 1"),
 )
-"""Columns that say how many rows there are elsewhere, and the query that counts them."""
+"""Columns that count rows of other tables, and the query that counts them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What was looked at, and what is wrong.
+    """The result of a verification.
 
     Attributes:
-        files: files hashed.
-        rows: rows counted, all tables together.
-        executions: executions run again.
-        faults: everything that is wrong; empty when the dataset is what it says.
-        note: what else is to be known of it, or "".
+        files: number of hashed files.
+        rows: number of rows in all tables.
+        executions: number of replayed executions.
+        faults: all faults; empty for a valid dataset.
+        note: a remark on its knowledge, or "".
     """
 
     files: int
@@ -82,18 +82,18 @@ class Verdict:
 
 
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
-    """Check a dataset from nothing but its folder; what is found is the same for any number of workers.
+    """Check a dataset from its folder alone; the result is the same for any number of workers.
 
-    Files first: where one is missing or other than the manifest says, or has other columns, nothing further is asked
-    of the dataset, for its answers would mean nothing.
+    Files are checked first: if one is missing, differs from the manifest or has other columns, the other checks, which
+    depend on it, are skipped.
 
     Args:
         path: of the dataset.
-        workers: processes.
-        seen: told how many shares of the executions are run again.
+        workers: number of processes.
+        seen: reports the progress of replays.
 
     Raises:
-        HearthError: the path is no dataset, or one that a newer version wrote.
+        HearthError: the path is not a dataset, or a newer version wrote it.
 
     Examples:
         >>> verdict = hearth.verify(folder)
@@ -123,8 +123,8 @@ def _tables() -> tuple[str, ...]:
 def _files(dataset: Dataset) -> Iterator[Diagnostic]:
     from hearth.storage.files import file_digest
 
-    told = dataset.manifest["files"]
-    for name, entry in told.items():
+    files = dataset.manifest["files"]
+    for name, entry in files.items():
         path = dataset.folder / name
         if not path.is_file():
             yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=_AGAIN)
@@ -135,7 +135,7 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
             yield Diagnostic(Code.DAMAGED_FILE, "other bytes than the manifest says", str(path), suggestion=_AGAIN)
     for table in _tables():
         for path in sorted((dataset.folder / table).glob("*.parquet")):
-            if path.relative_to(dataset.folder).as_posix() not in told:
+            if path.relative_to(dataset.folder).as_posix() not in files:
                 message = "the folder has it, the manifest has not: queries would read it"
                 yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
 
@@ -170,18 +170,18 @@ def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 def _split(dataset: Dataset) -> Iterator[Diagnostic]:
-    """`programs.split` is the activity's; `splits` may leave a program out, but never deal it to the other side."""
+    """Check that `splits` assigns each program to the side of `programs.split`, or to none."""
     query = """SELECT DISTINCT program_id FROM splits s JOIN programs p USING (program_id)
         WHERE s.split = 'activities' AND s.part <> 'none' AND NOT starts_with(s.part, p.split) ORDER BY 1"""
     values = [row[0] for row in dataset.rows(query)[1]]
-    yield from _told(dataset, Code.BAD_TABLE, "splits", values, "{value} is dealt otherwise than `programs` says")
+    yield from _listed(dataset, Code.BAD_TABLE, "splits", values, "{value} has another split than in `programs`")
 
 
 def _count(dataset: Dataset, table: str) -> int:
     return int(dataset.rows(f"SELECT count(*) FROM {table}")[1][0][0])
 
 
-def _told(dataset: Dataset, code: Code, table: str, values: list[Any], message: str) -> Iterator[Diagnostic]:
+def _listed(dataset: Dataset, code: Code, table: str, values: list[Any], message: str) -> Iterator[Diagnostic]:
     for value in values[:SHOWN]:
         yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
     if len(values) > SHOWN:
@@ -191,7 +191,7 @@ def _told(dataset: Dataset, code: Code, table: str, values: list[Any], message: 
 def _keys(dataset: Dataset) -> Iterator[Diagnostic]:
     for table, key in KEYS.items():
         _, found = dataset.rows(f"SELECT {key} FROM {table} GROUP BY 1 HAVING count(*) > 1 ORDER BY 1")
-        yield from _told(
+        yield from _listed(
             dataset, Code.DUPLICATE, table, [row[0] for row in found], f"two rows have the {key} {{value}}"
         )
 
@@ -201,12 +201,12 @@ def _references(dataset: Dataset) -> Iterator[Diagnostic]:
         query = f"""SELECT DISTINCT t.{column} FROM {table} t WHERE t.{column} IS NOT NULL
             AND NOT EXISTS (SELECT 1 FROM {other} o WHERE o.{key} = t.{column}) ORDER BY 1"""
         values = [row[0] for row in dataset.rows(query)[1]]
-        yield from _told(dataset, Code.UNKNOWN_ID, table, values, f"its {column} {{value}} is not in `{other}`")
+        yield from _listed(dataset, Code.UNKNOWN_ID, table, values, f"its {column} {{value}} is not in `{other}`")
 
 
 def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
-    told = dataset.manifest["counts"]["rows"]
-    for table, number in told.items():
+    counts = dataset.manifest["counts"]["rows"]
+    for table, number in counts.items():
         if number != _count(dataset, table):
             message = f"{_count(dataset, table):,} rows where the manifest counts {number:,}"
             yield Diagnostic(Code.BAD_TABLE, message, str(dataset.folder / table))
@@ -215,24 +215,24 @@ def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
         ask = f"""SELECT t.{key} FROM {table} t LEFT JOIN ({query}) q USING ({key})
             WHERE t.{column} IS DISTINCT FROM coalesce(q.found, 0) ORDER BY 1"""
         values = [row[0] for row in dataset.rows(ask)[1]]
-        yield from _told(dataset, Code.BAD_TABLE, table, values, f"its {column} of {{value}} are not so many")
+        yield from _listed(dataset, Code.BAD_TABLE, table, values, f"wrong number of {column} for {{value}}")
     query = "SELECT stage FROM ledger WHERE records_in <> records_through + records_rejected ORDER BY 1"
     values = [row[0] for row in dataset.rows(query)[1]]
-    yield from _told(dataset, Code.BAD_TABLE, "ledger", values, "the records of stage {value} do not add up")
+    yield from _listed(dataset, Code.BAD_TABLE, "ledger", values, "the records of stage {value} do not add up")
 
 
 class StoredHomes:
-    """The homes of a dataset by name, built from its own tables."""
+    """The homes of a dataset by name, built from its tables."""
 
     def __init__(self, dataset: Dataset) -> None:
         self._dataset = dataset
         self.home = cache(self._home)
 
     def _home(self, name: str) -> Home:
-        """The home that environments of that name differ from.
+        """The home of that name.
 
         Raises:
-            KeyError: there is none of that name.
+            KeyError: the name is unknown.
         """
         return Home.from_graph(self._dataset.home(name), name, self._dataset.knowledge)
 
@@ -249,11 +249,11 @@ def _replays(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Diagnostic]
 
 
 Wrong = list[tuple[str, str]]
-"""Executions that run otherwise than their rows say, and how."""
+"""Executions whose replay differs from their rows, with the difference."""
 
 
 def _replayed(dataset: Dataset, workers: int, seen: Seen) -> Iterator[Wrong]:
-    # In the order of the files, which is the same for environments and programs: a share is in few row groups of each.
+    # In file order, which is the same for environments and programs: a share lies in few row groups of each.
     names = [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
     jobs = [(str(dataset.folder), names[start : start + SHARE]) for start in range(0, len(names), SHARE)]
     return spread(_replay, jobs, workers, seen)
@@ -277,6 +277,6 @@ def _replay(job: tuple[str, list[str]]) -> Wrong:
 
 @lru_cache(maxsize=1)
 def opened(folder: str) -> tuple[Dataset, StoredHomes]:
-    """A dataset and its homes, once a process and run of shares."""
+    """A dataset and its homes, cached per process."""
     dataset = Dataset.open(folder)
     return dataset, StoredHomes(dataset)

@@ -1,1 +1,1 @@
-"""How good a program is: LCS, graph F1, parsability, executability."""
+"""Evaluation of predicted programs: LCS, graph F1, parsability, executability, goals."""

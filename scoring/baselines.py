@@ -1,4 +1,4 @@
-"""Baselines of the thesis on a dataset's own split (4.3, 5.6.2; tables 4.4, 4.5 and 5.2): what a model has to beat."""
+"""Baselines of the thesis on a dataset's own splits (4.3, 5.6.2; tables 4.4, 4.5 and 5.2)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.schemas.rows import Row
-from hearth.scoring.dataset_scores import judge_steps
+from hearth.scoring.dataset_scores import score_steps
 from hearth.scoring.evaluate import Scored, summarise
 from hearth.scoring.metrics.lcs import matrix
 
@@ -24,9 +24,7 @@ Steps = tuple[Step, ...]
 
 
 class Example(NamedTuple):
-    """A program with its words, its sketch, and what differs from its home, said of classes, where one of its
-    executions starts.
-    """
+    """A program with its description, its sketch, and the difference of its start from the home, as class literals."""
 
     execution_id: str
     text: str
@@ -36,8 +34,9 @@ class Example(NamedTuple):
 
 
 class Result(NamedTuple):
-    """A baseline's scores, means over the test: LCS by action, object and step, and their mean; what final graphs,
-    runs and parsing say. None where the thesis has no figure.
+    """A baseline's mean scores: LCS by action, object and step, and their mean; graph F1; executability; parsability.
+
+    None if the thesis has no figure.
     """
 
     baseline: str
@@ -63,18 +62,18 @@ THESIS = (
     Result("Unaries, table 5.2", None, None, 0.372, None, 0.162, 0.142, 0.159, 0.248, 0.753),
     Result("ResActGraph, table 5.2", None, None, 0.516, None, 0.410, 0.420, 0.413, 0.493, 0.853),
 )
-"""The thesis's figures: 4.4 on synthetic programs, 4.5 on crowd-sourced ones, 5.2 on augmented ones. Its retrieval in
-4.4 is always executable because its programs are run without a home of their own; here they run in the test's."""
+"""The thesis's figures: 4.4 on synthetic programs, 4.5 on crowd-sourced ones, 5.2 on augmented ones. Retrieval in 4.4
+is always executable, because programs run without a given home; here they run in the test's home."""
 
 MOST = 1_000
-"""Test executions that a baseline over sketches is asked for: of more, as many from all over them."""
+"""Greatest number of test executions for baselines over sketches; of more, a sample spread over all of them."""
 
 
 def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> list[Result]:
-    """Every baseline on a split: learnt from `train`, asked of all its tests.
+    """Every baseline on a split: trained on `train`, tested on all test parts.
 
-    Those that go by words learn from and are asked for original programs, of which people told the words; those that go
-    by sketches, every execution. What has no test programs, or none to learn from, has no row.
+    Baselines over descriptions use original programs, whose descriptions people wrote; those over sketches use every
+    execution. A baseline without train or test programs has no row.
     """
     found = []
     for makers, originals in ((BASELINES, True), (BY_SKETCH, False)):
@@ -82,9 +81,9 @@ def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> lis
         test = test[:: max(1, -(-len(test) // MOST))]
         if train and test:
             predicted = [make(train, test, seed, dataset.knowledge) for make in makers.values()]
-            # Those of one execution stand together: it is then read once.
+            # Predictions for one execution are adjacent: it is then read once.
             pairs = ((each.execution_id, one) for each, *some in zip(test, *predicted, strict=True) for one in some)
-            scored = judge_steps(dataset, pairs)
+            scored = score_steps(dataset, pairs)
             found += [_result(name, scored[place :: len(makers)]) for place, name in enumerate(makers)]
     return found
 
@@ -99,7 +98,7 @@ _EXAMPLES = """
 """
 
 _STARTS = """
-    WITH told AS (
+    WITH fact AS (
         SELECT environment_id, home, s.state AS name, s.node AS node, NULL AS other
         FROM (SELECT environment_id, home, unnest(set_states) AS s FROM environments)
         UNION ALL
@@ -110,14 +109,14 @@ _STARTS = """
         SELECT environment_id, n.id AS id, n.class_name AS class_name
         FROM (SELECT environment_id, unnest(added_nodes) AS n FROM environments)
     )
-    SELECT told.environment_id, list(DISTINCT [name, coalesce(a.class_name, b.class_name),
+    SELECT fact.environment_id, list(DISTINCT [name, coalesce(a.class_name, b.class_name),
                                              coalesce(c.class_name, d.class_name)]) AS literals
-    FROM told
-    LEFT JOIN node a ON a.environment_id = told.environment_id AND a.id = told.node
-    LEFT JOIN home_nodes b ON b.home = told.home AND b.id = told.node
-    LEFT JOIN node c ON c.environment_id = told.environment_id AND c.id = told.other
-    LEFT JOIN home_nodes d ON d.home = told.home AND d.id = told.other
-    GROUP BY told.environment_id
+    FROM fact
+    LEFT JOIN node a ON a.environment_id = fact.environment_id AND a.id = fact.node
+    LEFT JOIN home_nodes b ON b.home = fact.home AND b.id = fact.node
+    LEFT JOIN node c ON c.environment_id = fact.environment_id AND c.id = fact.other
+    LEFT JOIN home_nodes d ON d.home = fact.home AND d.id = fact.other
+    GROUP BY fact.environment_id
 """
 
 
@@ -135,10 +134,10 @@ def _literal(names: Sequence[str | None]) -> Literal[str]:
 
 
 def _example(row: Row, start: frozenset[Literal[str]]) -> Example:
-    told = row["program"]
-    steps = program_of(told).steps
+    program = row["program"]
+    steps = program_of(program).steps
     kept = tuple(step for step, keep in zip(steps, row["keep"] or (), strict=False) if keep)
-    return Example(row["execution_id"], f"{told['title']} {told['description']}", steps, kept, start)
+    return Example(row["execution_id"], f"{program['title']} {program['description']}", steps, kept, start)
 
 
 def _result(name: str, scored: Sequence[Scored]) -> Result:
@@ -148,7 +147,7 @@ def _result(name: str, scored: Sequence[Scored]) -> Result:
 
 
 def random_sampling(train: Sequence[Example], test: Sequence[Example], seed: int, knowledge: Knowledge) -> list[Steps]:
-    """As long as some program; each action and its objects are picked at random."""
+    """Programs of the length of a random training program, with random actions and objects."""
     actions = [action for action in knowledge.actions.values() if action.executed]
     names = sorted(knowledge.objects)
     return [_sampled(rng(seed, "random sampling", each.execution_id), train, actions, names) for each in test]
@@ -164,15 +163,15 @@ def _sampled(random: Random, train: Sequence[Example], actions: list[Action], na
 
 
 def random_retrieval(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """Any program of train."""
+    """Random training programs."""
     return [rng(seed, "random retrieval", each.execution_id).choice(train).steps for each in test]
 
 
 def nearest_description(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """The program of the most similar words, by the cosine of TF-IDF weights; of equals the first.
+    """The program with the most similar description, by the cosine of TF-IDF weights; of equal ones the first.
 
     Raises:
-        HearthError: MISSING_FILE, when scikit-learn is not installed.
+        HearthError: MISSING_FILE, if scikit-learn is not installed.
     """
     try:
         from sklearn.feature_extraction.text import TfidfVectorizer
@@ -182,19 +181,19 @@ def nearest_description(train: Sequence[Example], test: Sequence[Example], seed:
     weights = TfidfVectorizer(token_pattern=WORD)
     known = weights.fit_transform([each.text for each in train])
     alike = (weights.transform([each.text for each in test]) @ known.T).toarray()
-    # Sums of floats end differently with the order of words: what is equal but for that is equal.
+    # Sums of floats depend on the order of words: rounding makes them equal.
     return [train[int(place)].steps for place in alike.round(9).argmax(axis=1)]
 
 
 WORD = r"(?u)[^\W_]{2,}"
-"""What counts as a word of a description."""
+"""A word of a description."""
 
 
 def nearest_sketch(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """The program whose sketch is most similar by LCS; of equals, the one whose start is most like the test's (5.6.2).
+    """The program with the most similar sketch by LCS; of equal ones, that with the most similar start (5.6.2).
 
-    Starts are alike as far as they share what differs from their homes, told of classes: states, and ON and INSIDE
-    edges (Jaccard index); of equals still, the first.
+    The similarity of starts is the Jaccard index of their differences from the homes, as literals of classes: states,
+    and ON and INSIDE edges; of equal ones the first.
     """
     alike = matrix([each.sketch for each in test], [each.sketch for each in train])
     answers = []
@@ -216,7 +215,7 @@ BASELINES: dict[str, Maker] = {
     "random retrieval": random_retrieval,
     "nearest description": nearest_description,
 }
-"""Each gives a program for every test example, by its words. To add one: a function, a row here, a test."""
+"""Each predicts a program for every test example from its description. To add one: a function, a row here, a test."""
 
 BY_SKETCH: dict[str, Maker] = {"nearest sketch": nearest_sketch}
-"""Likewise by its sketch and its start."""
+"""Likewise from its sketch and its start."""

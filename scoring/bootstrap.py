@@ -1,4 +1,4 @@
-"""How sure a mean is: percentile bootstrap intervals, reproducible from a seed."""
+"""Percentile bootstrap intervals of means, reproducible from a seed."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from hearth.schemas.rng import derive
 RESAMPLES = 1_000
 LEVEL = 0.95
 DIGITS = 9
-"""Decimals kept, so that no machine's order of adding shows."""
+"""Decimals of results, so that the order of additions on a machine has no influence."""
 
 _CHUNK = 2_000_000
 """Draws held in memory at a time."""
 
 
 class Interval(NamedTuple):
-    """A mean and the interval its bootstrap resamples fall into."""
+    """A mean and its bootstrap interval."""
 
     mean: float
     low: float
@@ -33,10 +33,10 @@ def intervals(
     Rows are drawn with replacement, the same for every column. Equal input gives equal output on every machine.
 
     Args:
-        columns: values by name, one a row; None where a row has no such score. A column of only None is left out.
+        columns: values by name, one per row; None if a row lacks the score. A column of only None is omitted.
         seed: of the run.
-        resamples: how many times the rows are drawn.
-        level: how many of the resampled means lie inside.
+        resamples: number of resamples.
+        level: share of the resampled means inside the interval.
 
     Raises:
         ValueError: the columns differ in length.

@@ -30,13 +30,13 @@ from hearth.simulation.rules import RULES
 from hearth.storage.parallel import Seen, spread, unseen
 
 PART = 250
-"""References whose environments are in memory at a time, and a worker's share."""
+"""References in memory at a time, the unit of a worker's work."""
 
 Job = tuple[str, list[Pair], Options]
 """A dataset's folder, pairs without their references, and how to score them."""
 
 
-def judge(
+def score_dataset(
     dataset: Dataset,
     file: Path,
     split: str = "",
@@ -47,25 +47,25 @@ def judge(
 ) -> list[Scored]:
     """Score a file of predictions for executions of a dataset; those without a prediction are missing.
 
-    A row has `predicted`, a program's text, its steps, or steps in words, and says what it is for: `id` (or
-    `execution_id`) is an execution's; `program_id` with `home` are all executions of that program there, without `home`
-    all that it has. Its reference is the program that the dataset has for the execution, bound as there, and it runs in
-    the same environment. Rows of executions outside the part are not looked at.
+    A row has `predicted`, a program's text, its steps, or natural-language steps. `id` (or `execution_id`) names the
+    execution; `program_id` with `home` stands for all executions of that program there, without `home` for all of its
+    executions. The reference is the execution's program in the dataset, bound as there; the prediction runs in the same
+    environment. Rows of executions outside the part are ignored.
 
     Args:
         dataset: with the references.
         file: JSON Lines or Parquet.
         split: a split of the dataset, or "" for all executions.
-        part: of the split; one that begins so counts (`test` is all tests).
+        part: prefix of the split's parts (`test` is all tests).
         options: how to score; each execution's own rules are used.
-        workers: processes; the scores are the same for any number.
-        seen: told how many shares of them are scored.
+        workers: number of processes; the scores do not depend on it.
+        seen: reports progress.
 
     Returns:
-        the scores by id; worlds are not kept.
+        The scores by id, without worlds.
 
     Raises:
-        HearthError: what `read_pairs` raises; UNKNOWN_ID where the dataset has no such split or part.
+        HearthError: errors of `read_pairs`; UNKNOWN_ID if the dataset has no such split or part.
     """
     opened.cache_clear()
     wanted = chosen(dataset, split, part)
@@ -75,12 +75,12 @@ def judge(
     return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
 
 
-def judge_steps(
+def score_steps(
     dataset: Dataset, predicted: Iterable[tuple[str, tuple[Step, ...]]], options: Options | None = None
 ) -> list[Scored]:
-    """Score programs for executions of a dataset, each with its execution's id, in order; as `judge`, in this process.
+    """Score (execution id, program) pairs in order, as `score_dataset`, in this process.
 
-    Those of one execution should stand together: it is then read and run once.
+    Pairs of one execution should be adjacent: it is then read and run once.
     """
     return _in_shares(dataset, [Pair(name, steps, ()) for name, steps in predicted], options, 1, unseen)
 
@@ -88,10 +88,10 @@ def judge_steps(
 def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, workers: int, seen: Seen) -> list[Scored]:
     shares = [pairs[start : start + PART] for start in range(0, len(pairs), PART)]
     jobs: list[Job] = [(str(dataset.folder), share, options or Options()) for share in shares]
-    return [each for done in spread(_judged, jobs, workers, seen) for each in done]
+    return [each for done in spread(_scored_share, jobs, workers, seen) for each in done]
 
 
-def _judged(job: Job) -> list[Scored]:
+def _scored_share(job: Job) -> list[Scored]:
     folder, pairs, options = job
     dataset, homes = opened(folder)
     cases = {case["execution_id"]: case for case in stored_cases(dataset, list({pair.id for pair in pairs}))}
@@ -107,23 +107,23 @@ def _scored(
     """The scores of an execution's predictions, given with their LCS."""
     world, options = start_of(case["environment"], case["home"], homes), replace(options, rules=RULES[case["rules"]])
     program = Program(steps=steps_of(pairs[0][0].reference))
-    # To read and to apply the ticks that are stored takes four times as long as to run the program again.
+    # Reading and applying the stored ticks takes four times as long as running the program again.
     ran = run(world, program, options.rules)
     reference = Reference.of(program, world, ran.final if ran.executable else None)
     for pair, lcs in pairs:
         each = scored(pair, lcs, world.home.knowledge, world, options, reference)
-        # A world holds its whole home: of thousands only what became of them is kept.
+        # A world references its whole home: worlds are dropped, only scores are kept.
         yield replace(each, execution=each.execution and replace(each.execution, final=None))
 
 
 def _filled(pair: Pair, case: StoredCaseRow) -> Pair:
-    """A pair with its reference, and the fields it can be grouped by."""
+    """A pair with its reference, and the fields for grouping."""
     steps = program_of(case, bindings_of(case["bindings"])).steps
     return replace(pair, reference=steps, more={**pair.more, "activity": case["activity_id"], "home": case["home"]})
 
 
 def _named(dataset: Dataset) -> Named:
-    """Which executions a row without `id` is about."""
+    """A function from a row without `id` to its executions."""
     of_program: dict[str, list[str]] = {}
     there: dict[tuple[str, str], list[str]] = {}
     query = "SELECT execution_id, program_id, home FROM executions WHERE executable ORDER BY 1"
@@ -145,10 +145,10 @@ def _named(dataset: Dataset) -> Named:
 
 
 def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
-    """The ids of the executions of a part of a split that ran to their end, sorted.
+    """The ids of the executable executions in a part of a split, sorted.
 
     Raises:
-        HearthError: UNKNOWN_ID, naming what there is.
+        HearthError: UNKNOWN_ID, with the existing parts.
     """
     if not split:
         query = "SELECT execution_id FROM executions WHERE executable ORDER BY 1"
@@ -165,12 +165,12 @@ def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
 
 
 def read_line(knowledge: Knowledge, line: str) -> tuple[Step, ...] | Diagnostic:
-    """A line of a program, or a step in words: `2. Put the cup on the table`."""
+    """A line of a program, or a natural-language step: `2. Put the cup on the table`."""
     parsed = parse_steps(line)
     if not isinstance(parsed, Diagnostic):
         return parsed
-    said = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line
-    meant = understand(knowledge, said).meant if said else None
+    text = line.lstrip("0123456789.:) ").strip() if line[:1].isdigit() else line.partition(":")[2] or line
+    meant = understand(knowledge, text).meant if text else None
     if meant is None:
         return parsed
     return (Step(meant.action.name, tuple(ObjectRef(name) for name in meant.names)),)

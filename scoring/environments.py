@@ -1,4 +1,4 @@
-"""The environments that predictions are run in, as a prediction's row names them."""
+"""The environments in which predictions run, named by their rows."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from hearth.simulation.world.world import World
 from hearth.storage.names import inside
 
 Environments = Callable[[Pair], World | None]
-"""Gives the world a pair's programs start in, or None when none is known."""
+"""Gives the initial world of a pair's programs; None if unknown."""
 
 GRAPH = "graph"
 HOME = "home"
 
 
 def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: Path | None = None) -> Environments:
-    """Environments by what each row says: `graph`, a scene graph's file beside the predictions', or `home`, a name.
+    """Environments named by each row: `graph`, a scene graph's file beside the predictions', or `home`, a name.
 
     Args:
         file: the predictions; a row's path is relative to its folder.
         knowledge: of the environments.
-        graph: the environment of rows that say neither.
+        graph: the environment of rows with neither.
         homes: a folder of the user's own homes.
 
-    The result raises HearthError, naming the row, for a home or file that is not there, a file outside the folder of
-    the predictions, or one that is not a regular file.
+    The result raises HearthError, naming the row, for a missing home or file, a file outside the folder of the
+    predictions, or one that is not a regular file.
     """
 
     def environment(pair: Pair) -> World | None:
@@ -49,7 +49,7 @@ def by_row(file: Path, knowledge: Knowledge, graph: Path | None = None, homes: P
 
 
 def _at(fault: Diagnostic, pair: Pair, file: Path) -> Diagnostic:
-    """The fault, and which row asked for the file that has it."""
+    """The fault with the row that names the faulty file."""
     message = f"the environment of `{pair.id}` ({file}:{pair.line}): {fault.message}"
     return Diagnostic(fault.code, message, fault.file, suggestion=fault.suggestion)
 

@@ -1,4 +1,4 @@
-"""Every score of every prediction, and what they come to: means, intervals, errors, parts by a field."""
+"""All scores of all predictions, and their summary: means, intervals, errors, groups by a field."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Options:
     """How predictions are scored.
 
     Attributes:
-        rules: how actions are read when programs run.
-        match: how instances may stand for each other in final graphs.
-        scope: whose objects final graphs are compared about.
-        instances: whether LCS tells instances apart.
+        rules: of simulation.
+        match: assignment of instances in final graphs.
+        scope: the program whose objects are compared in final graphs.
+        instances: whether LCS distinguishes instances.
         seed: of the intervals.
     """
 
@@ -51,15 +51,15 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class Scored:
-    """One prediction's scores. What could not be asked is None; a missing prediction fails in all that could be.
+    """One prediction's scores. Scores that do not apply are None; a missing prediction fails in all that apply.
 
     Attributes:
         pair: the prediction and its reference.
         lcs: similarity of the programs.
         parse: None for a missing prediction.
         execution: None without an environment, and for a missing prediction.
-        graph: None without an environment, or when the reference itself does not run.
-        goal: how much of what the reference achieves holds; None as of `graph`, or when the prediction does not run.
+        graph: None without an environment, or if the reference does not run.
+        goal: satisfaction of the reference's achieved goal; None as for `graph`, or if the prediction does not run.
         comparable: whether the reference runs; None without an environment.
     """
 
@@ -73,12 +73,12 @@ class Scored:
 
     @property
     def missing(self) -> bool:
-        """There is no prediction."""
+        """Whether the prediction is missing."""
         return self.pair.predicted is None
 
     @property
     def empty(self) -> bool:
-        """The prediction has no lines."""
+        """Whether the prediction has no lines."""
         return self.pair.predicted == ()
 
 
@@ -109,22 +109,22 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "goal": lambda s: _goal(s, lambda found: float(found.satisfied)),
     "goal_fraction": lambda s: _goal(s, lambda found: found.fraction),
 }
-"""Every score by name, from 0 to 1; None where it can't be asked. To add a scorer: a module, a row here, a test."""
+"""Every score by name, from 0 to 1; None if it does not apply. To add a scorer: a module, a row here, a test."""
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What many scores come to.
+    """The summary of many scores.
 
     Attributes:
-        count: predictions, the missing ones included.
-        missing: of them, those that are missing and score 0.
-        empty: of them, those without a line, which parse and run; `executable_filled` leaves them out.
-        incomparable: those whose reference does not run in its environment; left out of the F1 and goal scores.
-        inexact: those whose F1 is a lower bound.
+        count: number of predictions, including missing ones.
+        missing: number of missing predictions, which score 0.
+        empty: number of predictions without lines, which parse and run; `executable_filled` excludes them.
+        incomparable: number of references that do not run; excluded from the F1 and goal scores.
+        inexact: number of predictions whose F1 is a lower bound.
         means: each score's mean and interval.
         errors: first failures by class.
-        failed_at: how many first fail at each line, from 0.
+        failed_at: number of first failures at each line, from 0.
     """
 
     count: int
@@ -138,7 +138,7 @@ class Summary:
 
 
 def signatures(options: Options) -> dict[str, str]:
-    """What each family of scores is, exactly."""
+    """The signature of each family of scores."""
     return {
         **{f"lcs_{level}": lcs_signature(level, options.instances) for level in ("step", "action", "object")},
         "parsable": PARSABLE,
@@ -182,7 +182,7 @@ def evaluate(
 
 
 def summarise(every: Sequence[Scored], seed: int = 0) -> Summary:
-    """The means of every score that could be asked of at least one prediction, and counts of the rest."""
+    """The means of every score that applies to at least one prediction, and counts of the rest."""
     columns = {name: [metric(each) for each in every] for name, metric in METRICS.items()}
     failures = [each.execution for each in every if each.execution and each.execution.error]
     return Summary(
@@ -207,12 +207,12 @@ def by_field(every: Iterable[Scored], name: str, seed: int = 0) -> dict[str, Sum
 
 
 class Reference(NamedTuple):
-    """What predictions in an environment are compared with; it runs once, whatever their number.
+    """The reference of predictions in an environment; it runs once for all of them.
 
     Attributes:
         program: bound.
-        final: the world at its end; None where it does not run.
-        goal: what it achieves there.
+        final: the world at its end; None if it does not run.
+        goal: its achieved goal.
     """
 
     program: Program
@@ -221,13 +221,13 @@ class Reference(NamedTuple):
 
     @classmethod
     def of(cls, program: Program, start: World, final: World | None) -> Reference:
-        """A program's, from the world it starts in and the one at its end."""
+        """The reference of a program, from its initial and final world."""
         return cls(program, final, goal_of(start, final) if final else None)
 
 
 @lru_cache(maxsize=64)
 def reference_of(lines: Lines, world: World, rules: Rules) -> Reference:
-    """The reference that a program is in its environment, its objects bound as `executability` says."""
+    """The reference of a program in its environment, with objects bound as in `executability`."""
     ran = executability(lines, world, rules=rules)
     return Reference.of(ran.program, world, ran.final)
 
@@ -248,7 +248,7 @@ def scored(
         knowledge: the grammar.
         world: where they start.
         options: how.
-        known: what the reference comes to, where that is known; else it is run.
+        known: the reference, if it has already run.
     """
     parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
     if world is None:

@@ -36,7 +36,7 @@ def node_ids(text: str) -> tuple[list[int], list[int]]:
     """`41,65` for both programs, or `41,65/41`: the prediction's, then the reference's.
 
     Raises:
-        HearthError: SYNTAX: something is no number.
+        HearthError: SYNTAX, if an id is not a number.
     """
     ours, _, theirs = text.partition("/")
     try:

@@ -1,4 +1,4 @@
-"""What a scorer is given - a program, a text, a list of steps - as a sequence of lines: steps, or text that is none."""
+"""Input of scorers: a program, a text or a list of steps, read as a sequence of lines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import parse_steps
 
 Line = Step | str
-"""A step, or the words of one that does not parse."""
+"""A step, or text that does not parse."""
 
 Lines = tuple[Line, ...]
 
@@ -23,11 +23,10 @@ _MARKS = ("[", "<", "(", "|")
 
 
 def read(source: Source, reader: Reader = parse_steps) -> Lines:
-    """The steps of a program in order; what does not parse stays as text, so that nothing is lost from its length.
+    """The steps of a program in order; text that does not parse is kept, so that it counts towards the length.
 
-    In a text, the lines before the first step are title and description. A text without any step has no title either:
-    each of its lines is a step that does not parse. A blank line is nothing; a line of several agents (`... | ...`) is
-    as many steps.
+    In a text, the lines before the first step are title and description; in a text without steps, every line counts as
+    a step that does not parse. Blank lines are ignored; a line of several agents (`... | ...`) gives a step for each.
     """
     if isinstance(source, Program):
         return source.steps
@@ -42,16 +41,16 @@ def steps_of(lines: Iterable[Line]) -> tuple[Step, ...]:
 
 
 def _body(text: str, reader: Reader) -> list[str]:
-    """The lines from the first step on, or all of them when there is none.
+    """The lines from the first step on, or all lines of a text without steps.
 
-    Where any line is written as a step, words before it are title and description, though they may read like steps.
+    Text before a bracketed step is title and description, even if it reads like a natural-language step.
     """
     lines = [stripped for line in text.splitlines() if (stripped := line.strip())]
     written = next((n for n, line in enumerate(lines) if line.startswith(_MARKS)), None)
     if written is not None:
         return lines[written:]
-    spoken = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)
-    return lines[spoken:]
+    first = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)
+    return lines[first:]
 
 
 def _read_lines(lines: Iterable[str | Step], reader: Reader) -> Iterator[Line]:

@@ -1,4 +1,4 @@
-"""Which nodes of an environment a predicted program means."""
+"""Binding of a predicted program's objects to nodes of its environment."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def bind(program: Program, nodes: Nodes, knowledge: Knowledge, reference: Progra
     1. the node it names, `(1.41)`;
     2. the node that the reference binds the same name and instance to;
     3. the node whose id is its number, `(41)`, if that is an instance of its class;
-    4. the first instance of its class, by id, that nothing else in the program means;
+    4. the first instance of its class, by id, to which no other object is bound;
     5. none: running it then fails as UNBOUND.
 
     Args:
         program: canonical names.
         nodes: of the environment.
-        knowledge: by which other names an object may stand in a graph.
+        knowledge: for synonyms of classes.
         reference: bound, in the same environment.
     """
     every = program.objects()

@@ -15,12 +15,12 @@ from hearth.scoring.lines import Source
 from hearth.storage.inputs import LARGEST_TABLE, read_input
 
 PARQUET = b"PAR1"
-"""How a Parquet file begins, whatever its name."""
+"""First bytes of a Parquet file, whatever its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row with its id as text, and where it stands."""
+    """One row with its id as text, and its line."""
 
     id: str
     values: Mapping[str, Any]
@@ -28,26 +28,26 @@ class Row:
 
 
 Named = Callable[[Mapping[str, Any]], Sequence[str]]
-"""The ids that a row without one is about, by its other columns; none where it has not the columns either."""
+"""Gives the ids of a row without `id` by its other columns; empty if it lacks them too."""
 
 
 def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> Iterator[Row]:
-    """The rows that have these columns, the first of which is the id; the others' faults are added to `faults`.
+    """The rows with all of these columns, the first of which is the id; faults of other rows are added to `faults`.
 
     Args:
         path: JSON Lines or Parquet.
-        columns: that every row needs.
-        faults: gets what is wrong with rows.
-        named: says which ids rows are about that have none.
+        columns: required columns.
+        faults: gets the faults of rows.
+        named: gives the ids of rows without one.
 
     Raises:
-        HearthError: there is no such file, or it is neither JSON Lines nor Parquet.
+        HearthError: the file is missing, or is neither JSON Lines nor Parquet.
     """
     data = read_input(path, LARGEST_TABLE)
     needed = columns[1:] if named else columns
     records = _parquet(path, needed) if data.startswith(PARQUET) else _json_lines(data, path, faults)
     for line, given in records:
-        values, *more = _told_apart(given, columns[0], named)
+        values, *more = _with_ids(given, columns[0], named)
         yield from (Row(each[columns[0]], each, line) for each in more)
         missing = [name for name in columns if name not in values]
         if missing:
@@ -61,15 +61,15 @@ def rows_of(path: Path, columns: Sequence[str], faults: list[Diagnostic], named:
         yield Row(str(name), values, line)
 
 
-def _told_apart(values: dict[str, Any], column: str, named: Named | None) -> list[dict[str, Any]]:
-    """The row with its id, once for each that it is about."""
+def _with_ids(values: dict[str, Any], column: str, named: Named | None) -> list[dict[str, Any]]:
+    """The row, once for each of its ids."""
     if named is None or column in values:
         return [values]
     return [{**values, column: name} for name in named(values)] or [values]
 
 
 def source_of(value: Any) -> Source | None:
-    """A value as a program - a text, or a list of texts and of steps as the published tables have them - or None."""
+    """A value as a program: a text, or a list of texts and of steps as in the published tables; else None."""
     if isinstance(value, str):
         return value
     if not isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Prediction files: one row an id, with the predicted program and, unless they come apart, the reference."""
+"""Prediction files: one row per id, with the predicted program and, unless in a separate file, the reference."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Pair:
     """One id's prediction and reference.
 
     Attributes:
-        id: what the file calls it.
-        predicted: the lines of the prediction; None when it is missing.
+        id: as in the file.
+        predicted: the lines of the prediction; None if it is missing.
         reference: the lines of the reference.
-        line: where the prediction stands in its file (a row of a Parquet file), from 1; 0 when it is missing.
+        line: the prediction's line (or row of a Parquet file), from 1; 0 if it is missing.
         more: the other fields of the prediction's row.
     """
 
@@ -51,14 +51,14 @@ def read_pairs(
 
     Args:
         path: the predictions.
-        references: a file of `id` and `reference`, or programs by id, when the predictions' file has none. Ids that
-            only the references have are missing predictions; pairs come in the references' order.
-        reader: reads one line of a program; give another for steps in words.
-        named: which of the references' ids a row is about that has no `id`, by its other columns.
+        references: a file of `id` and `reference`, or programs by id, if the predictions' file has none. Ids of the
+            references only are missing predictions; pairs are in the references' order.
+        reader: reads one line of a program; pass another for natural-language steps.
+        named: gives the ids of a row without `id`, by its other columns.
 
     Raises:
-        HearthError: what is not such a file, missing columns, rows that are no objects, duplicate and unknown ids; each
-            with the file and its line.
+        HearthError: unreadable files, missing columns, rows that are not objects, duplicate and unknown ids; each with
+            the file and its line.
     """
     faults: list[Diagnostic] = []
     if references is None:
@@ -86,7 +86,7 @@ def _references(references: Path | Mapping[str, Source], reader: Reader, faults:
 
 
 def _rows(path: Path, columns: Sequence[str], faults: list[Diagnostic], named: Named | None = None) -> list[Row]:
-    """The rows of a file that have an id of their own; what is wrong with the others is added to the faults."""
+    """The rows of a file with unique ids; faults of the others are added to `faults`."""
     rows: dict[str, Row] = {}
     for row in rows_of(path, columns, faults, named):
         first = rows.setdefault(row.id, row)
@@ -119,7 +119,7 @@ def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) ->
 
     unknown = [row for row in rows if row.id not in known]
     for number, row in enumerate(unknown):
-        # Looking for near ones takes long among many ids; what is not shown needs none.
+        # Searching similar names is slow among many ids; faults that are not shown need none.
         near = get_close_matches(row.id, known, n=1) if number < SHOWN else []
         suggestion = f"did you mean `{near[0]}`?" if near else "ids are those of the references"
         yield Diagnostic(
@@ -128,7 +128,7 @@ def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) ->
 
 
 def _shortened(faults: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
-    """The first faults of each kind, and how many more there are."""
+    """The first faults of each kind, and the number of further ones."""
     counts: dict[Code, int] = {}
     for fault in faults:
         counts[fault.code] = counts.get(fault.code, 0) + 1

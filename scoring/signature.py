@@ -1,9 +1,9 @@
-"""Signatures: everything about a score that changes its value, in one short string beside it."""
+"""Signatures: a short string with every option that changes a score's value."""
 
 from __future__ import annotations
 
 VERSION = "v1"
-"""Raised whenever the same input could score differently."""
+"""Incremented whenever the same input could score differently."""
 
 
 def signature(name: str, **options: object) -> str:

@@ -1,1 +1,1 @@
-"""A published dataset in other forms: the release's layout, words, JSON Lines, Python, graphs, triples."""
+"""Export of datasets: the release's layout, natural language, JSON Lines, Python, graphs, PDDL, triples."""

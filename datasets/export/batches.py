@@ -1,4 +1,4 @@
-"""What exporters read: programs, and runs with their programs, a batch in memory at a time."""
+"""Programs, and runs with their programs, read in batches for exporters."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _BATCH = 128
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """Which programs to export.
+    """A selection of programs to export.
 
     Attributes:
         programs: their ids; empty for all.
-        limit: at most so many; None for all.
+        limit: greatest number of programs; None for all.
     """
 
     programs: tuple[str, ...] = ()
@@ -54,13 +54,13 @@ def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[ProgramRow, Run]]:
 
 def stream(dataset: Dataset, query: str, asked: dict[str, Any]) -> Iterator[Any]:
     """The rows of a query."""
-    # A cursor of its own: a connection has one open result, and homes are read meanwhile.
+    # A separate cursor: a connection has one open result, and homes are read meanwhile.
     with reading(dataset.folder), dataset.connection.cursor() as cursor:
         for batch in cursor.sql(query, params=asked or None).to_arrow_reader(_BATCH):
             yield from batch.to_pylist()
 
 
 def write(path: Path, data: bytes) -> None:
-    """Write a file, making its folder."""
+    """Write a file, and create its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)

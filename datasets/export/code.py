@@ -1,4 +1,4 @@
-"""`code`: programs as Python functions, as planners are prompted with."""
+"""`code`: programs as Python functions, a prompt format of planners."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from hearth.schemas.rows import ProgramRow
 
 
 def code(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """One module, `programs.py`: a function a program, a call a step, objects as `'cup_1'`.
+    """One module, `programs.py`: a function per program, a call per step, objects as `'cup_1'`.
 
     Returns:
-        how many programs.
+        Number of programs.
     """
     used: set[str] = set()
     actions: set[str] = set()

@@ -1,4 +1,4 @@
-"""Every form a dataset can be exported in."""
+"""Every export format of datasets."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.code import code
 from hearth.datasets.export.graphs import graphml, node_link
 from hearth.datasets.export.json_lines import jsonl
+from hearth.datasets.export.natural_language import nl
 from hearth.datasets.export.problems import pddl
 from hearth.datasets.export.release_layout import release
 from hearth.datasets.export.triples import rdf
-from hearth.datasets.export.words import nl
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -27,7 +27,7 @@ FORMATS: dict[str, Callable[[Dataset, Path, Wanted], int]] = {
     "rdf": rdf,
     "pddl": pddl,
 }
-"""Writes a dataset, or some of its programs, into a folder; returns how many things were written."""
+"""Each writes a dataset, or some of its programs, into a folder and returns the number of written items."""
 
 COUNTED = {
     "release": "execution",
@@ -36,14 +36,14 @@ COUNTED = {
     "graphml": "execution",
     "pddl": "problem",
 }
-"""What a form counts, where that is not programs."""
+"""The items that a format counts, if not programs."""
 
 
 def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) -> int:
     """Write a dataset in one of `FORMATS` into a folder.
 
     Raises:
-        HearthError: the form is unknown, a program asked for is not there, or the folder is not empty.
+        HearthError: the form or a program's id is unknown, or the folder is not empty.
 
     Examples:
         >>> hearth.export(hearth.load(folder), "nl", Path("words"))
@@ -52,7 +52,7 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
         ['chat.jsonl', 'examples.json', 'steps.jsonl']
     """
     if form not in FORMATS:
-        raise HearthError.of(Code.UNSUPPORTED_FILE, f"`{form}` is no form", suggestion=f"one of {', '.join(FORMATS)}")
+        raise HearthError.of(Code.UNSUPPORTED_FILE, f"unknown form `{form}`", suggestion=f"one of {', '.join(FORMATS)}")
     wanted = wanted or Wanted()
     missing = [name for name in wanted.programs if name not in dataset]
     if missing:

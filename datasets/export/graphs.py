@@ -1,4 +1,4 @@
-"""`networkx` and `graphml`: the graphs a run starts and ends with, for other tools."""
+"""`networkx` and `graphml`: the initial and final graph of each run, for other tools."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def node_link(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """`EXECUTION.start.json` and `.final.json`, in networkx's node-link form.
+    """`EXECUTION.start.json` and `.final.json`, in networkx's node-link format.
 
     Returns:
-        how many executions.
+        Number of executions.
     """
     import networkx
     import orjson
@@ -30,17 +30,17 @@ def node_link(dataset: Dataset, to: Path, wanted: Wanted) -> int:
 
 
 def graphml(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """`EXECUTION.start.graphml` and `.final.graphml`; lists as words with spaces between.
+    """`EXECUTION.start.graphml` and `.final.graphml`; lists as words separated by spaces.
 
     Returns:
-        how many executions.
+        Number of executions.
     """
     import networkx
 
     def written(graph: networkx.MultiDiGraph) -> bytes:
         flat: networkx.MultiDiGraph = networkx.MultiDiGraph()
-        for node, told in graph.nodes(data=True):
-            flat.add_node(node, **{name: _plain(value) for name, value in told.items()})
+        for node, attributes in graph.nodes(data=True):
+            flat.add_node(node, **{name: _plain(value) for name, value in attributes.items()})
         for source, target, relation in graph.edges(keys=True):
             flat.add_edge(source, target, key=relation, relation=relation)
         return "\n".join(networkx.generate_graphml(flat)).encode() + b"\n"

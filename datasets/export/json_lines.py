@@ -1,4 +1,4 @@
-"""`jsonl`: every table as JSON Lines, nested values as they are."""
+"""`jsonl`: every table as JSON Lines, with nested values."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _OF_PROGRAMS = ("programs", "environments", "executions", "repairs", "sketches")
 
 
 def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """One file a table, one line a row; tables about programs have only the rows of the programs asked for.
+    """One file per table, one line per row; tables about programs have only rows of the selected programs.
 
     Returns:
-        how many lines, all files together.
+        Number of lines in all files.
     """
     chosen, asked = wanted.chosen()
     lines = 0

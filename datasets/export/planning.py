@@ -1,8 +1,8 @@
-"""Do a planner and the engine agree? Problems solved by Fast Downward, and the plans run here.
+"""Agreement of a planner with the engine: problems are solved by Fast Downward, and the plans run in the engine.
 
-Three things make the search short, besides the pruning of `problems`: actions that cannot help are left out, those
-that change nothing and those that do what others do (`dispensable`); so are actions for which the problem has no
-objects; and things must be CLOSE themselves, where the engine also takes what is near something that is.
+Besides the pruning of `problems`, three measures shorten the search: actions without an effect or with a substitute are
+omitted (`dispensable`); actions without objects in the problem are omitted; and objects must themselves be CLOSE, while
+the engine also accepts objects next to a CLOSE one.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ from hearth.simulation.engine import run
 from hearth.storage.parallel import Seen, spread, unseen
 
 LIMIT = 60
-"""Seconds of search a problem."""
+"""Seconds of search per problem."""
 
 STEP = 61
-"""Every how many-th execution is asked, so that a few hundred come from all over a dataset."""
+"""Stride between selected programs, which spreads a few hundred over the whole dataset."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of one problem.
+    """The result of one problem.
 
     Attributes:
         task: the problem.
-        status: the planner's word.
+        status: the planner's status.
         plan: the plan as our steps; None without one.
-        ran: the engine did all of it.
-        reached: and the goal held at its end.
-        failure: why not.
+        ran: whether the engine executed all of it.
+        reached: whether the goal held at its end.
+        failure: the message of the failure, or "".
     """
 
     task: Task
@@ -56,17 +56,17 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """How planner and engine agree.
+    """Agreement of planner and engine.
 
     Attributes:
-        problems: problems parsed and given to the planner.
-        solved: of them, those that it found a plan for.
-        ran: plans that the engine does to their end.
-        reached: plans after which the goal holds.
-        statuses: the planner's words for those without a plan.
-        objects: things in a problem on average, and in the home it is cut from.
-        steps: steps of a plan on average.
-        disagreements: a line each.
+        problems: number of problems given to the planner.
+        solved: number of problems with a plan.
+        ran: number of plans that the engine executes to their end.
+        reached: number of plans after which the goal holds.
+        statuses: the planner's statuses of problems without a plan, with counts.
+        objects: mean number of objects in a problem, and in its home.
+        steps: mean number of steps in a plan.
+        disagreements: one line each.
     """
 
     problems: int
@@ -80,7 +80,7 @@ class Agreement:
 
 
 def agreement(dataset: Dataset, problems: int, workers: int = 1, seen: Seen = unseen) -> Agreement:
-    """Solve problems from all over a dataset in so many processes and run the plans; `seen` is told how many of them.
+    """Solve problems from all over a dataset in `workers` processes and run the plans; `seen` reports progress.
 
     Raises:
         HearthError: MISSING_FILE, when unified-planning or Fast Downward is not installed.
@@ -89,7 +89,7 @@ def agreement(dataset: Dataset, problems: int, workers: int = 1, seen: Seen = un
 
 
 def chosen(dataset: Dataset, problems: int) -> Iterator[Task]:
-    """So many tasks, one a program: of every `STEP`-th program first, then of those after them."""
+    """`problems` tasks, at most one per program: of every `STEP`-th program first, then of the programs after them."""
     names = list(dataset)
     apart = [name for start in range(min(STEP, len(names))) for name in names[start::STEP]]
     found = (task for start in range(0, len(apart), ASKED) for task in _firsts(dataset, apart[start : start + ASKED]))
@@ -97,11 +97,11 @@ def chosen(dataset: Dataset, problems: int) -> Iterator[Task]:
 
 
 ASKED = 32
-"""Programs that a dataset is asked for at once: asking for one takes as long."""
+"""Programs read in one query: a query for one takes as long."""
 
 
 def _firsts(dataset: Dataset, names: list[str]) -> Iterator[Task]:
-    """The first task of each program that has any, in the order of the names."""
+    """The first task of each program with a task, in the order of the names."""
     found: dict[str, Task] = {}
     for task in tasks(dataset, Wanted(tuple(names))):
         found.setdefault(task.program_id, task)
@@ -109,9 +109,9 @@ def _firsts(dataset: Dataset, names: list[str]) -> Iterator[Task]:
 
 
 def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
-    """Actions a plan never needs, and those that do what they do wherever it can be done.
+    """Actions that a plan never needs -> their substitutes, which have the same effect in every applicable state.
 
-    Facing something is only needed for what changes nothing.
+    FACING is a precondition only of actions without an effect.
     """
     variants = [knowledge.actions[name] for name in sorted(knowledge.group("variant"))]
     plain = [action for action in knowledge.actions.values() if action.name not in knowledge.group("variant")]
@@ -120,7 +120,7 @@ def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
 
 
 def helpful(task: Task) -> tuple[str, ...]:
-    """The actions a plan may need: those that change something, and for which the problem has objects."""
+    """The actions that a plan may need: those with an effect, and with objects in the problem."""
     home = task.world.home
     there = sum(1 << home.index[node] for node in task.objects)
     spare = dispensable(home.knowledge)
@@ -149,7 +149,7 @@ def solve(task: Task) -> Outcome:
         planning_domain(task.world.home.knowledge, helpful(task), loose=False), problem(task)
     )
     options = {"fast_downward_search_time_limit": f"{LIMIT}s"}
-    # Fast Downward writes its `output.sas` where it is started: two at once would read each other's.
+    # Fast Downward writes `output.sas` into its working directory: two at once would read each other's.
     with OneshotPlanner(name="fast-downward", params=options) as planner, TemporaryDirectory() as own, chdir(own):
         result = planner.solve(parsed)
     status = PlanGenerationResultStatus(result.status).name
@@ -170,14 +170,14 @@ def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
 
 
 def executed(task: Task, status: str, plan: tuple[Step, ...]) -> Outcome:
-    """What the engine makes of a plan."""
+    """Run a plan in the engine."""
     execution = run(task.world, Program(steps=plan))
     failure = execution.failure.message() if execution.failure else ""
     return Outcome(task, status, plan, not failure, not failure and task.reached(execution.final), failure)
 
 
 def summary(outcomes: list[Outcome]) -> Agreement:
-    """Counts, and where they disagree."""
+    """Counts of outcomes, and the disagreements."""
     solved = [outcome for outcome in outcomes if outcome.plan is not None]
     wrong = [outcome for outcome in solved if not outcome.reached]
     several = max(len(outcomes), 1)

@@ -1,6 +1,6 @@
 """The executed actions as a PDDL domain that planners without axioms can read.
 
-`kb.tools.pddl.domain` writes derived predicates as axioms, which few planners take. Here they are written out where
+`kb.tools.pddl.domain` writes derived predicates as axioms, which few planners support. Here they are expanded where
 they are used, and the character is an object of type `agent`. Every thing of a problem has an INSIDE edge to its room
 from the start; all actions keep it so, and a room is found without following containers. Left out are two actions
 (`OMITTED`), the place that Grab remembers for one of them, and that what is watched must be on, which is an option.
@@ -23,11 +23,11 @@ from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
 
 OMITTED = frozenset({"Find", "PutObjBack"})
-"""What they do depends on things that problems leave out: what else is near, and where a thing stood. Walk, PutBack and
-PutIn do the same."""
+"""Their effects depend on facts that problems omit: nearby objects, and former places of objects. Walk, PutBack and
+PutIn replace them."""
 
 TO_DOOR = "WalkToDoor"
-"""A Walk in our words."""
+"""A Walk in our programs."""
 
 
 def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bool = True) -> str:
@@ -36,8 +36,8 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
     Args:
         knowledge: of which the executed actions are written.
         actions: only these; all if none.
-        loose: whether to be close to something that is close to a thing, or under it, is to be close to it (semantics:
-            the loose rule). Without it there are fewer ways to do a thing, so that a planner decides faster; its plans
+        loose: whether the character is also close to things next to or on a CLOSE one (semantics: the loose rule).
+            Without it there are fewer ways to satisfy a precondition and planners are faster; their plans
             are plans with it, too.
     """
     executed = {name for name, action in knowledge.actions.items() if action.executed} - OMITTED
@@ -68,16 +68,16 @@ def relation_predicate(name: str) -> str:
 
 _STOPPED = """(exists (?d - object ?r - object ?q - object)\
  (and (is-closed ?d) (blocks ?d ?r ?q) (inside ?a ?r) (or (= ?o ?q) (inside ?o ?q))))"""
-"""A closed door parts the character from the object's room."""
+"""A closed door separates the character from the object's room."""
 
 _STOPPED_BY_ITSELF = """(exists (?r - object ?q - object)\
  (and (inside ?a ?r) (inside ?o ?q) (is-closed ?o) (blocks ?o ?r ?q)\
  (not (exists (?d - object) (and (is-closed ?d) (blocks ?d ?r ?q) (not (= ?d ?o)))))))"""
-"""The object is a closed door that parts the character from its room, and no other closed one does."""
+"""The object is the only closed door that separates the character from its room."""
 
 
 class _Writer(Writer):
-    """Derived predicates are written out; every bound variable gets a name of its own."""
+    """Expands derived predicates; every bound variable gets a unique name."""
 
     agent, typed = " - agent", " - object"
 
@@ -88,13 +88,13 @@ class _Writer(Writer):
         self._numbers = count(1)
 
     def action(self, action: Action, name: str = "", more: Iterable[str] = ()) -> Iterator[str]:
-        """The lines of one action; closed doors stop a walk."""
+        """The lines of one action; closed doors block a walk."""
         self._numbers = count(1)
         stopped = [f"(not {_STOPPED})"] if action.name in self.knowledge.group("walks") else []
         return super().action(action, name, more or stopped)
 
     def to_door(self, walk: Action) -> list[str]:
-        """A walk to a closed door with its room behind it, no other in between: it ends in the room on this side."""
+        """A walk to the only closed door before its room: it ends in the room on this side."""
         self._on_own_side = True
         lines = list(self.action(walk, TO_DOOR, [_STOPPED_BY_ITSELF]))
         self._on_own_side = False
@@ -109,7 +109,7 @@ class _Writer(Writer):
         return relation_predicate(name)
 
     def derived(self, literal: Literal[Term], names: Names) -> str:
-        """What a derived predicate means."""
+        """The definition of a derived predicate."""
         if literal.name == "close" and not self._loose:
             return self.plain(literal._replace(name="CLOSE"), names)
         head, body = self.knowledge.derived[literal.name]
@@ -126,7 +126,7 @@ class _Writer(Writer):
         return f"(and (is-room {variable}) (or (= {thing} {variable}) (inside {thing} {variable})))"
 
     def changes(self, effect: Effect) -> Iterator[Effect]:
-        """An effect as one or more; those of places are left out."""
+        """An effect as one or more effects, without those on remembered places."""
         literal = effect.literal
         if literal.name == "REMEMBERS" or any(term.function == "place" for term in literal.terms):
             return iter(())

@@ -1,8 +1,8 @@
 """`pddl`: a planning domain from the knowledge of actions, and a problem for every execution.
 
-A problem begins as the execution did; its goal is what the execution changed: states, and the ON, INSIDE and HOLDS
-edges of the things it moved, those that ended included. CLOSE and FACING, which say only where the character stood, are
-no goals.
+A problem has the execution's initial state; its goal is the execution's changes: states, and the added and removed ON,
+INSIDE and HOLDS edges of the things that it moved. CLOSE and FACING, which describe only the character's position, are
+not goals.
 
 Left out of a problem are things that cannot matter to it. What remains: the character and what it holds, what the goal
 names, what these are INSIDE, up to their rooms, what is ON a seat or bed among them, and every door that is closed or
@@ -33,20 +33,20 @@ from hearth.simulation.world.world import World
 from hearth.storage.names import file_name, inside
 
 WANTED = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
-"""Relations that a goal is about."""
+"""Relations of goals."""
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What a planner is asked.
+    """A planning task.
 
     Attributes:
         name: of the execution.
         world: the start.
-        objects: node ids that are part of the problem.
-        states: (node, state, whether it is to hold).
-        edges: (edge, whether it is to hold).
-        program_id: of the program that was executed.
+        objects: node ids in the problem.
+        states: (node, state, whether it shall hold).
+        edges: (edge, whether it shall hold).
+        program_id: of the executed program.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Task:
     program_id: str = ""
 
     def reached(self, final: World) -> bool:
-        """Whether a world is as wanted."""
+        """Whether a world satisfies the goal."""
         now = {edge for edge in final.edges() if edge.relation in WANTED}
         return all(final.has_state(node, state) is holds for node, state, holds in self.states) and all(
             (edge in now) is holds for edge, holds in self.edges
@@ -65,10 +65,10 @@ class Task:
 
 
 def pddl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """`domain.pddl` and `problems/EXECUTION.pddl`; executions that changed nothing lasting have no goal and no problem.
+    """`domain.pddl` and `problems/EXECUTION.pddl`; executions without lasting changes have no goal and no problem.
 
     Returns:
-        how many problems.
+        Number of problems.
     """
     write(to / "domain.pddl", planning_domain(dataset.knowledge).encode())
     number = 0
@@ -93,7 +93,7 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
 
 
 def _goal(run: Run) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
-    """What all ticks together came to: what came and went again is none of it."""
+    """The net change of all ticks."""
     whole = compose(map(change_of, run.row["ticks"]))
     states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
     edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
@@ -124,7 +124,7 @@ def _objects(world: World, nodes: set[int]) -> list[int]:
 
 
 def _closable(world: World, named: int) -> int:
-    """The doors that are closed at some time: those that are at the start, and those that the goal is about."""
+    """The doors that are closed at the start or named by the goal."""
     home = world.home
     return home.doors & (named | world.states[STATE_ID["CLOSED"]])
 
@@ -155,7 +155,7 @@ def problem(task: Task) -> str:
 
 
 def object_names(task: Task) -> dict[int, str]:
-    """What each node is called: `coffee_table_41`."""
+    """The PDDL name of each node: `coffee_table_41`."""
     home = task.world.home
     return {node: f"{_word(home.classes[home.index[node]])}_{node}" for node in task.objects}
 
@@ -191,8 +191,8 @@ def _facts(task: Task, names: dict[int, str]) -> Iterator[str]:
 
 
 def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
-    """Which of the problem's doors, when closed, part which of its rooms, be it together with others of them; and for
-    each door, from where one gets to which room beside it without going through it.
+    """The rooms that each door, when closed, separates, alone or together with other doors; and for each door, the
+    rooms from which each adjacent room is reachable without passing it.
     """
     home = task.world.home
     there = mask_of(home.index[node] for node in task.objects)
@@ -214,11 +214,11 @@ def _blocked(task: Task, names: dict[int, str]) -> Iterator[str]:
 
 
 _TOGETHER = 3
-"""How many doors are closed together at most to see what they part."""
+"""Greatest number of doors that are considered together."""
 
 
 def _reached(home: Home, room: int, closed: int) -> int:
-    """The rooms that can be walked to from a room with some doors closed."""
+    """The rooms reachable from a room with some doors closed."""
     reached, open_doors = 1 << room, home.doors & ~closed
     while True:
         more = reached
@@ -231,7 +231,7 @@ def _reached(home: Home, room: int, closed: int) -> int:
 
 
 def _kinds(world: World, i: int, known: set[str]) -> Iterator[str]:
-    """What a thing is, and the states it is in."""
+    """The facts about a thing's kind and states."""
     home = world.home
     bit, name = 1 << i, home.classes[i]
     if home.rooms & bit:

@@ -1,4 +1,4 @@
-"""`release`: the original layout, so that code written for it runs, and ingest reads it back."""
+"""`release`: the original release's layout, readable by code written for it and by `ingest`."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ ROOT = "programs_processed_precond_nograb_morepreconds"
 
 
 def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """Programs as collected, their preconditions, programs grounded in homes, and the graphs before and after.
+    """Programs as collected, their preconditions, grounded programs, and initial and final graphs.
 
-    A program of the release has its own place again; another one is in a batch named by its origin.
+    A program of the release keeps its path; another is in a batch named by its origin.
 
     Returns:
-        how many executions.
+        Number of executions.
     """
     root = to / ROOT
     for row in programs(dataset, wanted):
@@ -50,7 +50,7 @@ def stem(program_id: str) -> str:
 
 
 def print_grounded(program: Program) -> str:
-    """A bound program as the release writes it: actions in capitals, `(1.41)` where an object is bound."""
+    """A bound program in the release's format: actions in capitals, `(1.41)` for a bound object."""
     head = f"{program.title}\n{program.description}\n\n\n"
     lines = []
     for number, step in enumerate(program.steps):
@@ -60,8 +60,8 @@ def print_grounded(program: Program) -> str:
 
 
 def _conditions(run: Run) -> list[dict[str, Any]]:
-    told = []
+    rows = []
     for condition in run.conditions:
         objects = [[ref["name"], str(ref["instance"])] for ref in condition["objects"]]
-        told.append({condition["name"]: objects[0] if len(objects) == 1 else objects})
-    return told
+        rows.append({condition["name"]: objects[0] if len(objects) == 1 else objects})
+    return rows

@@ -1,4 +1,4 @@
-"""`rdf`: programs, their steps and what is known of actions and objects, as Turtle."""
+"""`rdf`: programs, their steps and the knowledge of actions and objects, as Turtle."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def rdf(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     """`programs.ttl` and `knowledge.ttl`.
 
     Returns:
-        how many programs.
+        Number of programs.
     """
     to.mkdir(parents=True, exist_ok=True)
     number = 0
@@ -71,7 +71,7 @@ def _knowledge(knowledge: Knowledge) -> Iterator[str]:
 
 
 def iri(kind: str, name: str) -> str:
-    """An identifier that is valid whatever is in the name."""
+    """A valid identifier for any name."""
     return f"<{PREFIX.rstrip('#')}/{kind}/{quote(name, safe='')}>"
 
 
@@ -79,6 +79,6 @@ _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\
 
 
 def text(value: str | None) -> str:
-    """A literal; control characters that Turtle does not allow are left out."""
-    said = "".join(char for char in value or "" if char >= " " or char in "\n\r\t")
-    return f'"{said.translate(_ESCAPES)}"'
+    """A literal, without the control characters that Turtle forbids."""
+    cleaned = "".join(char for char in value or "" if char >= " " or char in "\n\r\t")
+    return f'"{cleaned.translate(_ESCAPES)}"'

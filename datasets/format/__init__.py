@@ -1,1 +1,1 @@
-"""The form in which datasets are published: codecs, ids, splits, card, croissant, catalog."""
+"""The published format of datasets: codecs, ids, splits, card, croissant, catalog."""

@@ -1,4 +1,4 @@
-"""The dataset card: `README.md` beside the tables, for people, with the header that `datasets.load_dataset` reads."""
+"""The dataset card: `README.md` beside the tables, with the header that `datasets.load_dataset` reads."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ NAME = "README.md"
 
 
 def write_card(folder: Path) -> None:
-    """Describe a dataset's folder: counts, tables and columns, where records went, splits and what leaks, licences."""
+    """Write the card of a dataset's folder: counts, tables and columns, ledger, splits and leakage, licences."""
     write_bytes(folder / NAME, "\n".join(card(folder)).encode() + b"\n")
 
 
 def card(folder: Path) -> Iterator[str]:
-    """The card's lines."""
+    """The lines of the card."""
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
     yield from _header(counts)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
@@ -69,9 +69,9 @@ def _tables(counts: dict[str, int]) -> Iterator[str]:
     for table, schema in TABLES.items():
         yield from (f"### {table} ({counts[table]:,} rows)", "", "| column | type | meaning |", "|---|---|---|")
         for column in schema:
-            told = (column.metadata or {}).get(b"comment", b"").decode()
+            comment = (column.metadata or {}).get(b"comment", b"").decode()
             kind = str(column.type).split("<")[0].replace("string", "text")
-            yield f"| `{column.name}` | {kind} | {_cell(told)} |"
+            yield f"| `{column.name}` | {kind} | {_cell(comment)} |"
         yield ""
 
 
@@ -86,9 +86,9 @@ def _ledger(folder: Path) -> Iterator[str]:
 
 
 def _splits(folder: Path) -> Iterator[str]:
-    told: dict[str, Any] = orjson.loads((folder / "splits.json").read_bytes())["splits"]
+    splits: dict[str, Any] = orjson.loads((folder / "splits.json").read_bytes())["splits"]
     yield from ("## Splits", "", "Table `splits` has the part of every execution in every split.", "")
-    for name, split in told.items():
+    for name, split in splits.items():
         parts = ", ".join(f"{part} {number:,}" for part, number in split["runs"].items())
         yield f"- `{name}`: {split['rule']}. Executions: {parts}. {_leaks(split)}"
     yield ""
@@ -97,8 +97,8 @@ def _splits(folder: Path) -> Iterator[str]:
 def _leaks(split: dict[str, Any]) -> str:
     mine, random = split["leakage"], split["at_random"]
     kinds = {"siblings": "siblings", "steps": "near-duplicate steps", "texts": "near-duplicate texts"}
-    said = (f"{kinds[kind]} {mine[kind]:,} (dealt at random: {random[kind]:,})" for kind in kinds)
-    return f"Of {mine['programs']:,} test programs, those with something of theirs in train: {', '.join(said)}."
+    leaks = (f"{kinds[kind]} {mine[kind]:,} (random split: {random[kind]:,})" for kind in kinds)
+    return f"Of {mine['programs']:,} test programs, those with a relative in train: {', '.join(leaks)}."
 
 
 def _sources(folder: Path) -> Iterable[str]:

@@ -1,4 +1,4 @@
-"""Cases: a program in an environment, run; as rows, and rebuilt from rows (the tables' `CASE`)."""
+"""Cases, programs run in environments: written as rows, and rebuilt from rows (the tables' `CASE`)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _SYMMETRIC = "CLOSE"
 
 
 def environment_of(environment: Environment, edges: frozenset[Edge]) -> DifferenceRow:
-    """A sampled environment as a row, at a cost that follows what differs.
+    """A sampled environment as a row, at a cost proportional to its difference from the home.
 
     Args:
         environment: as sampled.
@@ -70,22 +70,22 @@ def _restated(home: Home, states: Mapping[int, Iterable[str]]) -> tuple[tuple[St
 
 
 def difference_of(world: World, home: Home, edges: frozenset[Edge]) -> DifferenceRow:
-    """A world of any home, at its start, as what differs from another home, as a row.
+    """The difference of an initial world from another home, as a row.
 
     Args:
-        world: a start.
-        home: what to compare it with.
+        world: an initial world.
+        home: the home to compare it with.
         edges: those of `home`.
     """
     return environment_row(encode_whole(World.start(home), world, edges))
 
 
 _without = lru_cache(maxsize=32)(without)
-"""Many environments of one home go without the same."""
+"""Cached: many environments of one home lack the same nodes."""
 
 
 def home_of(environment: DifferenceRow, base: Home) -> Home:
-    """The home that a row describes."""
+    """The home of a row's environment."""
     change = environment_change(environment)
     if change.removed_nodes:
         base = _without(base, change.removed_nodes)
@@ -93,19 +93,19 @@ def home_of(environment: DifferenceRow, base: Home) -> Home:
 
 
 class Source(Protocol):
-    """Where homes come from: a build's, or a dataset's own."""
+    """A source of homes: a build, or a dataset."""
 
     def home(self, name: str) -> Home:
-        """The home that environments of that name differ from."""
+        """The home of that name."""
 
 
 def start_of(environment: DifferenceRow, home: str, homes: Source) -> World:
-    """The world that an environment of a home is."""
+    """The initial world of an environment."""
     return World.start(home_of(environment, homes.home(home)))
 
 
 def run_row(execution: Execution, rules: str) -> RunRow:
-    """What a run says, as columns of a row."""
+    """The columns of a run."""
     return {
         "rules": rules,
         "bindings": binding_rows(execution.program),
@@ -116,18 +116,18 @@ def run_row(execution: Execution, rules: str) -> RunRow:
 
 
 def rerun(case: CaseRow, homes: Source) -> Execution:
-    """Run a case again, from nothing but its row and its home."""
+    """Run a case again, from its row and its home."""
     program = program_of(case, bindings_of(case["bindings"]))
     return run(start_of(case["environment"], case["home"], homes), program, RULES[case["rules"]])
 
 
 def difference_on_replay(case: CaseRow, homes: Source) -> str:
-    """How running a case again differs from what its row says; empty when it does not."""
+    """The difference between a case's replay and its row; empty if they agree."""
     execution = rerun(case, homes)
     if (execution.failure and failure_row(execution.failure)) != case["failure"]:
-        said = case["failure"]["code"] if case["failure"] else "no failure"
+        expected = case["failure"]["code"] if case["failure"] else "no failure"
         found = execution.failure.message() if execution.failure else "it runs to its end"
-        return f"the row says {said}, but {found}"
+        return f"the row says {expected}, but {found}"
     changes = execution.changes()
     if len(changes) != len(case["ticks"]):
         return f"the row has {len(case['ticks'])} ticks, the run {len(changes)}"

@@ -1,4 +1,4 @@
-"""The catalog: views and macros over a dataset's files, as a DuckDB file and as the SQL that makes it."""
+"""The catalog: views and macros over a dataset's files, as a DuckDB file and as SQL."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SQL = "catalog.sql"
 
 
 def statements(root: str = "") -> str:
-    """The SQL of the catalog; `root` is put in front of every path."""
+    """The SQL of the catalog; `root` is the prefix of every path."""
     text = (files("hearth.datasets.format") / "catalog.sql").read_text("utf-8")
     return text.format(root=root.replace("'", "''"))
 
@@ -28,12 +28,12 @@ def _reading(root: str, table: str) -> str:
 
 
 def write_catalog(folder: Path) -> None:
-    """Write `catalog.duckdb` and the SQL that it was made by, with paths that hold wherever the folder is moved."""
+    """Write `catalog.duckdb` and its SQL, with relative paths that stay valid when the folder is moved."""
     import duckdb
 
     write_bytes(folder / SQL, statements().encode())
     with replacing(folder / CATALOG) as temporary, TemporaryDirectory() as aside:
-        # The search path is a list with commas, which a folder's name may have too: a link's name has none.
+        # The search path is separated by commas, which a folder's name may contain; the link's name does not.
         link = Path(aside) / "dataset"
         link.symlink_to(folder.resolve())
         temporary.unlink(missing_ok=True)
@@ -49,17 +49,17 @@ _CLOSED = (
     "enable_external_access = false",
     "lock_configuration = true",
 )
-"""What keeps a query from files elsewhere, the network, Python's variables, and from undoing this; the last locks."""
+"""Settings that keep queries from other files, the network and Python's variables; the last one locks them."""
 
 
 def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
-    """A connection with the dataset's views that reaches nothing but this folder.
+    """A connection with the dataset's views, limited to this folder.
 
-    DuckDB has no way to allow reading and not writing: what strangers ask goes through `check_question` first.
+    DuckDB cannot forbid writing: queries of strangers go through `check_question` first.
 
     Args:
         folder: of the dataset.
-        absent: tables that it has no files of; they are empty.
+        absent: tables without files; their views are empty.
     """
     import duckdb
 

@@ -1,4 +1,4 @@
--- Views and macros over a dataset's Parquet files. `{root}` is put in front of every path: empty in catalog.duckdb,
+-- Views and macros over a dataset's Parquet files. `{root}` is the prefix of every path: empty in catalog.duckdb,
 -- which finds the files by `file_search_path`; the folder itself where the library opens a dataset.
 
 CREATE VIEW activities AS SELECT * FROM read_parquet('{root}activities/*.parquet');
@@ -18,7 +18,7 @@ CREATE VIEW vocabulary AS SELECT * FROM read_parquet('{root}vocabulary/*.parquet
 CREATE VIEW rejects AS SELECT * FROM read_parquet('{root}rejects/*.parquet');
 CREATE VIEW ledger AS SELECT * FROM read_parquet('{root}ledger/*.parquet');
 
--- One row a step; `number` counts from 0, as failures and ticks do.
+-- One row per step; `number` counts from 0, as failures and ticks do.
 CREATE VIEW steps AS
 SELECT
     program_id,
@@ -38,7 +38,7 @@ FROM (
     FROM programs
 );
 
--- One row for each tick done, with what it changed.
+-- One row per executed tick, with its changes.
 CREATE VIEW ticks AS
 SELECT execution_id, program_id, environment_id, home, number, tick.*
 FROM (
@@ -47,7 +47,7 @@ FROM (
     FROM executions
 );
 
--- A step as people write it: [PutBack] <cup> (1) <table> (1)
+-- A step as text: [PutBack] <cup> (1) <table> (1)
 CREATE MACRO step_text(step) AS
     '[' || step.action || ']'
     || array_to_string(list_transform(step.objects, lambda o: ' <' || o.name || '> (' || o.instance || ')'), '')
@@ -67,16 +67,16 @@ CREATE MACRO steps_text(steps) AS
         ''
     );
 
--- The text of a program: its steps, one tick a line. (Inside, no column is called program_id, so that it can be asked
--- of a column of that name.)
+-- The text of a program: its steps, one tick per line. (Its columns are not called program_id, so that the argument can
+-- be a column of that name.)
 CREATE MACRO program_text(which) AS (
     SELECT steps_text(its_steps)
     FROM (SELECT program_id AS its_id, steps AS its_steps FROM programs)
     WHERE its_id = which
 );
 
--- The semi joins below are there for speed: only through them does DuckDB skip the row groups that have not the id.
--- Every edge after so many ticks of an execution (0: its start; NULL: its end).
+-- The semi joins below are for speed: only with them does DuckDB skip row groups without the id.
+-- The edges of an execution after a number of ticks (0: its start; NULL: its end).
 CREATE MACRO graph_edges(which, after) AS TABLE
 WITH run_of AS MATERIALIZED (
     SELECT environment_id, home, ticks FROM executions WHERE execution_id = which
@@ -90,16 +90,16 @@ tick AS (
     SELECT unnest(ticks) AS t, generate_subscripts(ticks, 1) AS number FROM case_of
 ),
 event AS (
-    SELECT d.source, d.relation, d.target, 1 AS moment, false AS holds FROM (SELECT unnest(removed) AS d FROM case_of)
+    SELECT d.source, d.relation, d.target, 1 AS time, false AS holds FROM (SELECT unnest(removed) AS d FROM case_of)
     UNION ALL SELECT d.source, d.relation, d.target, 2, true FROM (SELECT unnest(added) AS d FROM case_of)
     UNION ALL SELECT d.source, d.relation, d.target, 2 + number, false
     FROM (SELECT unnest(t.removed) AS d, number FROM tick WHERE number <= coalesce(after, number))
     UNION ALL SELECT d.source, d.relation, d.target, 2 + number, true
     FROM (SELECT unnest(t.added) AS d, number FROM tick WHERE number <= coalesce(after, number))
 ),
--- Of the home's edges, thousands, only those that something happened to are looked at twice.
+-- Of the home's thousands of edges, only the changed ones are read twice.
 changed AS MATERIALIZED (
-    SELECT source, relation, target, arg_max(holds, moment) AS holds FROM event GROUP BY source, relation, target
+    SELECT source, relation, target, arg_max(holds, time) AS holds FROM event GROUP BY source, relation, target
 )
 SELECT source, relation, target FROM (
     SELECT source, relation, target FROM base, case_of
@@ -107,7 +107,7 @@ SELECT source, relation, target FROM (
 ) ANTI JOIN changed USING (source, relation, target)
 UNION ALL SELECT source, relation, target FROM changed WHERE holds;
 
--- Every node after so many ticks of an execution (0: its start; NULL: its end), with the states it is in then.
+-- The nodes of an execution after a number of ticks (0: its start; NULL: its end), with their states.
 CREATE MACRO graph_nodes(which, after) AS TABLE
 WITH run_of AS MATERIALIZED (
     SELECT environment_id, home, ticks FROM executions WHERE execution_id = which
@@ -128,7 +128,7 @@ tick AS (
     SELECT unnest(ticks) AS t, generate_subscripts(ticks, 1) AS number FROM case_of
 ),
 event AS (
-    SELECT id AS node, unnest(states) AS state, 0 AS moment, true AS holds FROM node
+    SELECT id AS node, unnest(states) AS state, 0 AS time, true AS holds FROM node
     UNION ALL SELECT d.node, d.state, 1, false FROM (SELECT unnest(cleared_states) AS d FROM case_of)
     UNION ALL SELECT d.node, d.state, 2, true FROM (SELECT unnest(set_states) AS d FROM case_of)
     UNION ALL SELECT d.node, d.state, 2 + number, false
@@ -137,16 +137,16 @@ event AS (
     FROM (SELECT unnest(t.set_states) AS d, number FROM tick WHERE number <= coalesce(after, number))
 ),
 holding AS (
-    SELECT node, state FROM event GROUP BY node, state HAVING arg_max(holds, moment)
+    SELECT node, state FROM event GROUP BY node, state HAVING arg_max(holds, time)
 )
 SELECT id, class_name, category, properties, coalesce(now, []) AS states
 FROM node LEFT JOIN (SELECT node, list_sort(list(state)) AS now FROM holding GROUP BY node) ON node = id;
 
--- Which states things are in when an execution ends.
+-- The final states of an execution.
 CREATE MACRO final_state(which) AS TABLE
 SELECT id, class_name, unnest(states) AS state FROM graph_nodes(which, NULL);
 
--- How many edges of each relation all executions start with, from counts and differences: no graph is rebuilt.
+-- Number of edges by relation over all initial graphs, from counts and differences, without rebuilding graphs.
 CREATE VIEW start_relations AS
 WITH times AS (
     SELECT environment_id, home, count(*) AS times FROM executions GROUP BY ALL
@@ -164,8 +164,8 @@ part AS (
     UNION ALL
     SELECT relation, -times FROM (
         SELECT DISTINCT environment_id, times, source, relation, target
-        FROM (SELECT environment_id, home, times, unnest(removed_nodes) AS node FROM differs) gone
-        JOIN home_edges ON home_edges.home = gone.home AND (source = node OR target = node)
+        FROM (SELECT environment_id, home, times, unnest(removed_nodes) AS node FROM differs) removed_node
+        JOIN home_edges ON home_edges.home = removed_node.home AND (source = node OR target = node)
     )
 )
 SELECT relation, sum(edges)::BIGINT AS edges FROM part GROUP BY relation;

@@ -98,7 +98,7 @@ def graph_of(row: GraphRow) -> EnvironmentGraph:
 
 def change_row(change: Change) -> ChangeRow:
     """A change, as a row."""
-    # Arrow takes named tuples and pairs for structs, and much faster than dicts.
+    # Arrow accepts named tuples and pairs as structs, and reads them much faster than dicts.
     found: Any = {
         "added": list(change.added),
         "removed": list(change.removed),
@@ -120,7 +120,7 @@ def change_of(row: ChangeRow) -> Change:
 
 
 def environment_row(change: Change) -> DifferenceRow:
-    """What differs from a home, as a row."""
+    """A difference from a home, as a row."""
     came, went = list(map(node_row, change.added_nodes)), list(change.removed_nodes)
     return {"added_nodes": came, "removed_nodes": went, **change_row(change)}
 
@@ -132,17 +132,17 @@ def environment_change(row: DifferenceRow) -> Change:
 
 
 def edges_of(rows: Iterable[EdgeRow]) -> Iterator[Edge]:
-    """The edges of rows read back."""
+    """The edges of rows."""
     return map(Edge._make, map(_EDGE, rows))
 
 
 def named(row: NamedRow) -> NamedRow:
-    """Of a row, the columns that a program keeps from stage to stage."""
+    """The columns of a row that a program keeps from stage to stage."""
     return columns_of(NamedRow, row)
 
 
 def step_rows(program: Program) -> list[StepRow]:
-    """A program's steps as rows, node ids left out."""
+    """A program's steps as rows, without node ids."""
     return [
         {
             "agent": step.agent,
@@ -157,7 +157,7 @@ def step_rows(program: Program) -> list[StepRow]:
 
 
 def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
-    """The inverse of `step_rows`, bound where `bindings` says to what."""
+    """The inverse of `step_rows`; objects in `bindings` are bound."""
     bound: Bindings = bindings or {}
     return tuple(
         Step(
@@ -175,13 +175,13 @@ def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple
 
 
 def program_of(row: ScriptRow, bindings: Bindings | None = None) -> Program:
-    """The program of a row that has one."""
+    """The program of a row."""
     lines = tuple(step["line"] for step in row["steps"])
     return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
 
 
 def binding_rows(program: Program) -> list[BindingRow]:
-    """Which node each object of a bound program is."""
+    """The node of each object in a bound program, as rows."""
     return [
         {"name": ref.name, "instance": ref.instance, "node": ref.node}
         for ref in program.objects()
@@ -209,7 +209,7 @@ def failure_row(failure: Failure) -> FailureRow:
 
 
 def tick_rows(execution: Execution) -> list[TickRow]:
-    """What was done and changed, tick by tick; only the ticks that were done."""
+    """Instructions and changes of each executed tick, as rows."""
     rows: list[TickRow] = []
     number = 0
     for steps, change in zip(execution.program.ticks(), execution.changes(), strict=False):

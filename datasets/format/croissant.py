@@ -1,4 +1,4 @@
-"""`croissant.json`: the dataset described in the Croissant format (MLCommons, 1.0), for tools that look for it."""
+"""`croissant.json`: the dataset's description in the Croissant format (MLCommons, 1.0)."""
 
 from __future__ import annotations
 
@@ -58,15 +58,15 @@ _CONTEXT = {
 
 
 def write_croissant(folder: Path) -> None:
-    """Describe the tables of a dataset's folder."""
+    """Write the description of a dataset's folder."""
     write_json(folder / NAME, describe(folder))
 
 
 def describe(folder: Path) -> dict[str, Any]:
     """The description as JSON-LD: every Parquet file with its hash, every table with its columns of plain values.
 
-    Nested columns (steps, ticks, ...) have no form in Croissant that readers agree on; they are in the same files, and
-    the dataset card says what they hold.
+    Nested columns (steps, ticks, ...) are omitted, because readers of Croissant do not agree on their form; the dataset
+    card describes them.
     """
     return {
         "@context": _CONTEXT,
@@ -113,13 +113,13 @@ def _records(table: str) -> dict[str, Any]:
 
 
 def _field(table: str, column: pa.Field) -> dict[str, Any]:
-    told = (column.metadata or {}).get(b"comment", b"").decode()
+    comment = (column.metadata or {}).get(b"comment", b"").decode()
     listed = {"repeated": True} if pa.types.is_list(column.type) else {}
     return {
         "@type": "cr:Field",
         "@id": f"{table}/{column.name}",
         "name": column.name,
-        "description": told,
+        "description": comment,
         "dataType": _kind(column.type),
         **listed,
         "source": {"fileSet": {"@id": _set(table)}, "extract": {"column": column.name}},

@@ -1,4 +1,4 @@
-"""Sequences and texts that are nearly the same, among many, without comparing each with each."""
+"""Near-duplicate sequences and texts, found without comparing all pairs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ _ROUNDING = 1e-6
 
 
 def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator[tuple[int, int]]:
-    """Pairs of places, the smaller first, whose sequences' LCS is at least so much of the longer one.
+    """Pairs of indices, the smaller first, of sequences whose LCS is at least the share `least` of the longer one.
 
-    Exact, and nearly linear where most steps are rare: two such sequences have so many elements in common, order
-    aside, that one of the few rarest of the one is among the few rarest of the other (prefix filtering, as in joins of
-    similar sets); only pairs that share one are compared.
+    Exact, and nearly linear if most elements are rare (prefix filtering, as in set similarity joins): similar sequences
+    share one of their few rarest elements, and only pairs that share one are compared.
 
     Args:
         rows: sequences of hashable elements.
@@ -28,47 +27,46 @@ def near_sequences(rows: Sequence[Sequence[Hashable]], least: float) -> Iterator
     """
     from rapidfuzz.distance import LCSseq
 
-    told = _numbered(rows)
-    lengths = [len(each) for each in told]
+    sequences = _numbered(rows)
+    lengths = [len(each) for each in sequences]
     seen: dict[str, list[int]] = defaultdict(list)
-    for number in sorted(range(len(told)), key=lambda place: (lengths[place], place)):
-        mine = told[number]
+    for number in sorted(range(len(sequences)), key=lambda place: (lengths[place], place)):
+        mine = sequences[number]
         rarest = _rarest(mine, least)
         shortest = least * len(mine) - _ROUNDING
         for other in sorted({other for token in rarest for other in seen[token] if lengths[other] >= shortest}):
-            if LCSseq.normalized_similarity(mine, told[other], score_cutoff=least - _ROUNDING):
+            if LCSseq.normalized_similarity(mine, sequences[other], score_cutoff=least - _ROUNDING):
                 yield (other, number) if other < number else (number, other)
         for token in rarest:
             seen[token].append(number)
 
 
 def _numbered(rows: Sequence[Sequence[Hashable]]) -> list[str]:
-    """Sequences of characters instead of elements: the rarer an element, the smaller. Texts are compared fastest."""
+    """Sequences as strings, which compare fastest; the rarer an element, the smaller its character."""
     seen = Counter(element for sequence in rows for element in sequence)
     letter = {element: chr(_FIRST + place) for place, (element, _) in enumerate(reversed(seen.most_common()))}
     return ["".join(map(letter.__getitem__, sequence)) for sequence in rows]
 
 
 _FIRST = 0xE000
-"""Beyond the surrogates, which are no characters; up to a million different elements."""
+"""First code point after the surrogates, which are not characters; leaves a million different elements."""
 
 
 def _rarest(letters: str, least: float) -> set[str]:
-    """So many of the rarest elements that a sequence without any of them is too different; a mark for an empty one."""
+    """The rarest elements, of which every similar sequence has at least one; a marker for an empty sequence."""
     common = ceil(least * len(letters) - _ROUNDING)
     return set(sorted(letters)[: len(letters) - common + 1]) or {""}
 
 
 def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
-    """Pairs of places, the smaller first, whose texts' similarity (insertions and deletions) is at least so much.
+    """Pairs of indices, the smaller first, of texts whose similarity is at least `least`.
 
-    Exact: only those are compared that their lengths, and how often each has which characters, do not keep apart (an
-    insertion changes one such count by one). Still each is held against each of about its length, but by sums of a few
-    small numbers.
+    Exact: lengths and character counts give a lower bound of the insertions and deletions, and only pairs within the
+    bound are compared. The bound itself is computed for all texts of similar length, with small sums.
 
     Args:
         texts: any.
-        least: from 0 to 1; twice what two texts have in common, in order, over the sum of their lengths.
+        least: from 0 to 1; twice the length of the LCS over the sum of both lengths.
     """
     from rapidfuzz import fuzz
 
@@ -81,8 +79,8 @@ def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
         longest = len(text) * (2 / least - 1) if least else inf
         end = int(np.searchsorted(lengths, longest + _ROUNDING, side="right"))
         allowed = (1 - least) * (len(text) + lengths[one + 1 : end]) + _ROUNDING
-        near = one + 1 + np.flatnonzero(_apart(few[:, one + 1 : end], few[:, one]) <= allowed)
-        near = near[_apart(counts[:, near], counts[:, one]) <= allowed[near - one - 1]]
+        near = one + 1 + np.flatnonzero(_edit_bound(few[:, one + 1 : end], few[:, one]) <= allowed)
+        near = near[_edit_bound(counts[:, near], counts[:, one]) <= allowed[near - one - 1]]
         for other in near.tolist():
             if fuzz.ratio(text, ordered[other], score_cutoff=100 * (least - _ROUNDING)):
                 a, b = order[one], order[other]
@@ -90,17 +88,17 @@ def near_texts(texts: Sequence[str], least: float) -> Iterator[tuple[int, int]]:
 
 
 _KINDS, _FEW = 32, 8
-"""Characters are counted in so many kinds, and for a first look in fewer."""
+"""Number of character classes that are counted, and of coarser classes for a first bound."""
 
 
-def _apart(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(texts,) insertions and deletions at the least, from (kinds, texts) counts to those of one text."""
+def _edit_bound(counts: NDArray[np.int32], mine: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(texts,) lower bounds of the edits between texts with (classes, texts) counts and one text's counts."""
     found: NDArray[np.int32] = abs(counts - mine[:, None]).sum(0, dtype=counts.dtype)
     return found
 
 
 def _character_counts(texts: Sequence[str]) -> NDArray[np.int32]:
-    """(_KINDS, texts) how often each has characters of each kind."""
+    """(_KINDS, texts) number of characters of each class in each text."""
     codes = (np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32) % _KINDS for text in texts)
     counts = [np.bincount(each, minlength=_KINDS) for each in codes]
     return np.array(counts, np.int32).reshape(-1, _KINDS).T.copy()

@@ -1,4 +1,4 @@
-"""Homes of which only environments are known: what all of them share."""
+"""Homes inferred from the environments made of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hearth.storage.files import write_json
 
 
 def common(rows: Iterable[GraphRow]) -> EnvironmentGraph:
-    """The nodes and edges that all graphs share, with the states that most of them have."""
+    """The nodes and edges common to all graphs, with the most frequent states."""
     nodes: dict[int, Node] = {}
     edges: set[Edge] = set()
     states: dict[int, Counter[tuple[str, ...]]] = defaultdict(Counter)
@@ -35,5 +35,5 @@ def _alike(one: Node, other: Node) -> bool:
 
 
 def write_home(path: Path, graph: EnvironmentGraph) -> None:
-    """Write a home in the release's form."""
+    """Write a home in the release's format."""
     write_json(path, to_release(graph))

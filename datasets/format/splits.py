@@ -1,9 +1,8 @@
-"""Splits, frozen as a table: what a model may learn from, and what it is tested on.
+"""Train and test splits, stored as a table.
 
-Programs that say nearly the same are dealt together, whatever activity they are filed under: a program and all that
-was made of it by repairs, programs with nearly the same steps, and programs for nearly the same text. Where a rule
-would still part such a group, its training runs are left out. How much that leaves, and what dealing rows at random
-would leave, is measured on the result.
+Near duplicates are assigned together, whatever their activity: a program and its repaired descendants, programs with
+nearly the same steps, and programs with nearly the same description. If a rule would still separate such a group, its
+training runs are excluded. The leakage that remains is measured, beside that of a random split.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""
 
 SHORTEST_TEXT = 20
-"""Characters a description needs to count as a text of its own: `Watch TV.` says nothing about who wrote it."""
+"""Least characters of a description that is compared: short ones such as `Watch TV.` coincide by chance."""
 
 
 RULES = {
@@ -31,20 +30,20 @@ RULES = {
     " test_unseen in 5-6",
     "homes_1_5": "trained in homes 1-5, tested in 6-7 (6.5.1, 7.4), other programs each",
 }
-"""What each split means. Homes are numbered by name; a run that a split has no part for is in `none`."""
+"""The rule of each split. Homes are numbered by name; runs without a part are in `none`."""
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What a split needs to know of a program.
+class SplitProgram:
+    """The fields of a program that splits depend on.
 
     Attributes:
         program_id: its id.
         activity: its activity.
-        part: `train` or `test`, as its activity was dealt.
-        root: the original it was made from, or itself.
-        steps: action and class names, a text a step, instances left out.
-        description: in words.
+        part: `train` or `test`, assigned by activity.
+        root: id of its original, or its own.
+        steps: action and class names, one text per step, without instances.
+        description: its text.
     """
 
     program_id: str
@@ -56,7 +55,7 @@ class Told:
 
 
 def roots(parents: dict[str, str | None]) -> dict[str, str]:
-    """The original that each program was made from, by id."""
+    """Program id -> id of its original."""
     found: dict[str, str] = {}
     for name in parents:
         top = name
@@ -66,23 +65,23 @@ def roots(parents: dict[str, str | None]) -> dict[str, str]:
     return found
 
 
-class Likeness:
-    """Which programs say nearly the same, found once for all programs; a text has to be long enough to say anything."""
+class Similarity:
+    """Near duplicates among programs, by steps and by description; short descriptions are ignored."""
 
-    def __init__(self, programs: Iterable[Told]) -> None:
+    def __init__(self, programs: Iterable[SplitProgram]) -> None:
         programs = list(programs)
         steps = sorted({each.steps for each in programs if each.steps})
-        texts = sorted({text for each in programs if len(text := worded(each.description)) >= SHORTEST_TEXT})
+        texts = sorted({text for each in programs if len(text := normalised(each.description)) >= SHORTEST_TEXT})
         self._steps = _neighbours(steps, near_sequences(steps, NEAR))
         self._texts = _neighbours(texts, near_texts(texts, NEAR))
 
-    def by_steps(self, program: Told) -> set[Any]:
-        """The steps of programs like it: those whose normalised LCS with its own is at least `NEAR`, its own too."""
+    def by_steps(self, program: SplitProgram) -> set[Any]:
+        """The steps of similar programs: normalised LCS at least `NEAR`; the program's own included."""
         return self._steps.get(program.steps, set())
 
-    def by_text(self, program: Told) -> set[Any]:
-        """The same for what its description says, case and spaces aside."""
-        return self._texts.get(worded(program.description), set())
+    def by_text(self, program: SplitProgram) -> set[Any]:
+        """The normalised descriptions of similar programs, its own included."""
+        return self._texts.get(normalised(program.description), set())
 
 
 def _neighbours(values: Sequence[Any], pairs: Iterable[tuple[int, int]]) -> dict[Any, set[Any]]:
@@ -93,43 +92,43 @@ def _neighbours(values: Sequence[Any], pairs: Iterable[tuple[int, int]]) -> dict
     return found
 
 
-def worded(text: str) -> str:
-    """A text without what people write one way or another: case and spaces."""
+def normalised(text: str) -> str:
+    """A text in lower case with single spaces."""
     return " ".join(text.lower().split())
 
 
-def groups(programs: Sequence[Told], likeness: Likeness) -> dict[str, str]:
-    """Which group each program belongs to, by id; a group is named by the first of its originals."""
-    leader = {each.root: each.root for each in programs}
+def groups(programs: Sequence[SplitProgram], similarity: Similarity) -> dict[str, str]:
+    """Program id -> its group of near duplicates, named by the first of its originals."""
+    representative = {each.root: each.root for each in programs}
 
     def find(name: str) -> str:
-        while leader[name] != name:
-            leader[name] = leader[leader[name]]
-            name = leader[name]
+        while representative[name] != name:
+            representative[name] = representative[representative[name]]
+            name = representative[name]
         return name
 
-    for near in (likeness.by_steps, likeness.by_text):
+    for near in (similarity.by_steps, similarity.by_text):
         first: dict[Any, str] = {}
         for each in programs:
             for like in near(each):
                 a, b = sorted((find(each.root), find(first.setdefault(like, each.root))))
-                leader[b] = a
+                representative[b] = a
     return {each.program_id: find(each.root) for each in programs}
 
 
 def parts(
-    programs: Sequence[Told], runs: Iterable[tuple[str, str, str]], seed: int, likeness: Likeness
+    programs: Sequence[SplitProgram], runs: Iterable[tuple[str, str, str]], seed: int, similarity: Similarity
 ) -> Iterator[SplitRow]:
     """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
 
     Args:
-        programs: all that are published.
+        programs: all published programs.
         runs: execution id, program id and home of every execution.
-        seed: of the deal.
-        likeness: of these programs.
+        seed: of the assignment.
+        similarity: near duplicates among these programs.
     """
     known = {each.program_id: each for each in programs}
-    group = groups(programs, likeness)
+    group = groups(programs, similarity)
     tested = {group[each.program_id] for each in programs if each.part == "test"}
     runs = sorted(runs)
     homes = sorted({home for _, _, home in runs})
@@ -137,12 +136,12 @@ def parts(
     out = derive(seed, "split", "home") % len(homes) + 1 if homes else 0
     for execution_id, program_id, home in runs:
         mine, at = group[program_id], number[home]
-        told = {
+        assigned = {
             "activities": _by_activity(known[program_id].part, mine in tested, at == out),
             "homes_1_4": _by_home_4(derive(seed, "split", "homes_1_4", mine) % 10, at),
             "homes_1_5": _by_home_5(derive(seed, "split", "homes_1_5", mine) % 10, at),
         }
-        for split, part in told.items():
+        for split, part in assigned.items():
             yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
 
 
@@ -152,29 +151,31 @@ def _by_activity(part: str, near_test: bool, held_out: bool) -> str:
     return "none" if near_test or held_out else "train"
 
 
-def _by_home_4(dealt: int, home: int) -> str:
-    if dealt < 7:
+def _by_home_4(decile: int, home: int) -> str:
+    if decile < 7:
         return "train" if home <= 4 else "none"
-    if dealt < 8:
+    if decile < 8:
         return "validation" if home == 5 else "none"
     return "test_seen" if home <= 4 else "test_unseen" if home <= 6 else "none"
 
 
-def _by_home_5(dealt: int, home: int) -> str:
-    if dealt < 7:
+def _by_home_5(decile: int, home: int) -> str:
+    if decile < 7:
         return "train" if home <= 5 else "none"
     return "test" if 6 <= home <= 7 else "none"
 
 
-def summary(programs: Sequence[Told], rows: Sequence[SplitRow], seed: int, likeness: Likeness) -> dict[str, Any]:
-    """What each split means, how many runs and programs its parts have, and how much leaks, as JSON.
+def summary(
+    programs: Sequence[SplitProgram], rows: Sequence[SplitRow], seed: int, similarity: Similarity
+) -> dict[str, Any]:
+    """Rule, counts of runs and programs by part, and leakage of each split, as JSON.
 
-    `leakage` counts test programs that have in train a program made of the same original (`siblings`), one with
-    nearly the same steps (`steps`), or one for nearly the same text (`texts`); `at_random` is the same where as many
-    programs are dealt one by one.
+    `leakage` counts test programs with a program in train that has the same original (`siblings`), nearly the same
+    steps (`steps`), or nearly the same description (`texts`); `at_random` is the leakage of a random split of equal
+    size.
     """
     by_id = {each.program_id: each for each in programs}
-    told: dict[str, Any] = {"seed": seed, "near": NEAR, "splits": {}}
+    found: dict[str, Any] = {"seed": seed, "near": NEAR, "splits": {}}
     for split, rule in RULES.items():
         mine = [row for row in rows if row["split"] == split]
         members: dict[str, dict[str, None]] = {}
@@ -183,29 +184,29 @@ def summary(programs: Sequence[Told], rows: Sequence[SplitRow], seed: int, liken
         train = [by_id[name] for name in members.get("train", {})]
         test = [by_id[name] for part, names in sorted(members.items()) if part.startswith("test") for name in names]
         test = list({each.program_id: each for each in test}.values())
-        told["splits"][split] = {
+        found["splits"][split] = {
             "rule": rule,
             "runs": dict(sorted(Counter(row["part"] for row in mine).items())),
             "programs": {part: len(names) for part, names in sorted(members.items())},
-            "leakage": leakage(train, test, likeness),
-            "at_random": leakage(*_at_random([*train, *test], len(test), seed), likeness),
+            "leakage": leakage(train, test, similarity),
+            "at_random": leakage(*_at_random([*train, *test], len(test), seed), similarity),
         }
-    return told
+    return found
 
 
-def _at_random(programs: list[Told], tested: int, seed: int) -> tuple[list[Told], list[Told]]:
-    dealt = sorted(programs, key=lambda each: derive(seed, "random split", each.program_id))
-    return dealt[tested:], dealt[:tested]
+def _at_random(programs: list[SplitProgram], tested: int, seed: int) -> tuple[list[SplitProgram], list[SplitProgram]]:
+    shuffled = sorted(programs, key=lambda each: derive(seed, "random split", each.program_id))
+    return shuffled[tested:], shuffled[:tested]
 
 
-def leakage(train: Sequence[Told], test: Sequence[Told], likeness: Likeness) -> dict[str, int]:
-    """How many of the test programs have something of theirs in train, by `siblings`, `steps` and `texts`."""
+def leakage(train: Sequence[SplitProgram], test: Sequence[SplitProgram], similarity: Similarity) -> dict[str, int]:
+    """Number of test programs with a sibling, similar steps or a similar description in train."""
     known = {each.root for each in train}
-    steps = {like for each in train for like in likeness.by_steps(each)}
-    texts = {like for each in train for like in likeness.by_text(each)}
+    steps = {like for each in train for like in similarity.by_steps(each)}
+    texts = {like for each in train for like in similarity.by_text(each)}
     return {
         "programs": len(test),
         "siblings": sum(each.root in known for each in test),
         "steps": sum(each.steps in steps for each in test),
-        "texts": sum(worded(each.description) in texts for each in test),
+        "texts": sum(normalised(each.description) in texts for each in test),
     }

@@ -1,4 +1,4 @@
-"""Executions read back from a dataset by their ids, with the programs and environments that they are of."""
+"""Executions read from a dataset by id, with their programs and environments."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hearth.schemas.structs import BindingRow, DifferenceRow, StepRow
 
 
 class StoredCaseRow(TypedDict):
-    """An execution as far as running its program needs it."""
+    """The columns of an execution that running its program needs."""
 
     execution_id: str
     environment_id: str
@@ -37,17 +37,17 @@ _PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM pr
 
 
 def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = ()) -> Iterator[Any]:
-    """Executions as far as running their programs needs it, in the dataset's order.
+    """Executions with the columns that running their programs needs, in the dataset's order.
 
-    Three questions, each within its own range of ids: of a join, DuckDB would read whole tables, share after share.
+    Three queries, each within its range of ids: for a join, DuckDB would read whole tables.
 
     Args:
-        dataset: where they are.
-        names: their ids; neighbours in the dataset are read fastest.
-        more: columns of `executions` that are wanted too.
+        dataset: the dataset.
+        names: ids of executions; neighbours in the dataset are read fastest.
+        more: further columns of `executions`.
 
     Returns:
-        rows as `StoredCaseRow`, with those columns.
+        Rows as `StoredCaseRow`, with the further columns.
     """
 
     def asked(query: str, ids: Sequence[str]) -> list[Any]:

@@ -1,1 +1,1 @@
-"""A dataset as a folder of static HTML that needs no network and no server."""
+"""A report of a dataset: a folder of static HTML that works without network and server."""

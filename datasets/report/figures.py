@@ -1,4 +1,4 @@
-"""The numbers of the report, each with the query that makes it (`figures.yaml`)."""
+"""The tables of the report, each with its query (`figures.yaml`)."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class Figure:
     """A table of the report.
 
     Attributes:
-        title: what it shows.
-        source: the thesis's table, figure or section that shows the same, or "".
-        query: the SQL that made it, which anyone may ask again.
-        columns, rows: the answer.
-        bars: for each row, the length of its bar in percent of the longest.
+        title: its heading.
+        source: the corresponding table, figure or section of the thesis, or "".
+        query: its SQL.
+        columns, rows: the result.
+        bars: length of each row's bar, percent of the longest.
     """
 
     title: str
@@ -30,7 +30,7 @@ class Figure:
 
 
 def figures(dataset: Dataset) -> list[Figure]:
-    """Every figure with its answer; those that have none are left out."""
+    """Every figure with a non-empty result."""
     import yaml
 
     asked = yaml.safe_load((files("hearth.datasets.report") / "figures.yaml").read_text("utf-8"))
@@ -41,6 +41,6 @@ def figures(dataset: Dataset) -> list[Figure]:
             lengths = [float(row[columns.index(each["bars"])] or 0) for row in rows]
             longest = max(lengths) or 1.0
             bars = tuple(round(100 * length / longest, 1) for length in lengths)
-            told = (each["title"], str(each.get("source", "")), each["query"])
-            found.append(Figure(*told, tuple(columns), tuple(rows), bars))
+            head = (each["title"], str(each.get("source", "")), each["query"])
+            found.append(Figure(*head, tuple(columns), tuple(rows), bars))
     return found

@@ -1,4 +1,4 @@
-"""Homes as floor plans, drawn from the boxes of their nodes."""
+"""Floor plans of homes, drawn from the boxes of their nodes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from hearth.schemas.graph import Box, Node
 
 _SHELL = frozenset({"Walls", "Ceiling", "Floor", "Floors", "Characters", "Rooms"})
 _SMALLEST = 0.25
-"""Square metres that a thing covers to be drawn."""
+"""Least area of a drawn thing, square metres."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A home's drawing: an SVG, or "" where its nodes have no boxes."""
+    """A home's floor plan as SVG, or "" if its nodes have no boxes."""
 
     home: str
     rooms: str
@@ -34,7 +34,7 @@ def plans(dataset: Dataset) -> list[Plan]:
 
 
 def draw(nodes: tuple[Node, ...]) -> str:
-    """A plan from above, in metres: rooms with their names, furniture as boxes; z points up the page."""
+    """A floor plan in metres: rooms with their names, furniture as boxes; z points up the page."""
     rooms = [(node, node.box) for node in nodes if node.category == "Rooms" and node.box]
     if not rooms:
         return ""

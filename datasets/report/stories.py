@@ -1,4 +1,4 @@
-"""A program as its page tells it: steps, preconditions, runs tick by tick, repairs as a dialogue, graphs, frames."""
+"""The data of a program's page: steps, preconditions, runs tick by tick, repairs, graphs, frames."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from hearth.schemas.structs import ConditionRow, DifferenceRow, FailureRow, Repa
 from hearth.schemas.syntax import print_step
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})
-"""Relations that are drawn; CLOSE and BETWEEN would hide them."""
+"""Drawn relations; CLOSE and BETWEEN would hide them."""
 
 _MOST_RELATIONS = 40
 
 
 class Stories:
-    """What the pages of a dataset's programs say. Homes are read once; a run costs what it changes."""
+    """The data of programs' pages. Homes are read once; the cost of a run is proportional to its changes."""
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
@@ -38,7 +38,7 @@ class Stories:
 
     @cached_property
     def frames(self) -> dict[str, list[Row]]:
-        """Pictures by execution, in the order of ticks."""
+        """Pictures by execution, sorted by tick."""
         query = """SELECT execution_id, tick, camera, file FROM frames WHERE modality = 'rgb'
             ORDER BY execution_id, tick, camera = 'top' DESC, camera"""
         found: dict[str, list[Row]] = defaultdict(list)
@@ -49,7 +49,7 @@ class Stories:
 
     @cached_property
     def films(self) -> dict[str, Row]:
-        """The film of each execution that has one: its file, and for each tick when it ends, seconds."""
+        """Execution id -> its film's file, and the end of each tick in seconds."""
         query = "SELECT execution_id, file, list_transform(steps, lambda s: s.end) FROM videos ORDER BY 1, 2"
         found = self.dataset.rows(query)[1]
         return {
@@ -61,8 +61,8 @@ class Stories:
 
         Args:
             program: a row of `programs`.
-            runs: its rows of `executions`, each with its `environment`: of all edges those that are drawn, and of each
-                tick how many edges came and went.
+            runs: its rows of `executions`, each with its `environment`; edges are limited to `DRAWN`, and each tick has
+                the numbers of added and removed edges.
             repairs: its rows of `repairs`, in order.
         """
         steps = program_of(program).steps
@@ -114,7 +114,7 @@ class _Home:
                 self.edges[edge.target].add(edge)
 
     def around(self, shown: set[int], environment: DifferenceRow) -> WorkingGraph:
-        """These nodes at the start, and the edges that touch them."""
+        """The nodes in `shown` at the start, and their edges."""
         edges = (edge for node in shown for edge in self.edges.get(node, ()))
         graph = WorkingGraph((self.nodes[node] for node in shown & self.nodes.keys()), edges)
         change = replace(
@@ -133,8 +133,8 @@ def _about(change: Change, shown: set[int]) -> Change:
 
 
 def _graph(graph: WorkingGraph, names: dict[int, str], shown: set[int], people: set[int]) -> Row:
-    # Rooms hold everything, and pictures face everything: said is where things are that a program names, and what
-    # people face.
+    # Rooms contain everything, and pictures face everything: only locations of named things, and what characters face,
+    # are shown.
     kept = sorted(e for e in graph.edges if e.source in shown and (e.relation != "FACING" or e.source in people))
     kept = kept[:_MOST_RELATIONS]
     nodes = sorted({*(end for edge in kept for end in (edge.source, edge.target)), *(shown & graph.nodes.keys())})
@@ -150,13 +150,13 @@ def _tick(tick: Row, names: dict[int, str]) -> Row:
 
 
 def _changes(tick: Row, names: dict[int, str]) -> Iterator[str]:
-    def said(node: int) -> str:
+    def name(node: int) -> str:
         return f"{names.get(node, '?')} ({node})"
 
-    yield from (f"{said(row['node'])} is {row['state']}" for row in tick["set_states"])
-    told = list(edges_of(tick["added"]))[:6]
-    yield from (f"{said(edge.source)} {edge.relation} {said(edge.target)}" for edge in told)
-    more, fewer = tick["came"] - len(told), tick["went"]
+    yield from (f"{name(row['node'])} is {row['state']}" for row in tick["set_states"])
+    edges = list(edges_of(tick["added"]))[:6]
+    yield from (f"{name(edge.source)} {edge.relation} {name(edge.target)}" for edge in edges)
+    more, fewer = tick["came"] - len(edges), tick["went"]
     if more or fewer:
         yield f"{more} more edges, {fewer} fewer"
 
@@ -172,12 +172,12 @@ def _failure(row: FailureRow) -> Row:
 
 def _repair(row: RepairRow) -> Row:
     removed, added = _differing(row["before"], row["after"])
-    told = {"handler": row["handler"], "removed": removed, "added": added}
-    return {**told, "attempt": row["attempt"], "step": row["step"], "failure": _failure(row["failure"])}
+    shown = {"handler": row["handler"], "removed": removed, "added": added}
+    return {**shown, "attempt": row["attempt"], "step": row["step"], "failure": _failure(row["failure"])}
 
 
 def _differing(before: list[str], after: list[str]) -> tuple[list[str], list[str]]:
-    """The lines that a repair takes away and adds."""
+    """The lines that a repair removes and adds."""
     pairs = [
         (before[i:j], after[k:n])
         for tag, i, j, k, n in SequenceMatcher(None, before, after, autojunk=False).get_opcodes()

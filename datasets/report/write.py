@@ -1,4 +1,4 @@
-"""Writing the report: one page, its data in scripts that a browser reads from disk, pictures beside it."""
+"""Writes the report: one page, data in scripts that a browser loads from disk, and pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
 
 SHARD = 200
-"""Programs whose stories are in one file: what a reader waits for when a page is opened."""
+"""Programs per file of stories, which a browser loads when a program's page is opened."""
 
 
 _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
@@ -32,15 +32,15 @@ _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, pare
 def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen) -> int:
     """Write the report of a dataset into a folder; the same files for any number of workers.
 
-    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so that data comes in
-    scripts: `data/programs.js` has a short row a program, `data/stories-N.js` what their pages show. `seen` is told
-    how many shares of these are written.
+    `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts:
+    `data/programs.js` has a short row per program, `data/stories-N.js` the data of their pages. `seen` reports the
+    progress.
 
     Returns:
-        how many programs it has.
+        Number of programs.
 
     Raises:
-        HearthError: the folder holds something else.
+        HearthError: the folder contains something else.
     """
     if to.exists() and (not to.is_dir() or (any(to.iterdir()) and not (to / "index.html").exists())):
         message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
@@ -61,13 +61,13 @@ def _page(dataset: Dataset, programs: int) -> str:
 
     text = (files("hearth.datasets.report") / "assets" / "index.html").read_text("utf-8")
     template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
-    told = {name: dataset.manifest[name] for name in ("version", "action_set")}
+    versions = {name: dataset.manifest[name] for name in ("version", "action_set")}
     drawn = plans(dataset)
-    return template.render(figures=figures(dataset), plans=drawn, programs=programs, shard=SHARD, **told)
+    return template.render(figures=figures(dataset), plans=drawn, programs=programs, shard=SHARD, **versions)
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:
-    """A row a program: id, title, origin, split, steps, homes it runs in, what went wrong, repairs."""
+    """A row per program: id, title, origin, split, steps, number of homes, failure code, repairs."""
     query = f"""SELECT p.*,
             coalesce(e.homes, 0) AS homes, coalesce(e.code, '') AS code, coalesce(r.repairs, 0) AS repairs
         FROM (SELECT {_ROW} FROM programs) p
@@ -84,18 +84,18 @@ _LISTED = ("program_id", "title", "origin", "split", "steps", "homes", "repairs"
 
 
 def _write_stories(dataset: Dataset, to: Path, workers: int, seen: Seen) -> None:
-    """Stories by program id, `SHARD` a file; shares of files go to processes."""
+    """Write the stories by program id, `SHARD` per file; processes write shares of the files."""
     names = [name for (name,) in dataset.rows("SELECT program_id FROM programs ORDER BY 1")[1]]
     shards = [names[start : start + SHARD] for start in range(0, len(names), SHARD)]
-    told = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
-    jobs = [(str(dataset.folder), str(to), told[start : start + _SHARE]) for start in range(0, len(told), _SHARE)]
+    bounds = [(number, shard[0], shard[-1]) for number, shard in enumerate(shards)]
+    jobs = [(str(dataset.folder), str(to), bounds[start : start + _SHARE]) for start in range(0, len(bounds), _SHARE)]
     _opened.cache_clear()
     for _ in spread(_write_share, jobs, workers, seen):
         pass
 
 
 _SHARE = 8
-"""Files that a process writes at a time."""
+"""Files per unit of work."""
 
 Shard = tuple[int, str, str]
 """A file's number, and the ids of its first and last program."""
@@ -122,7 +122,7 @@ def _write_shard(dataset: Dataset, stories: Stories, to: Path, shard: Shard) -> 
     inside(to, f"data/stories-{number}.js").write_bytes(b"HEARTH.stories(" + orjson.dumps(found) + b");\n")
 
 
-# Only edges that are drawn are read: CLOSE is most of what a tick changes, and of that only the number is told.
+# Only drawn edges are read: most changes of a tick are CLOSE edges, which are counted only.
 _DRAWN = ", ".join(f"'{name}'" for name in sorted(DRAWN))
 _EDGES = f"list_filter({{}}, lambda e: e.relation IN ({_DRAWN}))"
 _RUNS = f"""
@@ -140,7 +140,7 @@ _RUNS = f"""
     JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
     ORDER BY e.execution_id
 """
-_TOLD = "program_id, parent_id, title, description, origin, activity_id, steps"
+_PROGRAM_COLUMNS = "program_id, parent_id, title, description, origin, activity_id, steps"
 
 
 def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[Row]:
@@ -150,7 +150,9 @@ def _stories(cursor: Any, stories: Stories, asked: dict[str, str]) -> Iterator[R
         runs[row["program_id"]].append(row)
     for row in _ask(cursor, f"SELECT * FROM repairs WHERE {between} ORDER BY program_id, attempt", asked):
         repairs[row["program_id"]].append(row)
-    for program in _ask(cursor, f"SELECT {_TOLD}, split FROM programs WHERE {between} ORDER BY program_id", asked):
+    for program in _ask(
+        cursor, f"SELECT {_PROGRAM_COLUMNS}, split FROM programs WHERE {between} ORDER BY program_id", asked
+    ):
         name = program["program_id"]
         yield stories.story(program, runs[name], repairs[name])
 

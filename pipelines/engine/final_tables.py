@@ -282,13 +282,13 @@ def _splits(job: Job) -> list[SplitRow]:
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
-    similarity = splits.Likeness(programs)
+    similarity = splits.Similarity(programs)
     rows = list(splits.parts(programs, runs, job.settings.seed, similarity))
     write_json(job.folder / "splits.json", splits.summary(programs, rows, job.settings.seed, similarity))
     return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
 
 
-def _programs_for_splits(folder: Path) -> list[splits.Told]:
+def _programs_for_splits(folder: Path) -> list[splits.SplitProgram]:
     columns: dict[str, list[Any]] = {
         name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
     }
@@ -302,7 +302,7 @@ def _programs_for_splits(folder: Path) -> list[splits.Told]:
             values.extend(same.setdefault(each, each) for each in table[name].to_pylist())
     tops = splits.roots(dict(zip(columns["program_id"], columns["parent_id"], strict=True)))
     rows = zip(*(columns[name] for name in ("program_id", "activity_id", "split", "description")), steps, strict=True)
-    return [splits.Told(name, of, part, tops[name], mine, text) for name, of, part, text, mine in rows]
+    return [splits.SplitProgram(name, of, part, tops[name], mine, text) for name, of, part, text, mine in rows]
 
 
 def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:

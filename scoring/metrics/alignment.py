@@ -1,8 +1,8 @@
-"""Which of a prediction's objects plays the part of which of the reference's: instances of a class are interchangeable.
+"""Alignment of a prediction's objects with the reference's; instances of a class are interchangeable.
 
-An alignment gives every object that either program names a counterpart of its class in the other graph, no two the
-same one. Aligned objects, rooms, doors and characters are told apart; what neither program names is told apart by its
-class only, so that no score depends on the ids instances happen to have.
+An alignment maps every object that either program names to a distinct counterpart of its class in the other graph.
+Aligned objects, rooms, doors and characters are identified individually; all other objects by class only, so that
+scores do not depend on the ids of instances.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from hearth.simulation.world.bits import indices
 Tuples = Counter[object]
 
 LIMIT = 1_000
-"""Up to so many alignments all are tried; beyond, a search finds a lower bound of the best."""
+"""Number of alignments up to which all are tried; beyond, a search gives a lower bound of the best score."""
 
 ROUNDS = 20
-"""A search's improvements from one start at most."""
+"""Greatest number of improvements from one start of a search."""
 
 Pair = tuple[int | None, int | None]
-"""A reference node and its counterpart; None where the other graph has no instance left."""
+"""A reference node and its counterpart; None if the other graph has no instance left."""
 
 PERFECT = (1.0, 2.0)
-"""The rank of a match that leaves nothing over."""
+"""The rank of a perfect match."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class Best:
 
     Attributes:
         matches: its counts.
-        pairs: (reference node, predicted node) wherever the two are not the same id.
-        exact: whether it is the best of all; otherwise a search's best, which is a lower bound.
+        pairs: (reference node, predicted node) with different ids.
+        exact: whether it is the optimum; else the best of a search, a lower bound.
     """
 
     matches: Matches
@@ -53,8 +53,8 @@ class Problem:
 
     Args:
         predicted, reference: the final graphs.
-        named_predicted, named_reference: node ids, rooms, doors and characters left out.
-        either: score tuples about the objects of either program in both graphs; otherwise each graph's about its own.
+        named_predicted, named_reference: node ids, without rooms, doors and characters.
+        either: whether tuples of both programs' objects count in both graphs, or in each graph those of its own.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Problem:
         self.predicted = _Side(predicted, named_predicted, ours, either)
         self.reference = _Side(reference, named_reference, theirs, either)
         self._pairs: dict[Pair, tuple[int, ...]] = {}
-        self._still = _matches(self.predicted.still, self.reference.still)
+        self._fixed = _matches(self.predicted.fixed, self.reference.fixed)
 
     def best(self, limit: int = LIMIT) -> Best:
         """The best alignment, of all where there are at most `limit`."""
@@ -84,12 +84,12 @@ class Problem:
                 return
 
     def matches(self, pairs: Sequence[Pair]) -> Matches:
-        """Count what two graphs share under an alignment.
+        """Count the common tuples of two graphs under an alignment.
 
-        A tuple with one movable end matches, if at all, one about its counterpart: such counts are kept from alignment
-        to alignment, and only edges between movable nodes are looked at again.
+        A tuple with one movable end can only match a tuple of its counterpart: such counts are cached by pair, and only
+        edges between movable nodes are compared again.
         """
-        sums: tuple[int, ...] = self._still
+        sums: tuple[int, ...] = self._fixed
         ours: dict[int, Label] = {}
         theirs: dict[int, Label] = {}
         for pair in pairs:
@@ -97,7 +97,7 @@ class Problem:
             counted = self._pairs.get(pair)
             if counted is None:
                 counted = self._pairs[pair] = self._counted(reference, predicted)
-            # Six plain numbers: this is done for a thousand alignments of a dozen pairs.
+            # Six plain numbers: this loop runs for a thousand alignments of a dozen pairs.
             a, b, c, d, e, f = sums
             u, v, w, x, y, z = counted
             sums = (a + u, b + v, c + w, d + x, e + y, f + z)
@@ -109,7 +109,7 @@ class Problem:
         return Matches(Match(*sums[:3]), Match(*sums[3:]) + moving)
 
     def _counted(self, reference: int | None, predicted: int | None) -> tuple[int, ...]:
-        """The matches of one pair's states and relations, as numbers in a row."""
+        """The matches of one pair's states and relations, as six numbers."""
         return _matches(self.predicted.about(predicted), self.reference.about(reference))
 
     def _all(self) -> Iterator[tuple[Pair, ...]]:
@@ -118,12 +118,12 @@ class Problem:
             yield tuple(pair for pairs in choice for pair in pairs)
 
     def _derived(self, bijections: Sequence[Sequence[Pair]]) -> tuple[Pair, ...]:
-        """The pairs of whole bijections that concern a named object."""
+        """The pairs of the bijections with a named object."""
         ours, theirs = self.predicted.named, self.reference.named
         return tuple(pair for pairs in bijections for pair in pairs if pair[0] in theirs or pair[1] in ours)
 
     def _searched(self) -> Iterator[tuple[Pair, ...]]:
-        """Alignments met while improving two first guesses by exchanging the counterparts of two objects."""
+        """Alignments of a local search from two initial guesses, which exchanges the counterparts of two objects."""
         for start in ([group.identity() for group in self.groups], [self._guess(group) for group in self.groups]):
             yield self._derived(start)
             yield from self._improved(start)
@@ -149,7 +149,7 @@ class Problem:
                 yield [*bijections[:number], swapped, *bijections[number + 1 :]]
 
     def _guess(self, group: _Group) -> list[Pair]:
-        """The bijection of a class by which most tuples match, those between movable nodes left aside."""
+        """The bijection of a class with most matching tuples, ignoring those between movable nodes."""
         import numpy as np
         from scipy.optimize import linear_sum_assignment
 
@@ -161,7 +161,7 @@ class Problem:
 
 
 About = tuple[Set[object], Mapping[object, int]]
-"""State tuples, and how many there are of each relation tuple."""
+"""State tuples, and counts of relation tuples."""
 
 
 def _matches(predicted: About, reference: About) -> tuple[int, ...]:
@@ -169,20 +169,20 @@ def _matches(predicted: About, reference: About) -> tuple[int, ...]:
 
 
 class _Side:
-    """One of the two graphs: its tuples, sorted by what a change of counterparts can touch.
+    """The tuples of one graph, separated by their dependence on the alignment.
 
-    Movable nodes are the instances of the classes that either program names. Of all others rooms, doors and characters
-    are compared by id and the rest by class, whatever the alignment; these are the still ends.
+    Movable nodes are the instances of the classes that either program names. Other nodes are fixed: rooms, doors and
+    characters are compared by id and the rest by class, in every alignment.
 
     Args:
         view: the graph.
-        named: the nodes its program names.
+        named: the nodes that its program names.
         movable: as above.
-        either: an aligned node's tuples count even when this side's program does not name it.
+        either: whether an aligned node's tuples count even if this graph's program does not name it.
 
     Attributes:
         named: as given.
-        still: the characters' states, and their edges to still ends.
+        fixed: the characters' states, and their edges to fixed nodes.
     """
 
     def __init__(self, view: View, named: Set[int], movable: Set[int], either: bool) -> None:
@@ -197,11 +197,11 @@ class _Side:
         relations: Tuples = Counter()
         for i in indices(characters):
             for (relation, out), row in view.rows(i).items():
-                # What comes from a character stands in its own row.
+                # Edges from a character are in its own row.
                 for j in indices(row & ~moving if out else row & ~moving & ~characters):
                     ends = _label(view, i), _label(view, j)
                     relations[relation, ends if out else ends[::-1]] += 1
-        self.still: About = {(i, state) for i in indices(characters) for state in view.states(i)}, relations
+        self.fixed: About = {(i, state) for i in indices(characters) for state in view.states(i)}, relations
 
     def _sort(self, view: View, i: int, moving: int, characters: int) -> None:
         """Read a movable node's tuples."""
@@ -220,13 +220,13 @@ class _Side:
         self._about[node] = view.states(i), relations
 
     def about(self, node: int | None) -> About:
-        """The state and relation tuples of an aligned node, its edges to movable nodes left aside."""
+        """The state and relation tuples of an aligned node, without its edges to movable nodes."""
         if node is not None and (self._either or node in self.named):
             return self._about[node]
         return frozenset(), self._to_characters.get(node, {}) if node is not None else {}
 
     def moving(self, labels: Mapping[int, Label]) -> Mapping[object, int]:
-        """Edges between movable nodes of which one is scored, and the characters' to those that are not aligned."""
+        """Edges between movable nodes with a scored end, and edges of characters to unaligned movable nodes."""
         about = labels.keys() if self._either else self.named
         found: dict[object, int] = {}
         ends: list[Edge] = []
@@ -260,7 +260,7 @@ class _Group:
     named_reference: tuple[int, ...]
 
     def count(self) -> int:
-        """At least as many as `alignments` yields."""
+        """An upper bound of the number of alignments."""
         ours, theirs = len(self.predicted), len(self.reference)
         images = math.perm(max(ours, len(self.named_reference)), len(self.named_reference))
         if len(self.named_reference) == ours and ours == theirs:
@@ -269,7 +269,7 @@ class _Group:
         return images * math.perm(left, len(self.named_predicted))
 
     def identity(self) -> list[Pair]:
-        """A bijection that keeps every id both graphs have, and pairs the rest in order, or with None."""
+        """The bijection that keeps common ids, and pairs the rest in order, or with None."""
         same = [i for i in self.reference if i in self.predicted]
         theirs: list[int | None] = [i for i in self.reference if i not in same]
         ours: list[int | None] = [i for i in self.predicted if i not in same]
@@ -278,7 +278,7 @@ class _Group:
         return [*((i, i) for i in same), *padded]
 
     def alignments(self) -> Iterator[tuple[Pair, ...]]:
-        """Every way to give the named objects of either program counterparts."""
+        """Every assignment of counterparts to the named objects of either program."""
         for images in _choices(self.predicted, len(self.named_reference)):
             first = tuple(zip(self.named_reference, images, strict=True))
             rest = [node for node in self.named_predicted if node not in images]
@@ -301,6 +301,6 @@ def _groups(predicted: View, reference: View, ours: Set[int], theirs: Set[int]) 
 
 
 def _choices(candidates: Sequence[int], number: int) -> Iterator[tuple[int | None, ...]]:
-    """Every way to choose so many, in order; None stands in where there are too few."""
+    """Every ordered choice of `number` candidates; None fills in for missing ones."""
     padded: list[int | None] = [*candidates, *[None] * (number - len(candidates))]
     return permutations(padded, number)

@@ -1,4 +1,4 @@
-"""Precision, recall and F1 from counts, with the empty cases said (thesis A.3)."""
+"""Precision, recall and F1 from counts, with the empty cases defined (thesis A.3)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Prf(NamedTuple):
 
 
 class Match(NamedTuple):
-    """How many tuples were found in both, predicted and in the reference."""
+    """Numbers of tuples in both sets, in the prediction and in the reference."""
 
     both: int
     predicted: int
@@ -27,7 +27,7 @@ class Match(NamedTuple):
         return Match(self.both + other.both, self.predicted + other.predicted, self.reference + other.reference)
 
     def prf(self) -> Prf:
-        """Two empty sets agree: all 1. Of an empty and a filled one, or when nothing matches: all 0."""
+        """The scores; all 1 for two empty sets, all 0 without common tuples."""
         if not self.predicted and not self.reference:
             return Prf(1.0, 1.0, 1.0)
         if not self.both:
@@ -46,21 +46,21 @@ class Matches(NamedTuple):
     relations: Match
 
     def rank(self) -> tuple[float, float]:
-        """By this the best of several assignments is chosen: F1 over both, then the sum of the two."""
+        """The rank of an assignment: F1 over both, then the sum of the two F1."""
         return ((self.states + self.relations).prf().f1, self.states.prf().f1 + self.relations.prf().f1)
 
     def published_rank(self) -> float:
-        """By this the published scorer chooses: the sum of the three F1."""
+        """The published scorer's rank: the sum of the three F1."""
         return sum(self.rank())
 
 
 def shared(predicted: Set[object], reference: Set[object]) -> Match:
-    """What two sets of tuples share."""
+    """The match of two sets of tuples."""
     return Match(len(predicted & reference), len(predicted), len(reference))
 
 
 def matched(predicted: Mapping[object, int], reference: Mapping[object, int]) -> Match:
-    """What two multisets of tuples share."""
+    """The match of two multisets of tuples."""
     both = 0
     for item, count in predicted.items():
         other = reference.get(item)

@@ -1,4 +1,4 @@
-"""Executability: whether a program runs in its environment, and if not, where it first fails and why (A.3)."""
+"""Executability: whether a program runs in its environment, else its first failing step and the error class (A.3)."""
 
 from __future__ import annotations
 
@@ -25,11 +25,10 @@ SIGNATURE = signature("executable", level="program", empty="apart")
 
 
 class ErrorClass(StrEnum):
-    """Why a program first fails.
+    """The class of a program's first failure.
 
-    A `wrong order` is one that the program's own steps could mend: it would get past the failing step if that step
-    stood where it could last be done, or if a later step stood before it. An `additional step` asks for what is already
-    so. What is neither is a `missing step`.
+    `wrong order`: the program's own steps could mend it, if the failing step stood at the last place where it was
+    possible, or if a later step stood before it. `additional step`: its effect already holds. `missing step`: neither.
     """
 
     SYNTAX = "syntax"
@@ -52,7 +51,7 @@ STATIC: dict[Code, ErrorClass] = {
     Code.NOT_AFFORDED: ErrorClass.AFFORDANCE,
     Code.NOT_SIMULATED: ErrorClass.NOT_SIMULATED,
 }
-"""The class of a failure that does not depend on what was done before; UNBOUND names what the environment lacks."""
+"""The class of failures that do not depend on earlier steps; UNBOUND is an object that the environment lacks."""
 
 ALREADY_IN: dict[Code, str] = {
     Code.IS_OPEN: "OPEN",
@@ -64,30 +63,30 @@ ALREADY_IN: dict[Code, str] = {
     Code.SITTING: "SITTING",
     Code.LYING: "LYING",
 }
-"""The failures that say of an action that its state holds already."""
+"""Failures that imply that an action's state already holds."""
 
 ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code.NOT_HOLDING: "lets_go"}
-"""The failures that say of a group of actions that what it would bring about holds already."""
+"""Failures that imply that the effect of a group of actions already holds."""
 
 
 PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
-"""The actions that put one thing on or in another, and the row that then says so; done again, they are additional."""
+"""Actions that put one object on or in another, and the row with the result; repeated, they are additional steps."""
 
 First = tuple[int, ErrorClass, Code]
 
 
 @dataclass(frozen=True, slots=True)
 class Executability:
-    """What became of a predicted program.
+    """The result of running a predicted program.
 
     Attributes:
-        program: what was run, canonical and bound; lines that are no steps left out.
-        empty: there was nothing to run. Such a program runs (thesis 4.5.2), and is counted apart.
-        afforded: every step fits its objects, by the grammar.
-        runs: every line is a step, and all of them can be done.
-        failed_line: the first line that does not fit or can't be done, from 0; None when there is none.
-        error: why.
-        code: the same, finer.
+        program: its steps, canonical and bound, without lines that do not parse.
+        empty: whether it has no lines. Such a program runs (thesis 4.5.2), and is counted separately.
+        afforded: whether the grammar allows every step's objects.
+        runs: whether every line is a step, and all of them run.
+        failed_line: the first failing line, from 0; None without a failure.
+        error: its error class.
+        code: its failure code.
         final: the world at its end; None unless it runs.
     """
 
@@ -102,7 +101,7 @@ class Executability:
 
     @property
     def executable(self) -> bool:
-        """As in A.3: every step fits its objects, and all of them run."""
+        """As in A.3: the grammar allows every step's objects, and all steps run."""
         return self.afforded and self.runs
 
 
@@ -117,8 +116,8 @@ def executability(
     Args:
         lines: the prediction.
         world: the environment at its start.
-        reference: the bound program it is compared with, by which its objects are bound (see `binding`).
-        rules: how actions are read.
+        reference: the bound reference, which guides the binding (see `predicted_nodes`).
+        rules: of simulation.
 
     Examples:
         >>> from hearth.scoring.lines import read
@@ -148,7 +147,7 @@ def executability(
 
 
 def _canonical(step: Step, knowledge: Knowledge) -> Step:
-    """The step with the knowledge's own names; one with a fault as it is."""
+    """The step with canonical names; unchanged if it has a fault."""
     names = tuple([ref.name for ref in step.objects])
     action, canonical = _names(step.action, names, knowledge)
     if action == step.action and canonical == names:
@@ -159,13 +158,13 @@ def _canonical(step: Step, knowledge: Knowledge) -> Step:
 
 @lru_cache(maxsize=65_536)
 def _names(action: str, names: tuple[str, ...], knowledge: Knowledge) -> tuple[str, tuple[str, ...]]:
-    """The canonical names of a step, whatever instances it is about: a corpus says the same thing many times."""
+    """The canonical names of a step without instances, cached because steps recur in a corpus."""
     program, _ = check(Program(steps=(Step(action, tuple(map(ObjectRef, names))),)), knowledge)
     return program.steps[0].action, tuple(ref.name for ref in program.steps[0].objects)
 
 
 def _fits(step: Step, knowledge: Knowledge) -> bool:
-    """Whether the grammar lets the step's objects be what they are to it."""
+    """Whether the grammar allows the step's objects in their roles."""
     return _afforded(step.action, tuple([ref.name for ref in step.objects]), knowledge)
 
 
@@ -175,7 +174,7 @@ def _afforded(action: str, names: tuple[str, ...], knowledge: Knowledge) -> bool
 
 
 def _failed_step(steps: Sequence[Step], failure: Failure) -> int:
-    """Which step the failure is about: the agent's own, of the tick that could not be done."""
+    """The index of the failing step: the agent's step in the failing tick."""
     starts = [number for number, step in enumerate(steps) if not number or not step.joins]
     start = starts[failure.tick]
     end = starts[failure.tick + 1] if failure.tick + 1 < len(starts) else len(steps)
@@ -190,21 +189,21 @@ def _classify(
     already = _is_so(steps[failed].action, failure.code, worlds[0].home.knowledge)
     if already or (failure.code is Code.NOT_HOLDING and _is_put(steps[failed], worlds[-1])):
         return ErrorClass.ADDITIONAL_STEP
-    alone = len(worlds) == failed + 1  # with several agents a tick, worlds and steps do not go together
+    alone = len(worlds) == failed + 1  # with several agents per tick, worlds and steps do not correspond
     if alone and _mended_by_order(steps, failed, worlds, rules):
         return ErrorClass.WRONG_ORDER
     return ErrorClass.MISSING_STEP
 
 
 def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
-    """Whether a failure says that what the action would bring about holds already."""
+    """Whether a failure implies that the action's effect already holds."""
     if code in ALREADY_IN:
         return action in knowledge.achieving(ALREADY_IN[code])
     return code in ALREADY_SO and action in knowledge.group(ALREADY_SO[code])
 
 
 def _is_put(step: Step, world: World) -> bool:
-    """Whether what is to be put somewhere is there."""
+    """Whether the object of a put is already at its destination."""
     read = PUTS.get(step.action)
     if read is None:
         return False
@@ -213,7 +212,7 @@ def _is_put(step: Step, world: World) -> bool:
 
 
 def _mended_by_order(steps: Sequence[Step], failed: int, worlds: Sequence[World], rules: Rules) -> bool:
-    """Whether moving one step, a later one before this or this one forward, gets the program past this one."""
+    """Whether the failing step succeeds after moving one step: a later one before it, or itself forward."""
     step = steps[failed]
     later = dict.fromkeys(steps[failed + 1 :])
     if any(_runs(worlds[failed], (other, step), rules) for other in later):

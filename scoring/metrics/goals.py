@@ -1,4 +1,4 @@
-"""Goal satisfaction: whether a final graph is as it was wanted (thesis 6.3, tables B.1, C.2)."""
+"""Goal satisfaction of a final world (thesis 6.3, tables B.1, C.2)."""
 
 from __future__ import annotations
 
@@ -20,42 +20,42 @@ from hearth.simulation.world.world import World
 SIGNATURE = signature("goal", level="program", empty=1)
 
 LASTING = ("ON", "INSIDE", *HANDS)
-"""Relations that a goal made from an execution is about; CLOSE and FACING say only where the character stood."""
+"""Relations of goals made from an execution; CLOSE and FACING describe only the character's position."""
 
 
 @dataclass(frozen=True, slots=True)
 class Satisfaction:
-    """How much of a goal holds.
+    """Satisfaction of a goal.
 
     Attributes:
-        counts: of each literal: how often it holds, and how often it is wanted.
+        counts: of each literal, the number of times that it holds, and the required number.
     """
 
     counts: tuple[tuple[Literal[Name], int, int], ...]
 
     @property
     def satisfied(self) -> bool:
-        """Whether every count is reached; an empty goal is."""
+        """Whether every count is reached; True for an empty goal."""
         return all(found >= wanted for _, found, wanted in self.counts)
 
     @property
     def fraction(self) -> float:
-        """How much of what is wanted is found, from 0 to 1; 1 for an empty goal."""
+        """The satisfied share of the required counts, from 0 to 1; 1 for an empty goal."""
         wanted = sum(count for _, _, count in self.counts)
         return sum(min(found, count) for _, found, count in self.counts) / wanted if wanted else 1.0
 
     @property
     def unmet(self) -> tuple[tuple[Literal[Name], int], ...]:
-        """What is missing, and how often."""
+        """The missing literals, with counts."""
         return tuple((literal, wanted - found) for literal, found, wanted in self.counts if found < wanted)
 
 
 def satisfaction(goal: Goal, final: World) -> Satisfaction:
-    """Count how often each literal of a goal holds; one about what there is not, never.
+    """Count how often each literal of a goal holds; a literal about absent objects never holds.
 
     Args:
         goal: counted literals.
-        final: the world that is to be as the goal says.
+        final: the world to check.
     """
     return Satisfaction(tuple((literal, _count(literal, final), wanted) for literal, wanted in goal))
 
@@ -65,9 +65,9 @@ def _count(literal: Literal[Name], world: World) -> int:
 
 
 def goal_of(start: World, final: World) -> Goal:
-    """What an execution achieved, said of classes: states it set, and things it put ON, INSIDE or in a hand.
+    """What an execution achieved, as class literals: states set, and objects that it put ON, INSIDE or in a hand.
 
-    Being in a room is not counted, nor what was true at the start. Both worlds are of one home.
+    Literals that held at the start, and INSIDE a room, do not count. Both worlds are of one home.
     """
     nodes = nodes_of(final.home)
     counts: Counter[Literal[Name]] = Counter()
@@ -88,7 +88,7 @@ def goal_of(start: World, final: World) -> Goal:
 
 
 def _achieved(start: World, final: World) -> tuple[Iterable[tuple[int, str]], Iterable[Edge]]:
-    """The states that came and the lasting edges that were added."""
+    """The added states and the added lasting edges."""
     if start.home is final.home and start.moved is NOTHING and len(final.agents) == 1 and not final.home.others:
         return _states_set(start, final), _lasting(start, final)
     change = final.changes(start)
@@ -102,7 +102,7 @@ def _states_set(start: World, final: World) -> Iterator[tuple[int, str]]:
 
 
 def _lasting(start: World, final: World) -> Iterator[Edge]:
-    """As `World.changes` tells them; what moved is a world's `extra` rows, and what else is near it is not read."""
+    """The added lasting edges, as in `World.changes`; only `extra` rows of moved objects are read."""
     home = final.home
     ids = home.ids
     for key, row in final.moved.extra.items():

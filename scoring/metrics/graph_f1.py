@@ -14,10 +14,10 @@ from hearth.scoring.signature import signature
 from hearth.simulation.world.bits import indices
 
 MatchBy = Literal["none", "swap1", "best"]
-"""How instances of a class may stand for each other; see `score`."""
+"""Assignment of instances of a class; see `score`."""
 
 Scope = Literal["either", "own"]
-"""Whose objects a graph's tuples are about: those of either program, or those of its own."""
+"""The objects whose tuples count in a graph: those of either program, or those of the graph's own."""
 
 MATCHES: tuple[MatchBy, ...] = get_args(MatchBy)
 SCOPES: tuple[Scope, ...] = get_args(Scope)
@@ -31,8 +31,8 @@ class GraphScore:
         states: over state tuples, (object, state).
         relations: over relation tuples, (relation, from, to).
         both: over the two together.
-        exact: whether no other assignment of instances could score higher; False says that `both` is a lower bound.
-        assigned: (reference node, predicted node) where one object stood for another.
+        exact: whether the assignment of instances is optimal; if False, `both` is a lower bound.
+        assigned: (reference node, predicted node) of instances with different ids.
     """
 
     states: Prf
@@ -73,24 +73,24 @@ def score(
 ) -> GraphScore:
     """Compare the final graph of a prediction with the reference's (thesis 5.6.1, A.3).
 
-    Only tuples with an end in a named object or a character count. Rooms and doors are no such objects, but an object's
-    relation to its room counts. With scope `either`, named objects are those of either program, in both graphs; with
-    `own`, each graph's tuples are about its own program's objects.
+    Only tuples with an end in a named object or a character count. Rooms and doors are not named objects, but an
+    object's relation to its room counts. With scope `either`, named objects are those of either program, in both
+    graphs; with `own`, each graph's named objects are those of its own program.
 
-    Matching: `none` compares ids. `swap1`, as published, takes the best over asking about another instance of its class
-    in place of one of the reference's objects (one object at a time, ids still compared); with scope `own` it gives the
-    numbers of tables 5.2 to 5.5. `best` takes the best over all alignments of the two graphs (see
-    `hearth.scoring.metrics.alignment`); it does not depend on which ids the instances of a class have.
+    Matching: `none` compares ids. `swap1`, as published, is the best over replacing one of the reference's objects by
+    another instance of its class (one object at a time, ids still compared); with scope `own` it gives the numbers of
+    tables 5.2 to 5.5. `best` is the best over all alignments of the two graphs (see
+    `hearth.scoring.metrics.alignment`); it does not depend on the ids of instances.
 
-    Empty sets: when neither graph has a tuple of a kind they agree, and all three numbers are 1; when only one has, 0.
+    Empty sets: if neither graph has a tuple of a kind, all three numbers are 1; if only one has, 0.
 
     Args:
         predicted: the graph or world after the predicted program.
         reference: the graph or world after the reference program, in the same environment.
-        named_predicted: the nodes the predicted program names; ids that are not in the graph are passed over.
+        named_predicted: the nodes that the predicted program names; ids outside the graph are ignored.
         named_reference: likewise.
-        match: how instances may stand for each other.
-        scope: whose objects are looked at.
+        match: assignment of instances.
+        scope: the objects that count.
 
     Examples:
         >>> from hearth.scoring.metrics import graph_f1
@@ -119,7 +119,7 @@ def _swap1(a: View, b: View, ours: Set[int], theirs: Set[int], scope: Scope) -> 
 
 
 def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pair, ...], Set[int]]]:
-    """The reference's objects, then with each replaced by every other instance of its class."""
+    """The reference's objects, then variants with one object replaced by another instance of its class."""
     yield (), objects
     for node in sorted(objects):
         for other in reference.nodes.instances[reference.nodes.classes[node]]:
@@ -128,7 +128,7 @@ def _substitutes(reference: View, objects: Set[int]) -> Iterator[tuple[tuple[Pai
 
 
 def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
-    """What the graphs share, ids compared, and have: tuples about some nodes of each, and about its characters."""
+    """The matches of two graphs by id: of tuples about some nodes of each, and about the characters."""
     mine, yours = a.mask(ours | a.nodes.characters), b.mask(theirs | b.nodes.characters)
     found = (a, b, mine, yours), (a, a, mine, mine), (b, b, yours, yours)
     states = (sum(len(x.states(i) & y.states(i)) for i in indices(one & other)) for x, y, one, other in found)
@@ -136,12 +136,12 @@ def _compared(a: View, b: View, ours: Set[int], theirs: Set[int]) -> Matches:
 
 
 def _shared(a: View, b: View, ours: int, theirs: int) -> int:
-    """How many edges are in both graphs, with an end among some nodes of the first and one among some of the second."""
+    """Number of common edges with an end in the first graph's nodes and one in the second's."""
     every, same = ours | theirs, ours & theirs
     found = 0
     for i in indices(every):
         if same >> i & 1:
-            # An edge from another of the nodes is counted as going out from there.
+            # An edge from another of these nodes is counted there, as outgoing.
             out, into = -1, ~every
         else:
             out, into = theirs if ours >> i & 1 else ours, 0

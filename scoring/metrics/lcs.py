@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Level = Literal["step", "action", "object"]
-"""What is compared: whole instructions, their actions alone, or their objects alone (first, then second)."""
+"""The compared items: whole instructions, their actions only, or their objects only (first, then second)."""
 
 LEVELS: tuple[Level, ...] = get_args(Level)
 
@@ -44,9 +44,9 @@ def lcs_signature(level: str = "step", instances: bool = False) -> str:
 def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[Hashable]:
     """The items that are compared at a level.
 
-    Names are compared without regard to case, spaces, hyphens and underscores. Instances are left out (eq. 4.2)
-    unless asked for; then an object is its node where it is bound, else its number in the program. Modifiers are left
-    out. A step of another agent than the first is another step. A line that does not parse is one item at every level.
+    Names are compared ignoring case, spaces, hyphens and underscores. Instances are ignored (eq. 4.2) unless
+    `instances` is set; then an object is identified by its node if bound, else by its number. Modifiers are ignored.
+    The agent is part of a step, except the first. A line that does not parse is one item at every level.
     """
     return _levels(lines, instances)[LEVELS.index(level)]
 
@@ -73,7 +73,7 @@ def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsSco
 
 
 def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -> list[LcsScore]:
-    """The scores of many pairs, in order; the same as `score` on each, only faster."""
+    """The scores of many pairs, in order; equal to `score` of each, but faster."""
     pairs = list(pairs)
     sides = [[_levels(pair[side], instances) for pair in pairs] for side in (0, 1)]
     columns = [_pairwise(*([found[level] for found in side] for side in sides)) for level in range(len(LEVELS))]
@@ -108,10 +108,10 @@ def matrix(
     5,000 x 5,000 programs of 10 steps take about a second on two cores, and 100 MB.
 
     Args:
-        programs_a: one program a row.
-        programs_b: one program a column; it may be the same list.
-        level: what is compared.
-        instances: tell the instances of a class apart.
+        programs_a: one program per row.
+        programs_b: one program per column; may be the same list.
+        level: the compared items.
+        instances: whether to distinguish instances of a class.
         workers: threads; -1 takes all cores.
     """
     import numpy as np

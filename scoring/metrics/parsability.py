@@ -1,4 +1,4 @@
-"""Parsability: whether a program could be a program at all, wherever it is to run (thesis 5.6.1, A.3)."""
+"""Parsability: whether a program is well formed, independent of its environment (thesis 5.6.1, A.3)."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ SIGNATURE = signature("parsable", level="program")
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """What is wrong with one line.
+    """The fault of one line.
 
     Attributes:
-        line: which of the program's lines, from 0.
+        line: number of the line, from 0.
         code: SYNTAX, UNKNOWN_ACTION, WRONG_ARITY or UNKNOWN_OBJECT.
         found: the words at fault.
     """
@@ -31,13 +31,13 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Parsability:
-    """How much of a program is well formed. A program without lines is: it is counted apart.
+    """Well-formed lines of a program. A program without lines is well formed, and counted separately.
 
     Attributes:
-        lines: how many there are.
-        arity: how many are steps of a known action with the right number of objects (A.3).
-        names: how many of those also name only known objects.
-        faults: at most one a line, the gravest.
+        lines: number of lines.
+        arity: number of steps of a known action with the right number of objects (A.3).
+        names: number of those that also name only known objects.
+        faults: at most one per line, the gravest.
     """
 
     lines: int
@@ -47,12 +47,12 @@ class Parsability:
 
     @property
     def parsable(self) -> bool:
-        """As published: every line's number of arguments is right."""
+        """As published: every line has the right number of arguments."""
         return self.arity == self.lines
 
     @property
     def named(self) -> bool:
-        """Ours: also every name is known."""
+        """Ours: every name is also known."""
         return self.names == self.lines
 
 
@@ -75,7 +75,7 @@ def _first(line: Line, number: int, knowledge: Knowledge) -> Iterator[Fault]:
 
 @lru_cache(maxsize=65_536)
 def _fault(name: str, objects: tuple[str, ...], knowledge: Knowledge) -> tuple[Code, str] | None:
-    """The gravest fault of a step, whatever instances it is about: a corpus says the same thing many times."""
+    """The gravest fault of a step without instances, cached because steps recur in a corpus."""
     action = knowledge.action(name)
     if action is None:
         return Code.UNKNOWN_ACTION, name

@@ -1,4 +1,4 @@
-"""What augmenting gave, told beside the thesis."""
+"""Figures of augmentation beside the thesis."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from hearth.schemas.diagnostics import HearthError
 
 
 def test_every_pair_is_accounted_for(made):
-    told = outcome(made.out / "augment")
-    assert told["pairs_tried"] == told["programs_out"] + sum(told["rejected"].values())
-    assert told["programs_out"] == len(made.rows("augment"))
-    assert told["repaired"] == told["programs_out"] + told["rejected"].get("DUPLICATE", 0)
-    assert not set(told["rejected"]) & set(map(str, GIVEN_UP)) and told["repaired_share"] == 1
+    found = outcome(made.out / "augment")
+    assert found["pairs_tried"] == found["programs_out"] + sum(found["rejected"].values())
+    assert found["programs_out"] == len(made.rows("augment"))
+    assert found["repaired"] == found["programs_out"] + found["rejected"].get("DUPLICATE", 0)
+    assert not set(found["rejected"]) & set(map(str, GIVEN_UP)) and found["repaired_share"] == 1
 
 
 def test_the_table_of_the_thesis_stands_beside_ours(made):
-    told = figures(made.out / "publish")
+    found = figures(made.out / "publish")
     originals = {row["program_id"] for row in made.rows("sample") if row["executable"]}
-    table = told["table"]
+    table = found["table"]
     assert table["executable"]["ours"]["programs"] == len(originals)
     assert table["augmented"]["ours"]["programs"] == len(made.rows("augment"))
     assert table["all"]["thesis"] == THESIS["all"]
     lengths = [len(row["steps"]) for row in made.rows("augment")]
     assert table["augmented"]["ours"]["average_length"] == pytest.approx(sum(lengths) / len(lengths), abs=0.01)
-    assert sum(told["lengths"]["augmented"].values()) == len(lengths)
-    assert told["near_duplicates"] == 0
-    assert told["bytes_a_program"] > 0
+    assert sum(found["lengths"]["augmented"].values()) == len(lengths)
+    assert found["near_duplicates"] == 0
+    assert found["bytes_a_program"] > 0
 
 
 def test_what_was_not_augmented_has_no_outcome(tmp_path):
@@ -41,8 +41,8 @@ def test_pairs_are_spread_over_executions_to_reach_a_target(built, inputs):
     built = built(inputs / "crowd", variants=9, target=3)
     built.run("ingest", "validate", "sample", "augment")
     executions = sum(row["executable"] for row in built.rows("sample"))
-    told = outcome(built.out / "augment")
-    assert 3 <= told["pairs_tried"] <= 3 * ALLOWANCE + executions
+    found = outcome(built.out / "augment")
+    assert 3 <= found["pairs_tried"] <= 3 * ALLOWANCE + executions
 
 
 def test_figures_are_drawn_the_same_each_time(made, tmp_path):

@@ -1,10 +1,10 @@
-"""Rehearsing: every pair of a program and a home is accounted for."""
+"""Coverage: every pair of a program and a home is counted."""
 
 import orjson
 import pytest
 from typer.testing import CliRunner
 
-from hearth.analysis.coverage import rehearse, scripts
+from hearth.analysis.coverage import measure_coverage, scripts
 from hearth.cli import app
 from hearth.grounding.environments.sampling import Size
 from hearth.pipelines.engine.build_homes import Homes
@@ -33,7 +33,7 @@ def homes():
 
 
 def test_every_pair_ran_or_is_proven_impossible(folder, homes):
-    found = rehearse(scripts([str(folder)], homes.knowledge), homes, homes.names())
+    found = measure_coverage(scripts([str(folder)], homes.knowledge), homes, homes.names())
     assert (found.programs, found.rejected, found.pairs, found.ran) == (2, 1, 4, 2)
     ((script, where, failure),) = found.impossible
     assert failure.code is Code.CONTRADICTION and where == "any home" and script.place.endswith("late.txt")
@@ -44,22 +44,22 @@ def test_every_pair_ran_or_is_proven_impossible(folder, homes):
 
 
 def test_the_size_asked_for_is_kept(folder, homes):
-    found = rehearse(scripts([str(folder)], homes.knowledge), homes, ("maple",), size=Size(470, 480))
+    found = measure_coverage(scripts([str(folder)], homes.knowledge), homes, ("maple",), size=Size(470, 480))
     assert found.nodes and all(460 <= count <= 480 for count in found.nodes)
 
 
 def test_the_command_names_the_two_steps(folder):
     done = CliRunner().invoke(app, ["sample", str(folder), "--home", "maple", "--homes", "all", "--json"])
     assert done.exit_code == 0
-    told = orjson.loads(done.stdout)
-    assert told["ran"] == 1 and told["failures_by_code"] == {"CONTRADICTION": 1}
-    (one,) = told["impossible"]
+    result = orjson.loads(done.stdout)
+    assert result["ran"] == 1 and result["failures_by_code"] == {"CONTRADICTION": 1}
+    (one,) = result["impossible"]
     assert [step["step"] for step in one["steps"]] == [3, 4]
     assert [step["line"] for step in one["steps"]] == [7, 8]
 
 
 @pytest.mark.parametrize("option", ["--nodes", "--limit"])
-def test_what_only_a_rehearsal_heeds_is_refused_without_one(tmp_path, option):
+def test_options_of_coverage_are_refused_without_it(tmp_path, option):
     done = CliRunner().invoke(app, ["sample", "--out", str(tmp_path), option, "100"])
     assert done.exit_code == 2 and option in done.stderr and "SOURCE" in done.stderr
 
@@ -79,6 +79,6 @@ def test_what_a_home_cannot_hold_is_proven_for_that_home_alone(tmp_path):
     (tmp_path / "homes" / "cell.json").write_bytes(orjson.dumps(graph))
     (tmp_path / "bath.txt").write_text("Bath\nIn it.\n\n\n[Walk] <bathroom> (1)\n")
     homes = Homes(Settings(homes=("maple", "cell"), homes_folder=str(tmp_path / "homes")))
-    found = rehearse(scripts([str(tmp_path / "bath.txt")], homes.knowledge), homes, homes.names())
+    found = measure_coverage(scripts([str(tmp_path / "bath.txt")], homes.knowledge), homes, homes.names())
     assert [(where, failure.code) for _, where, failure in found.impossible] == [("cell", Code.NO_ROOM)]
     assert (found.ran, found.summary()["proven_impossible"]) == (1, 1)

@@ -43,10 +43,10 @@ def test_only_the_animated_actions_unless_all_are_asked_for(drawn, knowledge):
 
 def test_averages_are_near_table_4_1(drawn):
     programs, _ = drawn
-    told = [text for one in programs for text in one.descriptions]
+    texts = [text for one in programs for text in one.descriptions]
     steps = sum(len(one.steps) for one in programs) / len(programs)
-    sentences = sum(len(re.findall(r"\.(?:\s|$)", text)) for text in told) / len(told)
-    words = sum(len(text.split()) for text in told) / len(told)
+    sentences = sum(len(re.findall(r"\.(?:\s|$)", text)) for text in texts) / len(texts)
+    words = sum(len(text.split()) for text in texts) / len(texts)
     assert steps == pytest.approx(9.6, abs=0.5)
     assert sentences == pytest.approx(3.4, abs=0.2)
     assert words == pytest.approx(20.5, abs=1)

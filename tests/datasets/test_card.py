@@ -28,7 +28,7 @@ def test_the_card_names_every_table_and_column(folder):
     for table, schema in TABLES.items():
         section = text.split(f"\n### {table} (")[1].split("\n##")[0]
         assert all(f"| `{name}` |" in section for name in schema.names)
-    assert "(dealt at random:" in text
+    assert "(random split:" in text
 
 
 def test_the_card_s_funnel_is_the_ledger_s(folder):
@@ -39,13 +39,13 @@ def test_the_card_s_funnel_is_the_ledger_s(folder):
 
 
 def test_croissant_has_the_hash_of_every_part(folder):
-    told = orjson.loads((folder / "croissant.json").read_bytes())
-    files = [each for each in told["distribution"] if each["@type"] == "cr:FileObject"]
+    described = orjson.loads((folder / "croissant.json").read_bytes())
+    files = [each for each in described["distribution"] if each["@type"] == "cr:FileObject"]
     assert {each["contentUrl"] for each in files} == {
         path.relative_to(folder).as_posix() for path in folder.glob("*/part-*.parquet")
     }
     assert all(file_digest(folder / each["contentUrl"]) == each["sha256"] for each in files)
-    assert [each["name"] for each in told["recordSet"]] == list(TABLES)
+    assert [each["name"] for each in described["recordSet"]] == list(TABLES)
 
 
 @pytest.mark.slow

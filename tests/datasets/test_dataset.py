@@ -64,11 +64,13 @@ def test_macros_rebuild_the_same_graphs(ds):
     for program_id in list(ds)[:6]:
         for run in ds[program_id].runs:
             for tick in range(len(run.row["ticks"]) + 1):
-                told = {"id": run.row["execution_id"], "tick": tick}
+                parameters = {"id": run.row["execution_id"], "tick": tick}
                 graph = run.graph(tick)
-                _, edges = ds.rows("SELECT * FROM graph_edges($id, $tick) ORDER BY ALL", **told)
+                _, edges = ds.rows("SELECT * FROM graph_edges($id, $tick) ORDER BY ALL", **parameters)
                 assert edges == [tuple(edge) for edge in graph.edges]
-                _, nodes = ds.rows("SELECT id, class_name, states FROM graph_nodes($id, $tick) ORDER BY id", **told)
+                _, nodes = ds.rows(
+                    "SELECT id, class_name, states FROM graph_nodes($id, $tick) ORDER BY id", **parameters
+                )
                 assert nodes == [(node.id, node.class_name, sorted(node.states)) for node in graph.nodes]
 
 
@@ -244,10 +246,10 @@ def test_no_dataset_and_a_newer_one(made, tmp_path):
 
 def test_the_manifest_has_the_digest_of_every_file(made):
     folder = made.out / "publish"
-    told = read_json(folder / "manifest.json")["files"]
+    files = read_json(folder / "manifest.json")["files"]
     there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-    assert set(told) == there - {"manifest.json", "timing.json", "catalog.duckdb"}
-    for name, entry in told.items():
+    assert set(files) == there - {"manifest.json", "timing.json", "catalog.duckdb"}
+    for name, entry in files.items():
         assert file_digest(folder / name) == entry["sha256"]
 
 

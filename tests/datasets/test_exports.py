@@ -121,11 +121,11 @@ def test_graphs_read_by_networkx(ds, tmp_path, form):
         base = tmp_path / f"out/{file_name(run.row['execution_id'])}.{moment}"
         if form == "graphml":
             found = networkx.read_graphml(f"{base}.graphml", node_type=int, force_multigraph=True)
-            states = {node: told["states"].split() for node, told in found.nodes(data=True)}
-            edges = {(source, told["relation"], target) for source, target, told in found.edges(data=True)}
+            states = {node: attributes["states"].split() for node, attributes in found.nodes(data=True)}
+            edges = {(source, attributes["relation"], target) for source, target, attributes in found.edges(data=True)}
         else:
             found = networkx.node_link_graph(json.loads(base.with_name(f"{base.name}.json").read_text()), edges="edges")
-            states = {node: told["states"] for node, told in found.nodes(data=True)}
+            states = {node: attributes["states"] for node, attributes in found.nodes(data=True)}
             edges = {(source, relation, target) for source, target, relation in found.edges(keys=True)}
         assert states == {node.id: list(node.states) for node in graph.nodes}
         assert edges == {tuple(edge) for edge in graph.edges}
@@ -154,7 +154,7 @@ def test_only_what_was_asked_for(ds, tmp_path):
 
 
 def test_what_cannot_be_exported_is_named(ds, tmp_path):
-    with pytest.raises(HearthError, match="no form"):
+    with pytest.raises(HearthError, match="unknown form"):
         export(ds, "word", tmp_path / "out")
     with pytest.raises(HearthError, match="no program `nobody`"):
         export(ds, "nl", tmp_path / "out", Wanted(("nobody",)))

@@ -18,10 +18,10 @@ def common(one, other):
     return before[-1]
 
 
-def plainly(rows, likeness, least):
+def plainly(rows, similarity, least):
     """Each with each."""
     pairs = ((i, j) for j in range(len(rows)) for i in range(j))
-    return sorted((i, j) for i, j in pairs if likeness(rows[i], rows[j]) >= least - 1e-6)
+    return sorted((i, j) for i, j in pairs if similarity(rows[i], rows[j]) >= least - 1e-6)
 
 
 def of_the_longer(one, other):

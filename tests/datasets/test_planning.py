@@ -125,8 +125,8 @@ def behind_two_doors(maple):
 
 def test_a_door_is_walked_to_from_any_room_on_this_side(maple):
     text = problem(behind_two_doors(maple))
-    told = sorted(line.split() for line in text.splitlines() if "this-side" in line)
-    sides = {(start.rsplit("_", 1)[0], side.rstrip(")").rsplit("_", 1)[0]) for _, _, start, side in told}
+    facts = sorted(line.split() for line in text.splitlines() if "this-side" in line)
+    sides = {(start.rsplit("_", 1)[0], side.rstrip(")").rsplit("_", 1)[0]) for _, _, start, side in facts}
     near = {("bathroom", "bedroom"), ("bedroom", "bedroom")}
     assert sides == near | {("kitchen", "living_room"), ("living_room", "living_room")}
 

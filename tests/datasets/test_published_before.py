@@ -25,7 +25,7 @@ from hearth.kb.loading.load import default
 from hearth.pipelines.build import build
 from hearth.schemas.syntax import print_lines
 from hearth.schemas.tables import TABLES
-from hearth.scoring.dataset_scores import judge
+from hearth.scoring.dataset_scores import score_dataset
 from hearth.scoring.evaluate import summarise
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden"
@@ -92,7 +92,7 @@ def test_its_programs_are_perfect_references(ds, tmp_path):
         for run in ds[name].runs
     ]
     (tmp_path / "mine.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-    found = summarise(judge(ds, tmp_path / "mine.jsonl"))
+    found = summarise(score_dataset(ds, tmp_path / "mine.jsonl"))
     assert found.count == len(rows) == 5
     assert {name: value.mean for name, value in found.means.items()} == dict.fromkeys(found.means, 1.0)
 

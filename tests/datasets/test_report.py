@@ -55,9 +55,9 @@ def test_every_program_has_a_row_and_a_story(ds, written, stories):
 
 
 def test_a_story_tells_steps_conditions_and_changes(ds, stories):
-    told = stories[MILK]
-    assert told["steps"][0] == "[Walk] <kitchen> (1)"
-    (run,) = told["runs"]
+    page = stories[MILK]
+    assert page["steps"][0] == "[Walk] <kitchen> (1)"
+    (run,) = page["runs"]
     assert run["failure"] is None
     assert any(text.startswith("inside(milk 1, fridge 1)") for text in run["conditions"])
     assert len(run["ticks"]) == len(ds[MILK].runs[0].row["ticks"])
@@ -65,8 +65,8 @@ def test_a_story_tells_steps_conditions_and_changes(ds, stories):
 
 
 def test_graphs_before_and_after_are_the_datasets(ds, stories):
-    for program_id, told in stories.items():
-        for run, mine in zip(ds[program_id].runs, told["runs"], strict=True):
+    for program_id, page in stories.items():
+        for run, mine in zip(ds[program_id].runs, page["runs"], strict=True):
             for graph, drawn in ((run.start, mine["start"]), (run.final, mine["final"])):
                 edges = {tuple(edge) for edge in graph.edges}
                 assert {tuple(edge) for edge in drawn["edges"]} <= edges
@@ -79,10 +79,10 @@ def test_graphs_before_and_after_are_the_datasets(ds, stories):
 
 
 def test_a_repair_shows_only_what_it_changes(ds, stories):
-    repaired = [(ds[name], told) for name, told in stories.items() if told["repairs"]]
+    repaired = [(ds[name], page) for name, page in stories.items() if page["repairs"]]
     assert repaired
-    for entry, told in repaired:
-        for row, shown in zip(entry.repairs, told["repairs"], strict=True):
+    for entry, page in repaired:
+        for row, shown in zip(entry.repairs, page["repairs"], strict=True):
             assert shown["failure"]["code"] == row["failure"]["code"]
             assert len(row["before"]) - len(shown["removed"]) + len(shown["added"]) == len(row["after"])
             assert shown["removed"] or shown["added"]

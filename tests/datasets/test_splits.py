@@ -6,27 +6,27 @@ import orjson
 import pytest
 
 import hearth
-from hearth.datasets.format.splits import Likeness, Told, groups, leakage, parts, roots, summary
-from hearth.pipelines.engine.final_tables import _told_for_splits
+from hearth.datasets.format.splits import Similarity, SplitProgram, groups, leakage, parts, roots, summary
+from hearth.pipelines.engine.final_tables import _programs_for_splits
 
 LONG = "take the milk out of the fridge and put it on the table"
 
 
-def told(name, steps="a b c d", text="", part="train", root=None):
-    return Told(name, name, part, root or name, tuple(steps.split()), text)
+def program(name, steps="a b c d", text="", part="train", root=None):
+    return SplitProgram(name, name, part, root or name, tuple(steps.split()), text)
 
 
 def test_siblings_and_near_duplicates_are_one_group():
     programs = [
-        told("p1", "a b c d e f g h i j"),
-        told("p1+1", "z z z", root="p1"),
-        told("p2", "a b c d e f g h i k"),
-        told("p3", "q r s", LONG),
-        told("p4", "t u v", LONG.upper() + " "),
-        told("p5", "w x y", "Watch TV."),
-        told("p6", "l m n", "Watch TV."),
+        program("p1", "a b c d e f g h i j"),
+        program("p1+1", "z z z", root="p1"),
+        program("p2", "a b c d e f g h i k"),
+        program("p3", "q r s", LONG),
+        program("p4", "t u v", LONG.upper() + " "),
+        program("p5", "w x y", "Watch TV."),
+        program("p6", "l m n", "Watch TV."),
     ]
-    found = groups(programs, Likeness(programs))
+    found = groups(programs, Similarity(programs))
     assert found == {"p1": "p1", "p1+1": "p1", "p2": "p1", "p3": "p3", "p4": "p3", "p5": "p5", "p6": "p6"}
 
 
@@ -35,18 +35,27 @@ def test_grandchildren_belong_to_the_original():
 
 
 def test_nearness_is_that_of_the_longer_program():
-    programs = [told("p1", "a b c d e f g h i j"), told("p2", "a b c d e f g h i"), told("p3", "a b c d e f g h")]
-    likeness = Likeness(programs)
+    programs = [
+        program("p1", "a b c d e f g h i j"),
+        program("p2", "a b c d e f g h i"),
+        program("p3", "a b c d e f g h"),
+    ]
+    similarity = Similarity(programs)
     one, other, third = (each.steps for each in programs)
-    assert [likeness.by_steps(each) for each in programs] == [{one, other}, {one, other}, {third}]
-    assert [likeness.by_text(each) for each in programs] == [set(), set(), set()]
+    assert [similarity.by_steps(each) for each in programs] == [{one, other}, {one, other}, {third}]
+    assert [similarity.by_text(each) for each in programs] == [set(), set(), set()]
 
 
 def test_leakage_is_counted_by_kind():
-    train = [told("p1", "a b c", LONG), told("p2", "d e f", "Something of quite another kind.")]
-    test = [told("p1+1", "x", root="p1"), told("p3", "a b c"), told("p4", "u v w", LONG + "."), told("p5", "r s t")]
-    likeness = Likeness([*train, *test])
-    assert leakage(train, test, likeness) == {"programs": 4, "siblings": 1, "steps": 1, "texts": 1}
+    train = [program("p1", "a b c", LONG), program("p2", "d e f", "Something of quite another kind.")]
+    test = [
+        program("p1+1", "x", root="p1"),
+        program("p3", "a b c"),
+        program("p4", "u v w", LONG + "."),
+        program("p5", "r s t"),
+    ]
+    similarity = Similarity([*train, *test])
+    assert leakage(train, test, similarity) == {"programs": 4, "siblings": 1, "steps": 1, "texts": 1}
 
 
 def many():
@@ -55,16 +64,16 @@ def many():
         part = "test" if number % 3 == 0 else "train"
         name = f"p{number:02}"
         steps = f"s{number // 2} t{number // 2} u"
-        programs += [told(name, steps, part=part), told(f"{name}+1", f"w{number}", part=part, root=name)]
+        programs += [program(name, steps, part=part), program(f"{name}+1", f"w{number}", part=part, root=name)]
         runs += [(f"{each}@h{home}", each, f"h{home}") for each in (name, f"{name}+1") for home in range(1, 8)]
     return programs, runs
 
 
 def test_no_split_leaks_where_random_rows_would():
     programs, runs = many()
-    rows = list(parts(programs, runs, 3, Likeness(programs)))
+    rows = list(parts(programs, runs, 3, Similarity(programs)))
     assert len(rows) == 3 * len(runs)
-    found = summary(programs, rows, 3, Likeness(programs))["splits"]
+    found = summary(programs, rows, 3, Similarity(programs))["splits"]
     for split in found.values():
         assert split["leakage"]["programs"] > 0
         assert {split["leakage"][kind] for kind in ("siblings", "steps", "texts")} == {0}
@@ -75,7 +84,7 @@ def test_homes_are_where_the_rules_say():
     programs, runs = many()
     home = {execution_id: int(name[1:]) for execution_id, _, name in runs}
     found = {}
-    for row in parts(programs, runs, 3, Likeness(programs)):
+    for row in parts(programs, runs, 3, Similarity(programs)):
         found.setdefault((row["split"], row["part"]), set()).add(home[row["execution_id"]])
     assert found["homes_1_4", "train"] == found["homes_1_4", "test_seen"] == {1, 2, 3, 4}
     assert (found["homes_1_4", "validation"], found["homes_1_4", "test_unseen"]) == ({5}, {5, 6})
@@ -86,14 +95,14 @@ def test_homes_are_where_the_rules_say():
 
 def test_the_deal_does_not_depend_on_order():
     programs, runs = many()
-    assert list(parts(programs, runs, 3, Likeness(programs))) == list(
-        parts(programs[::-1], runs[::-1], 3, Likeness(programs[::-1]))
+    assert list(parts(programs, runs, 3, Similarity(programs))) == list(
+        parts(programs[::-1], runs[::-1], 3, Similarity(programs[::-1]))
     )
 
 
 def test_steps_read_by_columns_are_those_of_the_rows(made):
     folder = made.out / "publish"
-    found = {each.program_id: each.steps for each in _told_for_splits(folder)}
+    found = {each.program_id: each.steps for each in _programs_for_splits(folder)}
     for row in hearth.load(made.out).sql("SELECT program_id, steps FROM programs").to_arrow_table().to_pylist():
         names = [" ".join((step["action"], *(ref["name"] for ref in step["objects"]))) for step in row["steps"]]
         assert [step.strip() for step in found.pop(row["program_id"])] == names
@@ -112,6 +121,6 @@ def test_every_run_has_its_part_in_every_split(ds):
 
 
 def test_leakage_is_published(ds):
-    told = orjson.loads((ds.folder / "splits.json").read_bytes())
-    assert set(told["splits"]) == {"activities", "homes_1_4", "homes_1_5"}
-    assert all(split["leakage"]["siblings"] == 0 for split in told["splits"].values())
+    program = orjson.loads((ds.folder / "splits.json").read_bytes())
+    assert set(program["splits"]) == {"activities", "homes_1_4", "homes_1_5"}
+    assert all(split["leakage"]["siblings"] == 0 for split in program["splits"].values())

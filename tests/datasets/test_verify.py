@@ -155,7 +155,7 @@ def test_a_table_that_is_not_there_is_named(copy):
 def test_a_table_that_an_earlier_version_did_not_have_is_empty(copy):
     shutil.rmtree(copy / "videos")
     manifest = orjson.loads((copy / "manifest.json").read_bytes())
-    manifest["files"] = {name: told for name, told in manifest["files"].items() if not name.startswith("videos/")}
+    manifest["files"] = {name: entry for name, entry in manifest["files"].items() if not name.startswith("videos/")}
     (copy / "manifest.json").write_bytes(orjson.dumps(manifest))
     ds = hearth.load(copy)
     assert len(ds) > 0
@@ -164,11 +164,11 @@ def test_a_table_that_an_earlier_version_did_not_have_is_empty(copy):
 
 
 def test_a_program_dealt_to_both_sides(copy):
-    def dealt(table):
+    def moved(table):
         other = ["test" if split == "train" else "train" for split in table["split"].to_pylist()]
         return table.set_column(table.schema.get_field_index("split"), table.schema.field("split"), [other])
 
-    rewritten(copy, "programs", dealt)
+    rewritten(copy, "programs", moved)
     assert "BAD_TABLE" in codes(copy)
 
 

@@ -1,4 +1,4 @@
-"""Mutated input for every reader: no exception, no record without a row or a reject; every case can be made again."""
+"""Mutation testing of every reader: each record gives a row or a reject, without exceptions; cases are reproducible."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _STAGE_2 = (
 )
 
 DATASET = "dataset.parquet"
-"""The programs of a published dataset; `placed` makes the folder around them."""
+"""File name of a published dataset's programs; `placed` makes the folder around it."""
 
 
 def _programs() -> bytes:
@@ -106,7 +106,7 @@ def _programs() -> bytes:
 
 
 def placed(folder: Path, name: str, data: bytes) -> Path:
-    """Write a case; the path of the source that it is."""
+    """Write a case; returns the path of its source."""
     path = folder / name
     if name == DATASET:
         path = folder / "dataset" / "programs" / "part.parquet"
@@ -149,19 +149,19 @@ _GENTLE = 0.5
 
 
 @dataclass(slots=True)
-class Tally:
-    """What became of one reader's input. Always `records = accepted + rejected`, and `silent` is 0.
+class ReaderCounts:
+    """Counts of one reader's input. Always `records = accepted + rejected`, and `silent` is 0.
 
     Attributes:
-        reader: the reader; `none` where a file was recognised as nothing.
-        inputs: files.
-        refused_whole: files of which nothing could be read, and that said so.
-        records: found in the others.
-        accepted: those that gave a valid program, or else a row.
-        rejected: those that gave only rejects.
-        silent: those of which nothing came: none, or something is wrong.
+        reader: the reader; `none` for files that were not recognised.
+        inputs: number of files.
+        refused_whole: number of files rejected as a whole.
+        records: number of records in the others.
+        accepted: records with a valid program or another row.
+        rejected: records with rejects only.
+        silent: records without any output; must be 0.
         tracebacks: exceptions other than a `HearthError`.
-        longest: seconds for one file.
+        longest: greatest seconds for one file.
     """
 
     reader: str
@@ -176,22 +176,22 @@ class Tally:
 
     @property
     def adds_up(self) -> bool:
-        """Whether nothing vanished."""
+        """Whether every record has an output."""
         return self.silent == 0 and self.records == self.accepted + self.rejected
 
 
 @dataclass(slots=True)
 class Report:
-    """What came of it. `crashes` name the input and the case's number, from which `case` makes it again."""
+    """The results. `crashes` name the input and the case's number, from which `case` makes it again."""
 
     cases: int = 0
-    readers: dict[str, Tally] = field(default_factory=dict)
+    readers: dict[str, ReaderCounts] = field(default_factory=dict)
     codes: Counter[str] = field(default_factory=Counter)
     crashes: list[str] = field(default_factory=list)
 
     @property
     def records(self) -> int:
-        """Found in all files."""
+        """Number of records in all files."""
         return sum(row.records for row in self.readers.values())
 
     @property
@@ -199,17 +199,17 @@ class Report:
         """Seconds for the slowest file."""
         return max((row.longest for row in self.readers.values()), default=0.0)
 
-    def row(self, reader: str) -> Tally:
+    def row(self, reader: str) -> ReaderCounts:
         """The row of a reader."""
-        return self.readers.setdefault(reader, Tally(reader))
+        return self.readers.setdefault(reader, ReaderCounts(reader))
 
-    def table(self) -> list[Tally]:
+    def table(self) -> list[ReaderCounts]:
         """The rows by name."""
         return [self.readers[name] for name in sorted(self.readers)]
 
 
 def mutated(data: bytes, chance: Random) -> bytes:
-    """The data with one thing done to it, or up to six; little, so that much of it still reads, or a lot."""
+    """The data after one to six mutations, small or large."""
     found = bytearray(data)
     gentle = chance.random() < _GENTLE
     for _ in range(1 if gentle else chance.randint(1, 6)):
@@ -239,7 +239,7 @@ def case(seed: int, number: int) -> tuple[str, bytes]:
 
 
 def fuzz(known: Knowledge, seconds: float, seed: int, most: int | None = None) -> Report:
-    """Try cases until the time is over, or `most` of them were tried."""
+    """Try cases until the time is over, or until `most` were tried."""
     report = Report()
     end = time.monotonic() + seconds
     with TemporaryDirectory() as folder:
@@ -254,8 +254,8 @@ def fuzz(known: Knowledge, seconds: float, seed: int, most: int | None = None) -
     return report
 
 
-def _attempt(path: Path, known: Knowledge, report: Report) -> Tally:
-    """Read and check one file; the row of the reader that it was for."""
+def _attempt(path: Path, known: Knowledge, report: Report) -> ReaderCounts:
+    """Read and check one file; returns the counts of its reader."""
     reader = "none"
     try:
         readers = {entry.reader for entry in recognise(path, path.name)} - {""}
@@ -274,8 +274,8 @@ def _attempt(path: Path, known: Knowledge, report: Report) -> Tally:
     return report.row(reader)
 
 
-def _count(outputs: list[Row | Reject], row: Tally, codes: Counter[str]) -> None:
-    """A record is accepted where any row came of it, and rejected where only rejects did."""
+def _count(outputs: list[Row | Reject], row: ReaderCounts, codes: Counter[str]) -> None:
+    """Count a record as accepted if it gave any row, and as rejected if it gave only rejects."""
     row.records += 1
     rejects = [output for output in outputs if isinstance(output, Reject)]
     codes.update(reject.code for reject in rejects)
@@ -285,7 +285,7 @@ def _count(outputs: list[Row | Reject], row: Tally, codes: Counter[str]) -> None
 
 
 def _outputs(rows: list[IngestedRow | Reject], known: Knowledge) -> Iterator[Row | Reject]:
-    """What a record gives at the end of both stages."""
+    """The outputs of a record after both stages."""
     for row in rows:
         if isinstance(row, Reject) or row["kind"] != "program":
             yield row

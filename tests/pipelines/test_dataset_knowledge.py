@@ -26,7 +26,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import print_lines
 from hearth.scoring.baselines import Example, random_sampling
-from hearth.scoring.dataset_scores import judge
+from hearth.scoring.dataset_scores import score_dataset
 from hearth.scoring.evaluate import summarise
 
 OVERLAY = {
@@ -112,7 +112,7 @@ def test_its_programs_are_perfect(moved, tmp_path):
     of = dict(ds.rows("SELECT execution_id, program_id FROM executions")[1])
     rows = [{"id": name, "predicted": list(print_lines(ds[of[name]].program))} for name in names]
     (tmp_path / "mine.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
-    found = summarise(judge(ds, tmp_path / "mine.jsonl"))
+    found = summarise(score_dataset(ds, tmp_path / "mine.jsonl"))
     assert found.count == len(names) > 1
     assert {name: value.mean for name, value in found.means.items()} == dict.fromkeys(found.means, 1.0)
 

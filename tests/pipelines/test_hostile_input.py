@@ -12,7 +12,7 @@ import pytest
 from oracles import mutated_input
 
 from hearth.analysis import ratings
-from hearth.analysis.spreadsheet_cells import cell_said, safe_cell
+from hearth.analysis.spreadsheet_cells import original_cell, safe_cell
 from hearth.analysis.synthesis import load
 from hearth.datasets.export.release_layout import stem
 from hearth.pipelines.engine.sources import labelled
@@ -37,7 +37,7 @@ def codes(*paths):
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "'=1", "plain", "", "a=1"])
 def test_cells_come_back_and_none_is_a_formula(text):
-    assert cell_said(safe_cell(text)) == text
+    assert original_cell(safe_cell(text)) == text
     assert not safe_cell(text).startswith(("=", "+", "-", "@", "\t", "\r"))
 
 

@@ -78,13 +78,14 @@ def test_children_inherit_their_parents_steps_and_nothing_that_was_inserted():
 @pytest.mark.slow
 def test_people_agree_more_than_with_the_baselines(real_data):
     from hearth.analysis.coverage import scripts
-    from hearth.analysis.sketch_evaluation import annotated, judge
+    from hearth.analysis.sketch_evaluation import annotated, evaluate_sketches
     from hearth.storage.rejects import Reject
 
     known = default()
     found = scripts([str(real_data / "activityprograms-sample.zip")], known)
     programs = [one for one in found if not isinstance(one, Reject)]
     places = [Home.from_graph(library.load_graph(name, default()), name, known) for name in library.names()[:3]]
-    summary = judge(annotated(real_data / "sketch_annotation.json", "s", programs, known), places, known).summary()
+    sketches = annotated(real_data / "sketch_annotation.json", "s", programs, known)
+    summary = evaluate_sketches(sketches, places, known).summary()
     assert summary["programs"] >= 111
     assert summary["inferred"]["f1"] > max(0.86, summary["keeping_what_people_usually_keep"]["f1"])

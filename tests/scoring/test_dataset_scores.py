@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import hearth
-from hearth.datasets.export.words import sentences
+from hearth.datasets.export.natural_language import sentences
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import Literal
@@ -25,7 +25,7 @@ from hearth.scoring.baselines import (
     random_retrieval,
     random_sampling,
 )
-from hearth.scoring.dataset_scores import chosen, judge, read_line
+from hearth.scoring.dataset_scores import chosen, read_line, score_dataset
 from hearth.scoring.evaluate import summarise
 from hearth.scoring.metrics.parsability import parsability
 
@@ -51,7 +51,7 @@ def written(path, rows):
 
 def test_the_dataset_s_own_programs_are_perfect(ds, tmp_path):
     rows = [{"id": name, "predicted": list(print_lines(program))} for name, program in programs(ds).items()]
-    found = summarise(judge(ds, written(tmp_path / "mine.jsonl", rows)))
+    found = summarise(score_dataset(ds, written(tmp_path / "mine.jsonl", rows)))
     assert (found.count, found.missing, found.incomparable) == (len(rows), 0, 0)
     assert {name: value.mean for name, value in found.means.items()} == dict.fromkeys(found.means, 1.0)
 
@@ -62,7 +62,7 @@ def test_steps_in_words_and_parquet(ds, tmp_path):
         ids.append(name)
         lines.append("\n".join(f"{n}. {text}" for n, text in enumerate(sentences(program, default()), 1)))
     pq.write_table(pa.table({"id": ids, "predicted": lines}), tmp_path / "mine.parquet")
-    found = summarise(judge(ds, tmp_path / "mine.parquet"))
+    found = summarise(score_dataset(ds, tmp_path / "mine.parquet"))
     assert found.means["lcs_step"].mean == 1.0
     assert found.means["parsable"].mean == 1.0
 
@@ -70,7 +70,7 @@ def test_steps_in_words_and_parquet(ds, tmp_path):
 def test_any_number_of_workers_scores_the_same(ds, tmp_path, monkeypatch):
     monkeypatch.setattr("hearth.scoring.dataset_scores.PART", 2)
     rows = [{"id": name, "predicted": list(print_lines(program))[1:]} for name, program in programs(ds).items()]
-    one, two = (judge(ds, written(tmp_path / "mine.jsonl", rows), workers=number) for number in (1, 2))
+    one, two = (score_dataset(ds, written(tmp_path / "mine.jsonl", rows), workers=number) for number in (1, 2))
     assert len(one) > 2 and one == two
 
 
@@ -80,20 +80,22 @@ def test_a_prediction_may_name_program_and_home(ds, tmp_path):
     by_id = [{"id": execution, "predicted": lines[name]} for execution, name, _ in rows]
     by_home = [{"program_id": name, "home": home, "predicted": lines[name]} for _, name, home in rows]
     by_program = [{"program_id": name, "predicted": lines[name]} for name in dict.fromkeys(name for _, name, _ in rows)]
-    told = (by_id, by_home, by_program)
-    expected, *found = (summarise(judge(ds, written(tmp_path / f"{n}.jsonl", each))) for n, each in enumerate(told))
+    row_sets = (by_id, by_home, by_program)
+    expected, *found = (
+        summarise(score_dataset(ds, written(tmp_path / f"{n}.jsonl", each))) for n, each in enumerate(row_sets)
+    )
     assert found == [expected, expected] and expected.missing == 0
     pq.write_table(pa.Table.from_pylist(by_home), tmp_path / "mine.parquet")
-    assert summarise(judge(ds, tmp_path / "mine.parquet")) == expected
+    assert summarise(score_dataset(ds, tmp_path / "mine.parquet")) == expected
     by_home[0]["home"] = "nowhere"
     with pytest.raises(HearthError, match="in nowhere"):
-        judge(ds, written(tmp_path / "bad.jsonl", by_home))
+        score_dataset(ds, written(tmp_path / "bad.jsonl", by_home))
 
 
 def test_missing_predictions_count_as_zero(ds, tmp_path):
     name, program = next(iter(programs(ds).items()))
     rows = [{"id": name, "predicted": list(print_lines(program))}]
-    found = summarise(judge(ds, written(tmp_path / "one.jsonl", rows)))
+    found = summarise(score_dataset(ds, written(tmp_path / "one.jsonl", rows)))
     assert found.missing == found.count - 1 > 0
     assert found.means["lcs_step"].mean == pytest.approx(1 / found.count)
     assert found.means["executable"].mean == pytest.approx(1 / found.count)
@@ -102,25 +104,25 @@ def test_missing_predictions_count_as_zero(ds, tmp_path):
 def test_only_a_part_of_a_split(ds, tmp_path):
     known = programs(ds).keys()
     file = written(tmp_path / "mine.jsonl", [{"id": name, "predicted": []} for name in known])
-    ids = [each.pair.id for each in judge(ds, file, "activities", "train")]
+    ids = [each.pair.id for each in score_dataset(ds, file, "activities", "train")]
     query = "SELECT execution_id FROM splits WHERE split = 'activities' AND part = 'train' ORDER BY 1"
     assert ids == [name for (name,) in ds.rows(query)[1] if name in known]
     assert ids == chosen(ds, "activities", "train")
     with pytest.raises(HearthError, match="no executions in part `x`"):
-        judge(ds, file, "activities", "x")
+        score_dataset(ds, file, "activities", "x")
 
 
 def test_an_unknown_id_is_named_with_its_line(ds, tmp_path):
     with pytest.raises(HearthError, match="no reference has the id `nobody`") as caught:
-        judge(ds, written(tmp_path / "mine.jsonl", [{"id": "nobody", "predicted": []}]))
+        score_dataset(ds, written(tmp_path / "mine.jsonl", [{"id": "nobody", "predicted": []}]))
     assert (str(caught.value.diagnostics[0].code), caught.value.diagnostics[0].line) == ("UNKNOWN_ID", 1)
 
 
 def test_lines_as_programs_and_as_sentences():
     step = (Step("PutIn", (ObjectRef("milk"), ObjectRef("fridge"))),)
     assert read_line(default(), "[PutIn] <milk> (1) <fridge> (1)") == step
-    for said in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
-        assert read_line(default(), said) == step, said
+    for text in ("Put milk in fridge", "3. put the milk in the fridge.", "Step 3: Put milk in fridge"):
+        assert read_line(default(), text) == step, text
 
 
 def walk(name):

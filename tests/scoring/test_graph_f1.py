@@ -56,7 +56,7 @@ cases = st.builds(
 
 
 def naive_best(predicted, reference, ours, theirs, scope):
-    """All bijections of the named classes, tuples compared one by one; what is not named is told apart by class."""
+    """All bijections of the named classes, tuples compared one by one; others are identified by class."""
     classes = {CLASSES[n] for n in ours | theirs}
     groups = [[n for n in THINGS if CLASSES[n] == name] for name in sorted(classes)]
     best = (-1.0, -1.0)

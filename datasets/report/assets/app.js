@@ -1,5 +1,5 @@
 "use strict";
-// The list of programs: searched, sorted, and only the rows in sight are in the page, so that 30,000 open at once.
+// The list of programs, with search and sorting. Only visible rows are in the page, so that 30,000 programs open fast.
 const HEARTH = (() => {
   const COLUMNS = ["title", "program", "origin", "split", "steps", "homes", "repairs", "failure"];
   const PLACE = [1, 0, 2, 3, 4, 5, 6, 7];
@@ -101,11 +101,11 @@ const HEARTH = (() => {
     const page = at("page");
     document.title = `${id} - Hearth`;
     if (!state.order.has(id)) {
-      page.replaceChildren(element("p", `There is no program ${id} in this dataset.`));
+      page.replaceChildren(element("p", `This dataset has no program ${id}.`));
       return;
     }
     page.replaceChildren(element("p", "Opening ...", "quiet"));
-    story(id).then((told) => HEARTH.draw(page, told, (other) => state.order.has(other)))
+    story(id).then((program) => HEARTH.draw(page, program, (other) => state.order.has(other)))
       .catch((error) => page.replaceChildren(element("p", error.message, "bad")));
   }
 

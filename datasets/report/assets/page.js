@@ -18,28 +18,28 @@ HEARTH.draw = (() => {
     return made;
   }
 
-  function shape(name, told, text) {
+  function shape(name, attributes, text) {
     const made = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(told)) made.setAttribute(key, value);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
     if (text !== undefined) made.textContent = text;
     return made;
   }
 
-  function graph(told) {
+  function graph(data) {
     const size = 420;
     const middle = size / 2;
     const drawn = shape("svg", { class: "graph", viewBox: `-90 10 ${size + 180} ${size - 20}`, role: "img" });
-    const place = new Map(told.nodes.map(([id], number) => {
-      const turn = (2 * Math.PI * number) / told.nodes.length - Math.PI / 2;
+    const place = new Map(data.nodes.map(([id], number) => {
+      const turn = (2 * Math.PI * number) / data.nodes.length - Math.PI / 2;
       return [id, [middle + 150 * Math.cos(turn), middle + 150 * Math.sin(turn)]];
     }));
-    for (const [from, relation, to] of told.edges) {
+    for (const [from, relation, to] of data.edges) {
       const [x, y] = place.get(from);
       const [u, v] = place.get(to);
       drawn.append(shape("line", { x1: x, y1: y, x2: u, y2: v, "stroke-width": relation.startsWith("HOLDS") ? 3 : 1 }));
       drawn.append(shape("text", { class: "label", x: x + (u - x) * 0.4, y: y + (v - y) * 0.4 }, relation));
     }
-    for (const [id, name, states] of told.nodes) {
+    for (const [id, name, states] of data.nodes) {
       const [x, y] = place.get(id);
       drawn.append(shape("circle", { cx: x, cy: y, r: 6 }));
       const anchor = x < middle - 20 ? "end" : x > middle + 20 ? "start" : "middle";
@@ -53,7 +53,7 @@ HEARTH.draw = (() => {
     return drawn;
   }
 
-  function said(failure) {
+  function described(failure) {
     const names = failure.names.length ? ` of ${failure.names.join(", ")}` : "";
     const found = failure.actual ? `, found ${failure.actual}` : "";
     return `${failure.code} at step ${failure.tick + 1}: ${failure.action}${names} expects ${failure.expected}${found}`;
@@ -61,8 +61,8 @@ HEARTH.draw = (() => {
 
   function dialogue(repairs) {
     return repairs.flatMap((repair) => {
-      const world = element("p", said(repair.failure), "said world");
-      const handler = element("p", `${repair.handler}: `, "said handler");
+      const world = element("p", described(repair.failure), "bubble world");
+      const handler = element("p", `${repair.handler}: `, "bubble handler");
       for (const [name, lines] of [["del", repair.removed], ["ins", repair.added]]) {
         for (const line of lines) {
           const change = element(name);
@@ -105,8 +105,8 @@ HEARTH.draw = (() => {
       const now = new Set(tick ? run.ticks[tick - 1].steps : []);
       steps.forEach((line, number) => line.classList.toggle("now", now.has(number)));
       where.textContent = `after step ${tick} of ${run.ticks.length}`;
-      const told = tick ? run.ticks[tick - 1].changes : [];
-      changes.replaceChildren(told.length ? list(told) : element("p", tick ? "changes nothing" : "the start", "quiet"));
+      const lines = tick ? run.ticks[tick - 1].changes : [];
+      changes.replaceChildren(lines.length ? list(lines) : element("p", tick ? "changes nothing" : "the start", "quiet"));
       const frame = run.frames.filter((each) => each.tick === tick).at(-1);
       if (frame) picture.src = frame.file.split("/").map(encodeURIComponent).join("/");
     }
@@ -144,38 +144,38 @@ HEARTH.draw = (() => {
   }
 
   function runCards(run, steps) {
-    const end = run.failure ? element("p", said(run.failure), "bad") : element("p", "runs to its end", "good");
+    const end = run.failure ? element("p", described(run.failure), "bad") : element("p", "runs to its end", "good");
     const about = card(`In ${run.home}`, end, element("h3", "Preconditions"),
       run.conditions.length ? list(run.conditions) : element("p", "none", "quiet"));
     return [about, player(run, steps), card("Before", graph(run.start)), card("After", graph(run.final))];
   }
 
-  return (page, told, known) => {
+  return (page, program, known) => {
     clearInterval(timer);
     timer = 0;
-    const head = [element("h2", told.title), element("p", told.description),
-      element("p", `${told.id}; ${told.origin}, ${told.split}, activity ${told.activity}`, "quiet")];
-    if (told.parent && known(told.parent)) {
+    const head = [element("h2", program.title), element("p", program.description),
+      element("p", `${program.id}; ${program.origin}, ${program.split}, activity ${program.activity}`, "quiet")];
+    if (program.parent && known(program.parent)) {
       const line = element("p", "made from ");
-      const link = element("a", told.parent);
-      link.href = `#/program/${encodeURIComponent(told.parent)}`;
+      const link = element("a", program.parent);
+      link.href = `#/program/${encodeURIComponent(program.parent)}`;
       line.append(link);
       head.push(line);
     }
-    const steps = told.steps.map((text) => element("li", text));
+    const steps = program.steps.map((text) => element("li", text));
     const lines = element("ol", null, "steps");
     lines.append(...steps);
     const columns = element("div", null, "columns");
     const first = [card("Steps", lines)];
-    if (told.repairs.length) first.push(card("Repairs", ...dialogue(told.repairs)));
+    if (program.repairs.length) first.push(card("Repairs", ...dialogue(program.repairs)));
     const place = element("div", null, "columns");
     const choose = element("select");
     choose.ariaLabel = "home";
-    choose.append(...told.runs.map((run, number) => new Option(run.home, number)));
+    choose.append(...program.runs.map((run, number) => new Option(run.home, number)));
     const open = () => {
       clearInterval(timer);
       timer = 0;
-      const run = told.runs[Number(choose.value)];
+      const run = program.runs[Number(choose.value)];
       if (!run) { columns.replaceChildren(...first, element("p", "It was not run.", "quiet")); return; }
       const [about, played, before, after] = runCards(run, steps);
       const [left, right] = [element("div", null, "side"), element("div", null, "side")];
@@ -188,7 +188,7 @@ HEARTH.draw = (() => {
     const label = element("p", "Run in ", "controls");
     label.append(choose);
     page.replaceChildren(...head, label, columns, place);
-    const seen = [(run) => run.film, (run) => run.frames.length].map((test) => told.runs.findIndex(test));
+    const seen = [(run) => run.film, (run) => run.frames.length].map((test) => program.runs.findIndex(test));
     const pictured = seen.find((number) => number >= 0);
     if (pictured) choose.value = String(pictured);
     open();

@@ -19,32 +19,32 @@ ASKED = "How do you do this at home? Answer with one step a line."
 
 
 def sentences(program: Program, knowledge: Knowledge) -> list[str]:
-    """Each step in words, instances left out: `Put cup on table`."""
+    """Each step as a natural-language sentence without instances: `Put cup on table`."""
     actions = knowledge.actions
     return [say(actions[step.action], [ref.name for ref in step.objects]) for step in program.steps]
 
 
 def numbered(program: Program, knowledge: Knowledge) -> str:
-    """A program as planning papers prompt with it: `Task: ...` and `Step 1: ...`."""
+    """A program in the prompt format of planning papers: `Task: ...` and `Step 1: ...`."""
     steps = (f"Step {number}: {text}" for number, text in enumerate(sentences(program, knowledge), 1))
     return "\n".join((f"Task: {program.title}", *steps))
 
 
 def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
-    """Three files: `steps.jsonl` (id, title, description, steps in words), `chat.jsonl` (pairs of user and assistant
-    for instruction tuning) and `examples.json` (a list of numbered texts, as planning papers read them).
+    """Three files: `steps.jsonl` (id, title, description, natural-language steps), `chat.jsonl` (pairs of user and
+    assistant for instruction tuning) and `examples.json` (a list of numbered texts, the format of planning papers).
 
     Returns:
-        how many programs.
+        Number of programs.
     """
     knowledge = dataset.knowledge
     steps, chat, examples = [], [], []
     for row in programs(dataset, wanted):
         program = program_of(row)
-        said = sentences(program, knowledge)
-        told = {"program_id": row["program_id"], "split": row["split"], "title": row["title"]}
-        steps.append(orjson.dumps({**told, "description": row["description"], "steps": said}))
-        chat.append(orjson.dumps(_pair(row, said)))
+        texts = sentences(program, knowledge)
+        known = {"program_id": row["program_id"], "split": row["split"], "title": row["title"]}
+        steps.append(orjson.dumps({**known, "description": row["description"], "steps": texts}))
+        chat.append(orjson.dumps(_pair(row, texts)))
         examples.append(numbered(program, knowledge))
     write(to / "steps.jsonl", b"".join(line + b"\n" for line in steps))
     write(to / "chat.jsonl", b"".join(line + b"\n" for line in chat))
@@ -52,8 +52,8 @@ def nl(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     return len(steps)
 
 
-def _pair(row: ProgramRow, said: list[str]) -> dict[str, Any]:
+def _pair(row: ProgramRow, texts: list[str]) -> dict[str, Any]:
     question = "\n".join(part for part in (ASKED, "", row["title"], row["description"]) if part is not None).strip()
-    answer = "\n".join(f"{number}. {text}" for number, text in enumerate(said, 1))
+    answer = "\n".join(f"{number}. {text}" for number, text in enumerate(texts, 1))
     messages = [{"role": "user", "content": question}, {"role": "assistant", "content": answer}]
     return {"program_id": row["program_id"], "split": row["split"], "messages": messages}
