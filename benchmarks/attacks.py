@@ -1,0 +1,271 @@
+"""Attacks by strangers' data, and by those who ask: none may write, read or run anything outside, fail badly or hang.
+
+`python benchmarks/attacks.py` prints a table of them and ends with 1 if one works; `--only GROUP` runs some. Each runs
+in a folder of its own, beside a guard folder that must stay as it is. A new attack is a row of the functions below.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import shutil
+import sys
+import tempfile
+import time
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[1]]
+
+from hostile import rename  # noqa: E402
+
+from hearth.datasets.dataset import Dataset  # noqa: E402
+from hearth.schemas.diagnostics import HearthError  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[1]
+INPUT = ROOT / "tests/golden/pipelines/input"
+SECRET = "the-secret-of-the-guard"
+SLOWEST = 20.0
+"""Seconds that an attack may take."""
+
+
+class Ground(NamedTuple):
+    """Where an attack takes place: a folder of its own, the folder that must stay as it is, and a dataset."""
+
+    folder: Path
+    guard: Path
+    dataset: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Attack:
+    """One attack. Its call may raise HearthError; what it returns must not hold the guard's secret."""
+
+    group: str
+    name: str
+    call: Callable[[Ground], Any]
+
+
+QUERIES = (
+    "COPY (SELECT 1) TO '{part}'", "COPY (SELECT 1) TO '{guard}/x.csv'",
+    "COPY programs TO '{part}' (USE_TMP_FILE false)",
+    "EXPLAIN ANALYZE COPY (SELECT 1) TO '{part}'", "EXPLAIN ANALYZE COPY (SELECT 1) TO '{guard}/secret.csv'",
+    "EXPLAIN (ANALYZE) COPY (SELECT 1) TO '{part}'", "EXPLAIN (ANALYZE, FORMAT json) COPY (SELECT 1) TO '{part}'",
+    "explain/**/analyze/*\u00e9*/copy (select 1) to '{part}'", "-- a\nEXPLAIN ANALYZE\nCOPY (SELECT 1) TO '{part}'",
+    "WITH x AS (COPY (SELECT 1) TO '{part}') FROM x", "EXPLAIN ANALYZE WITH x AS (COPY (SELECT 1) TO '{part}') FROM x",
+    "WITH x AS (COPY (SELECT 1) TO '{dataset}/new.parquet') SELECT 1",
+    "FROM (WITH x AS (COPY (SELECT 1) TO '{part}') FROM x)", "FROM query($$COPY (SELECT 1) TO '{part}'$$)",
+    "FROM query('WITH x AS (COPY (SELECT 1) TO ''{part}'') FROM x')", "SELECT 1) AS a; COPY (SELECT 1) TO '{part}'; --",
+    "SELECT 1; COPY (SELECT 1) TO '{part}'", "PREPARE x AS COPY (SELECT 1) TO '{part}'", "EXECUTE x",
+    "EXPORT DATABASE '{dataset}/programs'", "EXPORT DATABASE '{guard}/new'", "IMPORT DATABASE '{guard}'",
+    "ATTACH '{guard}/x.duckdb' AS x", "ATTACH '{dataset}/x.duckdb' AS x", "DETACH memory", "USE memory",
+    "CREATE TABLE x AS SELECT 1", "CREATE OR REPLACE VIEW programs AS SELECT 1", "DROP VIEW programs",
+    "EXPLAIN ANALYZE DROP VIEW programs", "EXPLAIN ANALYZE CREATE TABLE x AS SELECT 1", "DELETE FROM programs",
+    "SET enable_external_access = true", "SET allowed_directories = ['/']", "RESET lock_configuration",
+    "PRAGMA enable_external_access", "SET VARIABLE x = 1", "INSTALL httpfs", "LOAD '{guard}/secret.csv'", "LOAD httpfs",
+    "CALL enable_logging()", "CHECKPOINT", "VACUUM", "BEGIN", "FROM read_text('{guard}/secret.csv')",
+    "FROM read_csv('{guard}/secret.csv')", "FROM '{guard}/secret.csv'", "FROM read_blob('{guard}/secret.csv')",
+    "FROM glob('{guard}/*')", "FROM read_text('{dataset}/../guard/secret.csv')", "FROM sniff_csv('{guard}/secret.csv')",
+    "FROM read_text('{dataset}/link')", "FROM read_json('{guard}/secret.csv')", "SELECT getenv('HOME')",
+    "FROM read_parquet('http://127.0.0.1:9/x.parquet')", "FROM 's3://nowhere/x.parquet'", "FROM duckdb_secrets()",
+    "FROM sql_auto_complete('SEL')", "FROM QUERIES", "FROM sys", "SELECT '", "EXPLAIN", "EXPLAIN ANALYZE", "", ";",
+)  # fmt: skip
+
+
+def queries() -> Iterator[Attack]:
+    """Questions that would write, read elsewhere, or open what is closed."""
+
+    def ask(query: str, ground: Ground) -> Any:
+        (ground.dataset / "link").unlink(missing_ok=True)
+        part = next((ground.dataset / "programs").glob("*.parquet"))
+        words = {"part": part, "guard": ground.guard, "dataset": ground.dataset}
+        text = query
+        for name, value in words.items():
+            text = text.replace(f"{{{name}}}", str(value))
+        return Dataset.open(ground.dataset).rows(text)
+
+    for query in QUERIES:
+        yield Attack("sql", query[:60], lambda ground, query=query: ask(query, ground))
+
+
+NAMES = ("../../../../guard/x", "{guard}/x", "..", ".", "..\\..\\guard\\x", "a/../../../../guard/x", "x\0y", "n" * 400)
+
+
+def exports() -> Iterator[Attack]:
+    """Homes, programs and origins with hostile names, in every form of export."""
+    from hearth.datasets.export.formats import FORMATS, export
+
+    def write(form: str, name: str, ground: Ground) -> None:
+        copy = shutil.copytree(ground.dataset, ground.folder / "dataset")
+        name = name.replace("{guard}", str(ground.guard))
+        rename(copy, "cabin", name)
+        rename(copy, "crowd:P1", f"{name}:{name}")
+        export(Dataset.open(copy), form, ground.folder / "a/out")
+
+    for number, name in enumerate(NAMES):
+        for form in list(FORMATS)[number % 2 :: 2]:
+            yield Attack("export", f"{form}: {name[:40]!a}", lambda ground, f=form, n=name: write(f, n, ground))
+
+
+def names() -> Iterator[Attack]:
+    """Names as archives and stores list them."""
+    from hearth.storage.names import file_name, inside
+    from hearth.storage.stores import fetched
+
+    def unzip(name: str, ground: Ground) -> Any:
+        path = ground.folder / "dataset.zip"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("ds/manifest.json", "{}")
+            archive.writestr(f"ds/{name}".replace("{guard}", str(ground.guard)), "x")
+        return fetched(f"zip://ds::{path}")
+
+    for name in (*NAMES[:6], "/{guard}/x", "a//../../../guard/x", "./../x", "c:/x", "\\\\host\\x", "..", "tables/.."):
+        yield Attack("url", f"zip member {name[:40]!a}", lambda ground, n=name: unzip(n, ground))
+    for name in (*NAMES, "", "/", "c:x", "a/..", "\udcff"):
+        yield Attack("path", f"inside {name[:40]!a}", lambda ground, n=name: _must_stay(inside, ground, n))
+        yield Attack("path", f"file_name {name[:40]!a}", lambda ground, n=name: _must_stay(
+            lambda folder, text: folder / file_name(text), ground, n))  # fmt: skip
+
+
+def _must_stay(make: Callable[[Path, str], Path], ground: Ground, name: str) -> None:
+    path = make(ground.folder, name.replace("{guard}", str(ground.guard)))
+    path.write_text("x")
+    assert path.resolve().is_relative_to(ground.folder.resolve()), path
+
+
+def inputs() -> Iterator[Attack]:
+    """Files that never end or lie elsewhere, where a file is named, and where data names one."""
+    from hearth.kb.loading.load import default
+    from hearth.scoring.environments import by_row
+    from hearth.scoring.graph_files import final_graph
+    from hearth.scoring.predictions import Pair, read_pairs
+    from hearth.storage.inputs import load_yaml, read_input
+
+    def read(reader: Callable[[Path], Any], name: str, ground: Ground) -> Any:
+        return reader(_prepared(ground) / name)
+
+    for reader in (read_input, final_graph, read_pairs, load_yaml):
+        for name in ("/dev/zero", "pipe", "zero", ".", "loop", "x\0y"):
+            title = f"{reader.__name__} {name!a}"
+            yield Attack("file", title, lambda ground, r=reader, n=name: read(r, n, ground))
+    places = (
+        "/dev/zero",
+        "pipe",
+        "zero",
+        "../guard/secret.csv",
+        "/etc/passwd",
+        "out/secret.csv",
+        "loop",
+        ".",
+        "..",
+        "x\0",
+    )
+    for name in places:
+        yield Attack("reference", f"graph: {name!a}", lambda ground, n=name: by_row(
+            _prepared(ground) / "predictions.jsonl", default())(Pair("p", (), (), 1, {"graph": n})))  # fmt: skip
+
+
+def _prepared(ground: Ground) -> Path:
+    os.mkfifo(ground.folder / "pipe")
+    for name, target in (("zero", "/dev/zero"), ("out", ground.guard), ("loop", "loop")):
+        (ground.folder / name).symlink_to(target)
+    return ground.folder
+
+
+YAML = {
+    "aliases": "a0: &a0 [x, x]\n" + "".join(f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}]\n" for n in range(1, 60)),
+    "keys": "a0: &a0 {x: 1}\n" + "".join(f"a{n}: &a{n} {{k: *a{n - 1}, l: *a{n - 1}}}\n" for n in range(1, 60)),
+    "itself": "rooms: &a [*a]\n",
+    "deep": "a: " + "[" * 5_000 + "]" * 5_000,
+    "open": "[" * 100_000,
+    "many": "[" + "x, " * 200_000 + "]",
+    "long": "#" * 5_000_000,
+    "python": "!!python/object/apply:os.system ['touch {guard}/x']",
+}
+
+
+def yaml_files() -> Iterator[Attack]:
+    """YAML that stands for more than it takes to write, or would call something."""
+    from hearth.homes.library import layout_of
+    from hearth.kb.loading.load import default
+    from hearth.repair.variants import load_chances
+    from hearth.storage.inputs import load_yaml
+
+    def read(reader: Callable[[Path], Any], text: str, ground: Ground) -> None:
+        path = ground.folder / "home.yaml"
+        path.write_text(text.replace("{guard}", str(ground.guard)))
+        reader(path)
+
+    readers = {"home": lambda path: layout_of(path, default()), "chances": load_chances, "yaml": load_yaml}
+    for kind, reader in readers.items():
+        for name, text in YAML.items():
+            yield Attack("yaml", f"{kind}: {name}", lambda ground, r=reader, t=text: read(r, t, ground))
+
+
+GROUPS = (queries, exports, names, inputs, yaml_files)
+
+
+def state(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def outcome(attack: Attack, dataset: Path, before: dict[str, bytes]) -> str:
+    """What an attack achieved; "" for nothing."""
+    with tempfile.TemporaryDirectory() as made:
+        ground = Ground(Path(made) / "own/ground", Path(made) / "guard", dataset)
+        ground.folder.mkdir(parents=True)
+        ground.guard.mkdir()
+        (ground.guard / "secret.csv").write_text(f"a\n{SECRET}\n")
+        guard, started = state(ground.guard), time.perf_counter()
+        try:
+            found = attack.call(ground)
+        except HearthError as error:
+            found = error.diagnostics
+        except Exception as error:
+            return f"{type(error).__name__}: {error}"[:100]
+        seconds = time.perf_counter() - started
+        if state(ground.guard) != guard or state(dataset) != before:
+            return "something was written"
+        if SECRET in repr(found):
+            return "something was read"
+        return f"it took {seconds:.0f} seconds" if seconds > SLOWEST else ""
+
+
+def prepared_dataset(folder: Path) -> Path:
+    """A small dataset of the golden tests' input."""
+    from hearth.pipelines.build import build
+
+    sources = [INPUT / "crowd", INPUT / "programs/evening.txt", INPUT / "release"]
+    build([str(path) for path in sources], str(folder), homes=("cabin",), homes_folder=str(INPUT / "homes"), pictures=0)
+    return folder / "publish"
+
+
+def main() -> int:
+    """Run them all, print the table, and say how many worked."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--only", default="", help="a group")
+    options.add_argument("--dataset", type=Path, help="a published dataset to attack a copy of; without, one is built")
+    asked = options.parse_args()
+    worked = count = 0
+    with tempfile.TemporaryDirectory() as made:
+        given = asked.dataset
+        dataset = Path(shutil.copytree(given, Path(made) / "publish")) if given else prepared_dataset(Path(made))
+        before = state(dataset)
+        for group in GROUPS:
+            for attack in group():
+                if asked.only in ("", attack.group):
+                    done = outcome(attack, dataset, before)
+                    count, worked = count + 1, worked + bool(done)
+                    with contextlib.suppress(BrokenPipeError):
+                        print(f"{attack.group:10} {attack.name!a:66} {done or 'nothing'}", flush=True)
+    print(f"{count} attacks, {worked} worked")
+    return int(worked > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
