@@ -51,7 +51,7 @@ REFERENCES = (
     ("frames", "execution_id", "executions", "execution_id"),
     ("videos", "execution_id", "executions", "execution_id"),
 )
-"""References: table and column, and the table and key that must contain the value; null is no reference."""
+"""References: table and column, and the table and key that must contain the value; null refers to nothing."""
 
 COUNTED = (
     ("homes", "nodes", "SELECT home, count(*) AS found FROM home_nodes GROUP BY 1"),
