@@ -172,7 +172,7 @@ def load_repairs(layers: Layers, actions: Mapping[str, Action], faults: Faults) 
     result = {}
     for name, entry in yaml_entries(layers, "repairs.yaml", faults).items():
         fields = entry.value if isinstance(entry.value, dict) else {}
-        for key in sorted(fields.keys() - _REPAIR_KEYS):
+        for key in sorted(fields.keys() - _REPAIR_KEYS - {"do"}):  # version 0.1 described edits, which nothing read
             faults.at(entry, f"`{key}` is not part of a repair", f"parts are {', '.join(sorted(_REPAIR_KEYS))}")
         if fields.get("on") not in Code.__members__:
             faults.at(entry, f"`{fields.get('on')}` is not a failure code")

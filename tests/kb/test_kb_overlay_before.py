@@ -95,3 +95,9 @@ def test_what_an_overlay_of_before_changes_is_changed_and_no_more(laid, knowledg
     assert found.actions["Read"].groups == knowledge.actions["Read"].groups
     assert found.affords("Read", 0, "cup") and not knowledge.affords("Read", 0, "cup")
     assert knowledge.affords("Wipe", 0, "table") and not found.affords("Wipe", 0, "table")
+
+
+def test_a_repair_of_version_0_1_loads_without_its_edits(tmp_path):
+    entry = "already_open:\n  on: IS_OPEN\n  actions: [Open]\n  do: [remove]\n  say: leave it open\n"
+    (tmp_path / "repairs.yaml").write_text(entry)
+    assert load(overlay=tmp_path).repairs["already_open"].say == "leave it open"
