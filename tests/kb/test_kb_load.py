@@ -124,7 +124,7 @@ def test_faults_of_actions(tmp_path):
 
 def test_faults_of_repairs_and_associations(tmp_path):
     (tmp_path / "repairs.yaml").write_text(
-        "one: {on: NOT_CLOSE, actions: [Fly]}\ntwo: {on: SLEEPY}\nthree: {on: NOT_CLOSE, do: [before Walk]}\n"
+        "one: {on: NOT_CLOSE, actions: [Fly]}\ntwo: {on: SLEEPY}\nthree: {on: NOT_CLOSE, then: [Walk]}\n"
     )
     (tmp_path / "associations.csv").write_text(
         "name,relation,other,weight,evidence\npen,serves,Wright,3,ours\npen,likes,paper,3,ours\npenn,goes_with,paper,x,ours\n"
@@ -136,7 +136,7 @@ def test_faults_of_repairs_and_associations(tmp_path):
         "`x` is not a weight",
         "`Fly` is not a known action",
         "`SLEEPY` is not a failure code",
-        "`do` is not part of a repair",
+        "`then` is not part of a repair",
     ]
 
 
