@@ -6,6 +6,7 @@ Bad input becomes a message and an exit status here, for all commands.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from pathlib import Path
@@ -149,11 +150,11 @@ class Commands(TyperGroup):
             return super().invoke(ctx)
         except (BrokenPipeError, typer.Abort, typer.Exit):
             raise
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as stop:
             kept = ctx.invoked_subcommand in COMMANDS["Make a dataset"]
             after = " Complete parts are kept: the same command continues from there." if kept else ""
             print(f"Stopped.{after}", file=sys.stderr)
-            raise typer.Exit(STOPPED) from None
+            raise typer.Exit(TERMINATED if isinstance(stop, Terminated) else STOPPED) from None
         except Exception as error:
             if ctx.params.get("debug") or _is_of_typer(error):
                 raise
@@ -162,6 +163,13 @@ class Commands(TyperGroup):
 
 STOPPED = 128 + 2
 """The status after an interrupt (signal 2) from the keyboard, as in shells."""
+
+TERMINATED = 128 + 15
+"""The status of what was asked to end (signal 15)."""
+
+
+class Terminated(KeyboardInterrupt):
+    """The command was asked to end: it stops as at the keyboard."""
 
 
 def _is_of_typer(error: Exception) -> bool:
@@ -242,7 +250,16 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line. Statuses: 0 done, 1 bad input, 2 wrong usage."""
+    """Run the command line. Statuses: 0 done, 1 bad input, 2 wrong usage, 130 and 143 stopped."""
+    import signal
+
+    def stop(number: int, frame: object) -> NoReturn:
+        raise Terminated
+
+    signal.signal(signal.SIGTERM, stop)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # half characters, and terminals that have few
     script = Path(sys.argv[0]).name == "cli.py"
     app(prog_name="python cli.py" if script else "hearth")
 

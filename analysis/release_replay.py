@@ -112,7 +112,7 @@ def _read(value: dict[str, Any], home: str, knowledge: Knowledge) -> tuple[Progr
     if isinstance(text, Diagnostic) or isinstance(graphs, Diagnostic):
         return tuple(fault for fault in (text, graphs) if isinstance(fault, Diagnostic))
     written, faults = parse_program(text, place)
-    program, wrong = grammar.check(written, knowledge, place, text.splitlines())
+    program, wrong = grammar.check(written, knowledge, place, text.split("\n"))
     return (*faults, *wrong) or (program, graphs)
 
 

@@ -108,7 +108,7 @@ def check_text(
     from hearth.kb import grammar
 
     parsed = parse_programs(text, file)
-    source = text.splitlines()
+    source = text.split("\n")
     faults = list(parsed.diagnostics)
     warnings: list[Diagnostic] = []
     for program in parsed.programs:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.numbers import number_of
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -84,9 +85,10 @@ def _state(text: str) -> tuple[int, str]:
 
 
 def _number(text: str, whole: str) -> int:
-    if not text.isdigit():
-        _refuse(f"`{text}` in `{whole}` is not a node id", _IDS)
-    return int(text)
+    number = number_of(text)
+    if number is None:
+        _refuse(f"`{text[:40]}` in `{whole[:80]}` is not a node id", _IDS)
+    return number
 
 
 def _node(class_name: str, node_id: int, knowledge: Knowledge) -> Node:

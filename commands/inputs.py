@@ -47,7 +47,7 @@ def read_program(file: Path, known: Knowledge) -> Program:
     if isinstance(text, Diagnostic):
         raise HearthError(text)
     written, faults = parse_program(text, str(file))
-    program, wrong = grammar.check(written, known, str(file), text.splitlines())
+    program, wrong = grammar.check(written, known, str(file), text.split("\n"))
     if faults or wrong:
         raise HearthError((*faults, *wrong))
     return program

@@ -40,6 +40,16 @@ def emit(value: Any) -> None:
     sys.stdout.flush()
 
 
+_CONTROL = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"} | {
+    code: f"\\u{code:04x}" for code in (*range(0x202A, 0x202F), *range(0x2066, 0x206A))
+}
+
+
+def shown(text: str) -> str:
+    """Text of others for a terminal: what would move its cursor, colour it or turn it around is escaped."""
+    return text if text.isprintable() else text.translate(_CONTROL)
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
@@ -72,7 +82,7 @@ def figures(values: Mapping[str, Any]) -> None:
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], title: str = "") -> None:
     """Print a table: drawn by rich on a terminal, plain aligned columns elsewhere. Numbers are right-aligned."""
-    cells = [[_text(cell) for cell in row] for row in rows]
+    columns, cells = [shown(name) for name in columns], [[_text(cell) for cell in row] for row in rows]
     numeric = [_is_numeric(row[number] for row in cells) for number in range(len(columns))]
     if sys.stdout.isatty():
         _rich_table(columns, cells, numeric, title)
@@ -107,7 +117,7 @@ def _text(cell: Any) -> str:
         return f"{cell:,}"
     if isinstance(cell, float):
         return f"{cell:,.3f}"
-    return str(cell)
+    return shown(str(cell))
 
 
 def _is_numeric(cells: Iterable[str]) -> bool:
@@ -137,18 +147,18 @@ def explain(fault: Diagnostic, *, colour: bool = False, kind: str = "error") -> 
         |         ^^^^^^^^^^^ did you mean `television`?
     """
     red, blue, bold, reset = (_RED, _BLUE, _BOLD, _RESET) if colour else ("", "", "", "")
-    lines = [f"{red}{kind}[{fault.code}]{reset}: {bold}{_one_line(fault.message)}{reset}"]
+    lines = [f"{red}{kind}[{fault.code}]{reset}: {bold}{_one_line(shown(fault.message))}{reset}"]
     pad = " " * max(3, len(str(fault.line or "")))
     if fault.place():
-        lines.append(f"{pad}{blue}-->{reset} {fault.place()}")
+        lines.append(f"{pad}{blue}-->{reset} {shown(fault.place())}")
     if fault.source and fault.line:
         source, column = _window(fault.source, fault.column)
         lines.append(f"{pad} {blue}|{reset}")
         lines.append(f"{blue}{fault.line:>{len(pad)}} |{reset} {source}")
         marks = _underline(source, column, fault.length)
-        lines.append(f"{pad} {blue}|{reset} {red}{marks}{reset} {fault.suggestion}".rstrip())
+        lines.append(f"{pad} {blue}|{reset} {red}{marks}{reset} {shown(fault.suggestion)}".rstrip())
     elif fault.suggestion:
-        lines.append(f"{pad} {blue}={reset} {fault.suggestion}")
+        lines.append(f"{pad} {blue}={reset} {shown(fault.suggestion)}")
     return "\n".join(lines)
 
 

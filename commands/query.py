@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import date, datetime, time
+from decimal import Decimal
 from typing import Annotated, Any
 
 import typer
@@ -32,7 +34,7 @@ def query(dataset: options.Dataset, sql: Sql, rows: Rows = 100, as_json: options
     text = sys.stdin.read() if sql == "-" else sql
     columns, found = Dataset.open(dataset).rows(text, rows + 1 if rows and not as_json else None)
     if as_json:
-        output.emit([dict(zip(columns, row, strict=True)) for row in found])
+        output.emit([dict(zip(columns, map(_json, row), strict=True)) for row in found])
         return
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
@@ -45,5 +47,17 @@ def _cell(value: Any) -> Any:
     if isinstance(value, list | dict):
         import orjson
 
-        return orjson.dumps(value, default=str).decode()
+        return orjson.dumps(_json(value)).decode()
     return value
+
+
+def _json(value: Any) -> Any:
+    """A value of DuckDB's as JSON has it; what JSON has no form for, numbers of more than 64 bits too, as text."""
+    if isinstance(value, dict):
+        return {str(key): _json(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_json(each) for each in value]
+    if isinstance(value, Decimal):
+        return float(value)
+    plain = value is None or isinstance(value, str | float | datetime | date | time)
+    return value if plain or (isinstance(value, int) and abs(value) < 2**63) else str(value)

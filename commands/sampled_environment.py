@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Literal, Name
+from hearth.schemas.numbers import number_of
 
 if TYPE_CHECKING:
     from hearth.grounding.environments.sampling import Size
@@ -84,12 +85,16 @@ def _counted(text: str) -> tuple[Literal[Name], int]:
     if found is None:
         _refuse(f"`{text}` is not a goal", _FORM)
     name, subject, target, count = found.groups()
+    number = number_of(count or "1")
+    if number is None:
+        _refuse(f"`{count[:20]}` is not a count", _FORM)
     terms = (subject,) if target is None else (subject, target)
-    return Literal(name.upper(), tuple(map(_word, terms))), int(count or 1)
+    return Literal(name.upper(), tuple(map(_word, terms))), number
 
 
 def _word(text: str) -> str | int:
-    return int(text) if text.isdigit() else text
+    number = number_of(text)
+    return text if number is None else number
 
 
 def _failed(failure: Failure) -> HearthError:

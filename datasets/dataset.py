@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.damage import reading
-from hearth.datasets.format.catalog import absent_tables, attach
+from hearth.datasets.format.catalog import absent_tables, attach, without_zones
 from hearth.datasets.questions import check_question
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
@@ -150,7 +150,7 @@ class Dataset:
         relation = self.sql(query, **parameters)
         try:
             found = relation if limit is None or self._explains(query) else relation.limit(limit)
-            return list(relation.columns), found.fetchall()
+            return list(relation.columns), without_zones(found).fetchall()
         except duckdb.Error as error:
             raise _refused(error) from error
 

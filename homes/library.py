@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
+from hearth.schemas.numbers import number_of
 from hearth.storage.inputs import read_input
 
 IDS = ".ids.csv"
@@ -152,9 +153,10 @@ def _ids(path: Path) -> dict[str, int]:
     found: dict[str, int] = {}
     with path.open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
-            number, name = row.get("id") or "", row.get("name") or ""
-            if not number.isdigit() or not name or name in found or int(number) in found.values():
-                raise HearthError.of(Code.BAD_TABLE, f"`{number},{name}` repeats an id or a name", file=str(path),
+            number, name = number_of(row.get("id") or ""), row.get("name") or ""
+            if number is None or not name or name in found or number in found.values():
+                message = f"`{row.get('id')},{name}` repeats an id or a name, or lacks one"
+                raise HearthError.of(Code.BAD_TABLE, message, file=str(path),
                                      suggestion="columns id and name, each once")  # fmt: skip
-            found[name] = int(number)
+            found[name] = number
     return found

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.numbers import stored
 
 Point = tuple[float, float, float]
 """(x, y, z) in metres, y upwards."""
@@ -84,7 +85,7 @@ def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
     """
     try:
         nodes = tuple(map(read_node, data["nodes"]))
-        edges = tuple(Edge(e["from_id"], e["relation_type"], e["to_id"]) for e in data["edges"])
+        edges = tuple(map(_edge, data["edges"]))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise HearthError.of(
             Code.BAD_GRAPH,
@@ -116,17 +117,38 @@ def read_node(data: Mapping[str, Any]) -> Node:
     Raises:
         KeyError, TypeError, ValueError, AttributeError: a field that it needs is missing, or one is of a wrong kind.
     """
-    box = data.get("bounding_box")
+    box, prefab, yaw = data.get("bounding_box"), data.get("prefab_name"), data.get("yaw")
+    if yaw is not None and type(yaw) not in (int, float):
+        raise TypeError(f"yaw is {type(yaw).__name__}, not a number")
     return Node(
-        int(data["id"]),
-        str(data["class_name"]),
-        str(data.get("category") or ""),
-        tuple(map(str, data.get("properties") or ())),
-        tuple(map(str, data.get("states") or ())),
-        data.get("prefab_name"),
+        stored(data["id"]),
+        _word(data["class_name"]),
+        _word(data.get("category") or ""),
+        tuple(map(_word, _listed(data.get("properties")))),
+        tuple(map(_word, _listed(data.get("states")))),
+        None if prefab is None else _word(prefab),
         Box(_point(box["center"]), _point(box["size"])) if box else None,
-        data.get("yaw"),
+        yaw,
     )
+
+
+def _edge(data: Mapping[str, Any]) -> Edge:
+    source, target = data["from_id"], data["to_id"]
+    if type(source) is not int or type(target) is not int:
+        raise TypeError("an edge needs numbers for from_id and to_id")
+    return Edge(stored(source), _word(data["relation_type"]), stored(target))
+
+
+def _word(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{type(value).__name__} where a word is expected")
+    return value
+
+
+def _listed(value: Any) -> Iterable[Any]:
+    if isinstance(value, str):
+        raise TypeError("a word where a list is expected")
+    return value or ()
 
 
 def _point(values: Iterable[float]) -> Point:

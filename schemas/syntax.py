@@ -131,7 +131,7 @@ def _blocks(text: str, several: bool) -> Iterator[_Block]:
     block = _Block([], [])
     splitter = Splitter()
     after_blank = False
-    for number, raw in enumerate(text.splitlines(), 1):
+    for number, raw in enumerate(text.split("\n"), 1):
         line = raw.strip()
         if not line:
             after_blank = True

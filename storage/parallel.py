@@ -9,7 +9,8 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import connection
+from contextlib import contextmanager
+from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.context import BaseContext
 from typing import TypeVar
 
@@ -18,8 +19,45 @@ Result = TypeVar("Result")
 
 
 def context() -> BaseContext:
-    """How processes are started: never by forking a process that may hold threads or locks."""
-    return multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    """How processes are started: never by forking a process that may hold threads or locks.
+
+    An interrupt at the keyboard waits until a worker has started (`begin`): before, it would print where it was.
+    """
+    if sys.platform != "linux":
+        return multiprocessing.get_context("spawn")
+    resource_tracker.ensure_running()  # it unblocks signals itself
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return multiprocessing.get_context("forkserver")
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold signals to stop until workers are started: nobody knows yet of one that is half started."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    waiting: list[int] = []
+    before = {
+        number: signal.signal(number, lambda number, frame: waiting.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
+    for stopped in waiting:
+        signal.raise_signal(stopped)
+
+
+def end(pool: ProcessPoolExecutor) -> None:
+    """Stop what workers are at: their build was stopped, and they need not have had the signal."""
+    for process in list((pool._processes or {}).values()):
+        process.terminate()
 
 
 def begin() -> None:
@@ -27,6 +65,8 @@ def begin() -> None:
     what to do, and at once when it is killed.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if sys.platform != "win32":
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
@@ -67,4 +107,10 @@ def _results(function: Callable[[Job], Result], jobs: Sequence[Job], workers: in
         yield from map(function, jobs)
         return
     with ProcessPoolExecutor(min(workers, len(jobs)), context(), begin) as pool:
-        yield from pool.map(function, jobs)
+        try:
+            with uninterrupted():
+                results = pool.map(function, jobs)
+            yield from results
+        except KeyboardInterrupt:
+            end(pool)
+            raise

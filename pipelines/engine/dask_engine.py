@@ -79,11 +79,11 @@ class DaskEngine:
         Raises:
             HearthError: a partition killed several workers, or the cluster is gone; complete parts are kept.
         """
+        client = self.client  # it says so where dask is not installed
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
 
         running: dict[Any, Partition] = {}
-        client = self.client
         done = as_completed(loop=client.loop)
         try:
             for partition in itertools.islice(partitions, self.count * AHEAD):

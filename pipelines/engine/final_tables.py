@@ -208,7 +208,7 @@ def _sketches(job: Job) -> Iterator[SketchRow]:
     for path in _parts(job, "ingest"):
         for row in read_rows(path, ["kind", "description_id", "keep", "text"]):
             if row["kind"] == "sketch":
-                steps = row["text"].splitlines()
+                steps = row["text"].removesuffix("\n").split("\n")
                 yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
 
 

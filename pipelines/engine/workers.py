@@ -14,7 +14,7 @@ from hearth.pipelines.engine.stage import Done, Job, Partition, RecordsSeen, run
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.manifest import read_manifest
-from hearth.storage.parallel import begin, context
+from hearth.storage.parallel import begin, context, end, uninterrupted
 from hearth.storage.partitions import Counts, part_path, rejects_path
 from hearth.storage.stores import store
 
@@ -42,6 +42,8 @@ class Workers:
         return self
 
     def __exit__(self, *error: object) -> None:
+        if self._pool is not None and isinstance(error[1], KeyboardInterrupt):
+            end(self._pool)
         self._stop()
         gc.set_threshold(*self._thresholds)
         gc.unfreeze()
@@ -77,7 +79,8 @@ class Workers:
         running: dict[Future[Counts], Partition] = {}
         while True:
             for partition in itertools.islice(partitions, self.count * AHEAD - len(running)):
-                running[pool.submit(run_here, job, partition)] = partition
+                with uninterrupted():
+                    running[pool.submit(run_here, job, partition)] = partition
             if not running:
                 return
             done, _ = wait(running, timeout=_POLL_SECONDS, return_when=FIRST_COMPLETED)

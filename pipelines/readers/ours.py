@@ -13,6 +13,7 @@ from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
+from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rows import IngestedRow
 from hearth.schemas.structs import QuantityRow
@@ -157,4 +158,6 @@ def _step(value: Mapping[str, Any]) -> Step:
 
 
 def _quantities(found: Any) -> list[QuantityRow]:
-    return [{"name": normal_name(str(one["name"])), "quantity": int(one.get("quantity") or 1)} for one in found or ()]
+    return [
+        {"name": normal_name(str(one["name"])), "quantity": stored(one.get("quantity") or 1)} for one in found or ()
+    ]

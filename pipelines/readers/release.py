@@ -18,6 +18,7 @@ from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, read_node
+from hearth.schemas.numbers import stored
 from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
 from hearth.schemas.structs import ChangeRow, ConditionRow, GraphRow
 from hearth.schemas.vocabulary import STATE_ID
@@ -245,10 +246,13 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
 
     Raises:
         TypeError: an id is not a number, or a relation not a word.
+    ValueError: an id has more than 32 bits.
     """
     sources, relations, targets = (list(map(itemgetter(place), edges)) for place in range(3))
     if not {*map(type, sources), *map(type, targets)} <= {int} or not {*map(type, relations)} <= {str}:
         raise TypeError("an edge needs numbers for ids and a word for its relation")
+    if edges:
+        list(map(stored, (min(sources), max(sources), min(targets), max(targets))))
     return sources, relations, targets
 
 
@@ -280,7 +284,7 @@ def _condition(name: str, objects: list[Any]) -> ConditionRow:
     pairs = objects if objects and isinstance(objects[0], list) else [objects]
     return {
         "name": name,
-        "objects": [{"name": str(o[0]).lower(), "instance": int(o[1])} for o in pairs],
+        "objects": [{"name": str(o[0]).lower(), "instance": stored(o[1])} for o in pairs],
         "step": None,
         "hard": None,
     }
