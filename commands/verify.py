@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import sys
+from typing import Annotated
+
+import typer
 
 from hearth.commands import options, output
 
+Strict = Annotated[bool, typer.Option("--strict", help="Files and fields that no build writes are faults, too.")]
 
-def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: options.Json = False) -> None:
+
+def verify(
+    dataset: options.Dataset, workers: options.Workers = 0, strict: Strict = False, as_json: options.Json = False
+) -> None:
     """Check a dataset: hashes, columns, counts, references, and a replay of every execution.
 
-    The status is 1 if there is a fault; each is printed with its file.
+    The status is 1 if there is a fault; each is printed with its file. The catalog is made again and compared. Files
+    that the manifest does not name are warned of; with --strict they are faults.
 
     \b
     Example:
@@ -25,9 +33,12 @@ def verify(dataset: options.Dataset, workers: options.Workers = 0, as_json: opti
         if found.note:
             print(f"Note: {found.note}", file=sys.stderr)
         output.report(found.faults)
+        output.report(found.unknown, kind="error" if strict else "warning")
+    faults = (*found.faults, *(found.unknown if strict else ()))
     ran = f"{output.counted(found.executions, 'execution')} run again"
     checked_parts = f"{output.counted(found.files, 'file')}, {output.counted(found.rows, 'row')}, {ran}"
-    result = output.counted(len(found.faults), "fault") if found.faults else "no faults"
-    counts = {"files": found.files, "rows": found.rows, "executions": found.executions}
-    output.say(f"{checked_parts}: {result}", {**counts, "note": found.note, "faults": found.faults}, as_json)
-    output.status(len(found.faults), strict=True)
+    result = output.counted(len(faults), "fault") if faults else "no faults"
+    counts = {"files": found.files, "rows": found.rows, "executions": found.executions, "note": found.note}
+    document = {**counts, "faults": found.faults, "unknown": found.unknown}
+    output.say(f"{checked_parts}: {result}", document, as_json)
+    output.status(len(faults), strict=True)

@@ -11,6 +11,7 @@ from typing import Any
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.stored_cases import stored_cases
+from hearth.datasets.verify_folder import AGAIN, manifest_faults, other_files, unknown
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.world.home import Home
@@ -72,6 +73,7 @@ class Verdict:
         executions: number of replayed executions.
         faults: all faults; empty for a valid dataset.
         note: a remark on its knowledge, or "".
+        unknown: files and fields that no build writes; they change no answer.
     """
 
     files: int
@@ -79,6 +81,7 @@ class Verdict:
     executions: int
     faults: tuple[Diagnostic, ...]
     note: str = ""
+    unknown: tuple[Diagnostic, ...] = ()
 
 
 def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
@@ -104,14 +107,16 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     dataset = Dataset.open(path)
     files = len(dataset.manifest["files"])
     note = other_base(dataset.manifest)
-    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
+    odd = tuple(unknown(dataset))
+    faults = (*_files(dataset), *other_files(dataset.folder)) or (*_schemas(dataset), *_knowledge(dataset))
+    faults = faults or tuple(manifest_faults(dataset))
     if faults:
-        return Verdict(files, 0, 0, faults, note)
+        return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in _tables())
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
     if wrong:
-        return Verdict(files, rows, 0, tuple(wrong), note)
-    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note)
+        return Verdict(files, rows, 0, tuple(wrong), note, odd)
+    return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note, odd)
 
 
 def _tables() -> tuple[str, ...]:
@@ -127,20 +132,17 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
     for name, entry in files.items():
         path = dataset.folder / name
         if not path.is_file():
-            yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=_AGAIN)
+            yield Diagnostic(Code.MISSING_FILE, "the manifest has it, the folder has not", str(path), suggestion=AGAIN)
         elif path.stat().st_size != entry["bytes"]:
             message = f"{path.stat().st_size:,} bytes where the manifest says {entry['bytes']:,}"
-            yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=_AGAIN)
+            yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=AGAIN)
         elif file_digest(path) != entry["sha256"]:
-            yield Diagnostic(Code.DAMAGED_FILE, "other bytes than the manifest says", str(path), suggestion=_AGAIN)
+            yield Diagnostic(Code.DAMAGED_FILE, "other bytes than the manifest says", str(path), suggestion=AGAIN)
     for table in _tables():
         for path in sorted((dataset.folder / table).glob("*.parquet")):
             if path.relative_to(dataset.folder).as_posix() not in files:
                 message = "the folder has it, the manifest has not: queries would read it"
                 yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
-
-
-_AGAIN = "fetch or publish the dataset again"
 
 
 def _knowledge(dataset: Dataset) -> Iterator[Diagnostic]:
@@ -158,7 +160,7 @@ def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
     for table, schema in TABLES.items():
         paths = sorted((dataset.folder / table).glob("*.parquet"))
         if not paths:
-            yield Diagnostic(Code.MISSING_FILE, f"no table `{table}`", str(dataset.folder / table), suggestion=_AGAIN)
+            yield Diagnostic(Code.MISSING_FILE, f"no table `{table}`", str(dataset.folder / table), suggestion=AGAIN)
         for path in paths:
             found = pq.read_schema(path)
             if not found.equals(schema):
@@ -166,7 +168,7 @@ def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
                     name for name in schema.names if found.field(name).type != schema.field(name).type
                 ]
                 message = f"other columns than the table's: {', '.join(odd) or 'in another order'}"
-                yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=_AGAIN)
+                yield Diagnostic(Code.BAD_TABLE, message, str(path), suggestion=AGAIN)
 
 
 def _split(dataset: Dataset) -> Iterator[Diagnostic]:

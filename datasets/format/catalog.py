@@ -29,15 +29,21 @@ def _reading(root: str, table: str) -> str:
 
 def write_catalog(folder: Path) -> None:
     """Write `catalog.duckdb` and its SQL, with relative paths that stay valid when the folder is moved."""
+    write_bytes(folder / SQL, statements().encode())
+    with replacing(folder / CATALOG) as temporary:
+        temporary.unlink(missing_ok=True)
+        make_catalog(temporary, folder)
+
+
+def make_catalog(path: Path, folder: Path) -> None:
+    """Make the catalog of a folder's tables as a DuckDB file."""
     import duckdb
 
-    write_bytes(folder / SQL, statements().encode())
-    with replacing(folder / CATALOG) as temporary, TemporaryDirectory() as aside:
+    with TemporaryDirectory() as aside:
         # The search path is separated by commas, which a folder's name may contain; the link's name does not.
         link = Path(aside) / "dataset"
         link.symlink_to(folder.resolve())
-        temporary.unlink(missing_ok=True)
-        with duckdb.connect(str(temporary)) as connection:
+        with duckdb.connect(str(path)) as connection:
             connection.execute(f"SET file_search_path = '{link}'")
             connection.execute(statements())
 

@@ -183,3 +183,100 @@ def test_any_number_of_workers_finds_the_same(copy, monkeypatch):
     monkeypatch.setattr("hearth.datasets.verify.SHARE", 3)
     one, two = (verify(copy, number) for number in (1, 2))
     assert one == two and one.faults
+
+
+def altered(folder, **changed):
+    manifest = orjson.loads((folder / "manifest.json").read_bytes())
+    (folder / "manifest.json").write_bytes(orjson.dumps({**manifest, **changed}))
+
+
+CATALOGS = {
+    "a view": "CREATE OR REPLACE VIEW programs AS SELECT 1 AS program_id",
+    "a view more": "CREATE VIEW harm AS SELECT * FROM read_text('/etc/passwd')",
+    "a macro": "CREATE OR REPLACE MACRO program_text(which) AS 'nothing'",
+    "a table": "CREATE TABLE more(a INTEGER)",
+    "a schema": "CREATE SCHEMA more",
+    "a type": "CREATE TYPE more AS ENUM ('a')",
+    "a sequence": "CREATE SEQUENCE more",
+}
+
+
+@pytest.mark.parametrize("name", CATALOGS)
+def test_an_altered_catalog_is_found_and_never_used(copy, name):
+    import duckdb
+
+    rows = hearth.load(copy).rows("SELECT count(*) FROM programs JOIN executions USING (program_id)")
+    with duckdb.connect(str(copy / "catalog.duckdb")) as connection:
+        connection.execute(CATALOGS[name])
+    (fault,) = verify(copy).faults
+    assert (str(fault.code), fault.file) == ("DAMAGED_FILE", str(copy / "catalog.duckdb"))
+    assert hearth.load(copy).rows("SELECT count(*) FROM programs JOIN executions USING (program_id)") == rows
+
+
+def test_a_catalog_that_is_gone_or_is_none(copy):
+    (copy / "catalog.duckdb").write_bytes(b"harm")
+    assert codes(copy) == ["DAMAGED_FILE"]
+    (copy / "catalog.duckdb").unlink()
+    assert codes(copy) == ["MISSING_FILE"]
+    assert len(hearth.load(copy))
+
+
+@pytest.mark.parametrize("name", ["README.txt", "frames/harm.png", ".hidden", "programs/harm.exe", "knowledge/x.yaml"])
+def test_files_that_the_manifest_does_not_name(copy, name):
+    (copy / name).parent.mkdir(exist_ok=True)
+    (copy / name).write_text("more")
+    found = verify(copy)
+    assert found.faults == () and [fault.file for fault in found.unknown] == [str(copy / name)]
+
+
+def test_a_link_is_named_too(copy):
+    (copy / "link").symlink_to("/etc")
+    assert [fault.file for fault in verify(copy).unknown] == [str(copy / "link")]
+
+
+def test_strict_fails_on_what_is_not_known(copy):
+    from typer.testing import CliRunner
+
+    from hearth.cli import app
+
+    assert CliRunner().invoke(app, ["verify", str(copy), "--strict"]).exit_code == 0
+    (copy / "more.txt").write_text("more")
+    assert CliRunner().invoke(app, ["verify", str(copy)]).exit_code == 0
+    strict = CliRunner().invoke(app, ["verify", str(copy), "--strict"])
+    assert strict.exit_code == 1 and "more.txt" in strict.output
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"settings": {"seed": 7}}, {"plan": {"more": 1}}, {"code": "0"}, {"key": "0"}, {"inputs": {}},
+        {"version": "9.9.9"}, {"action_set": "others/1"}, {"parts": [{"files": ["x"], "rows": 1}]},
+        {"counts": {}}, {"counts": None}, {"parts": 7}, {"settings": None},
+    ],
+    ids=repr,
+)  # fmt: skip
+def test_altered_fields_of_the_manifest(copy, changed):
+    altered(copy, **changed)
+    assert "BAD_JSON" in codes(copy)
+
+
+@pytest.mark.parametrize("field", ["records_in", "through", "partial"])
+def test_altered_counts_of_the_manifest(copy, field):
+    manifest = orjson.loads((copy / "manifest.json").read_bytes())
+    manifest["counts"][field] += 1
+    altered(copy, counts=manifest["counts"])
+    assert "BAD_JSON" in codes(copy)
+
+
+def test_a_part_that_counts_other_rows_and_a_field_of_no_manifest(copy):
+    manifest = orjson.loads((copy / "manifest.json").read_bytes())
+    altered(copy, more=1)
+    assert [fault.found for fault in verify(copy).unknown] == ["more"]
+    manifest["parts"][0]["rows"] += 1
+    altered(copy, parts=manifest["parts"])
+    assert codes(copy) == ["BAD_JSON"]
+
+
+def test_timing_of_no_build(copy):
+    (copy / "timing.json").write_text('{"seconds": 1, "workers": 2, "more": "harm"}')
+    assert codes(copy) == ["BAD_JSON"]

@@ -1,0 +1,119 @@
+"""Checks of a dataset's folder besides its tables: unlisted files, the catalog, the manifest itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.dataset_knowledge import FIELD
+from hearth.datasets.format.catalog import CATALOG, make_catalog
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.storage.files import read_json, value_digest
+from hearth.storage.manifest import NAME, TIMING
+from hearth.storage.partitions import Counts
+
+AGAIN = "fetch or publish the dataset again"
+
+_ASKED = ("stage", "code", "settings", "plan")
+"""Fields of the manifest that its key is the digest of, with the inputs."""
+
+_FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", FIELD, "counts", "parts", "files"}
+
+
+def unknown(dataset: Dataset) -> Iterator[Diagnostic]:
+    """Files and fields that no build of ours writes; tables are looked at elsewhere, since queries would read them."""
+    listed = {*dataset.manifest["files"], NAME, TIMING, CATALOG}
+    for path in sorted(dataset.folder.rglob("*")):
+        name = path.relative_to(dataset.folder).as_posix()
+        if (path.is_symlink() or not path.is_dir()) and name not in listed:
+            message = "the folder has it, the manifest has not"
+            yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
+    for field in sorted(dataset.manifest.keys() - _FIELDS):
+        message = f"a field that no manifest has: `{field}`"
+        yield Diagnostic(Code.BAD_JSON, message, str(dataset.folder / NAME), found=str(field))
+
+
+def manifest_faults(dataset: Dataset) -> Iterator[Diagnostic]:
+    """Fields of the manifest that contradict each other or the tables."""
+    place = str(dataset.folder / NAME)
+    try:
+        found = list(_contradictions(dataset))
+    except (KeyError, TypeError, ValueError, AttributeError, AssertionError) as error:
+        found = [f"a field is missing or of another kind: {type(error).__name__} {error}"]
+    yield from (Diagnostic(Code.BAD_JSON, message, place, suggestion=AGAIN) for message in found)
+
+
+def _contradictions(dataset: Dataset) -> Iterator[str]:
+    content = dataset.manifest
+    asked = {name: content[name] for name in _ASKED}
+    if content["key"] != value_digest([value_digest(asked), content["inputs"]]):
+        yield f"its key is not that of {', '.join(_ASKED)} and inputs"
+    for field, column in (("version", "dataset_version"), ("action_set", "action_set")):
+        for (value,) in dataset.rows(f"SELECT DISTINCT {column} FROM executions ORDER BY 1")[1]:
+            if value != content[field]:
+                yield f"its {field} is {content[field]}, that of its executions {value}"
+    counts = Counts.from_json(content["counts"])
+    counts.check("its counts")
+    ledger = dataset.read("SELECT * FROM ledger WHERE stage = 'publish'")
+    told = (counts.records_in, counts.through, counts.rejected, counts.partial, dict(counts.codes))
+    for row in ledger:
+        codes = {one["code"]: one["count"] for one in row["codes"]}
+        if told != (row["records_in"], row["records_through"], row["records_rejected"], row["partial_rejects"], codes):
+            yield "its counts differ from those of the ledger"
+    yield from _other_parts(dataset.folder, content)
+
+
+def _other_parts(folder: Path, content: dict[str, Any]) -> Iterator[str]:
+    import pyarrow.parquet as pq
+
+    for part in content["parts"]:
+        if not {*part["files"]} <= content["files"].keys():
+            yield "its parts name files that are not listed"
+        elif part["rows"] != sum(pq.read_metadata(folder / name).num_rows for name in part["files"]):
+            yield f"its parts count {part['rows']} rows where `{part['files'][0]}` and the others have another number"
+
+
+def other_files(folder: Path) -> Iterator[Diagnostic]:
+    """What is wrong with the catalog, which is made again and compared, and with the timing."""
+    path, timing = folder / CATALOG, folder / TIMING
+    if not path.is_file():
+        yield Diagnostic(Code.MISSING_FILE, "a dataset has it, the folder has not", str(path), suggestion=AGAIN)
+    elif _holds(path) != _expected(folder):
+        message = "other views or macros than those of a dataset"
+        yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=f"do not open it; {AGAIN}")
+    said = read_json(timing)
+    if timing.exists() and (not isinstance(said, dict) or said.keys() != {"seconds", "workers"}):
+        yield Diagnostic(Code.BAD_JSON, "not the seconds and workers of a build", str(timing), suggestion=AGAIN)
+
+
+def _expected(folder: Path) -> list[Any]:
+    with TemporaryDirectory() as aside:
+        path = Path(aside) / CATALOG
+        make_catalog(path, folder)
+        return _holds(path)
+
+
+_HOLDS = (
+    "SELECT view_name, sql FROM duckdb_views() WHERE NOT internal ORDER BY ALL",
+    "SELECT table_name, sql FROM duckdb_tables() WHERE NOT internal ORDER BY ALL",
+    "SELECT function_name, parameters, macro_definition FROM duckdb_functions() WHERE NOT internal ORDER BY ALL",
+    "SELECT sequence_name FROM duckdb_sequences() ORDER BY ALL",
+    "SELECT type_name FROM duckdb_types() WHERE NOT internal ORDER BY ALL",
+    "SELECT schema_name, sql FROM duckdb_schemas() WHERE NOT internal ORDER BY ALL",
+)
+
+
+def _holds(path: Path) -> list[Any]:
+    """All that a catalog defines; its error, where DuckDB cannot open it. Nothing in it is run."""
+    import duckdb
+
+    closed = {"enable_external_access": "false", "autoload_known_extensions": "false"}
+    try:
+        with duckdb.connect(str(path), read_only=True, config=closed) as connection:
+            return [connection.execute(query).fetchall() for query in _HOLDS]
+    except duckdb.Error as error:
+        return [str(error)]
