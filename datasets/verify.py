@@ -108,8 +108,8 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     files = len(dataset.manifest["files"])
     note = other_base(dataset.manifest)
     odd = tuple(unknown(dataset))
-    faults = (*_files(dataset), *other_files(dataset.folder)) or (*_schemas(dataset), *_knowledge(dataset))
-    faults = faults or tuple(manifest_faults(dataset))
+    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
+    faults = faults or (*other_files(dataset.folder), *manifest_faults(dataset))
     if faults:
         return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in _tables())

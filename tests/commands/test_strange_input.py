@@ -265,4 +265,4 @@ def test_a_build_that_is_asked_to_end_says_what_to_do(tmp_path, number, status):
     build.send_signal(number)
     _, err = build.communicate(timeout=60)
     assert build.returncode == status
-    assert "the same command goes on from there" in err and "Traceback" not in err
+    assert "the same command" in err and "Traceback" not in err
