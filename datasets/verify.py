@@ -109,11 +109,12 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     note = other_base(dataset.manifest)
     odd = tuple(unknown(dataset))
     faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
-    faults = faults or (*other_files(dataset.folder), *manifest_faults(dataset))
+    faults = faults or tuple(other_files(dataset.folder))
     if faults:
         return Verdict(files, 0, 0, faults, note, odd)
     rows = sum(_count(dataset, table) for table in _tables())
     wrong = [*_keys(dataset), *_references(dataset), *_counts(dataset), *_split(dataset)]
+    wrong = wrong or list(manifest_faults(dataset))
     if wrong:
         return Verdict(files, rows, 0, tuple(wrong), note, odd)
     return Verdict(files, rows, _count(dataset, "executions"), tuple(_replays(dataset, workers, seen)), note, odd)
@@ -207,7 +208,7 @@ def _references(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
-    counts = dataset.manifest["counts"]["rows"]
+    counts = (dataset.manifest.get("counts") or {}).get("rows", {})  # whatever else is wrong there is reported later
     for table, number in counts.items():
         if number != _count(dataset, table):
             message = f"{_count(dataset, table):,} rows where the manifest counts {number:,}"

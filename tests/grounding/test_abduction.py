@@ -1,4 +1,4 @@
-"""Conditions abduced from one failure, in worlds built for it: what the program itself has brought about needs no start."""
+"""Conditions abduced from one failure: what the program itself has brought about needs no condition on the start."""
 
 from __future__ import annotations
 
