@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from hearth.datasets.damage import reading
 from hearth.datasets.format.catalog import absent_tables, attach, without_zones
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
     from hearth.datasets.tensors import Tensors
     from hearth.kb.knowledge import Knowledge
+
+
+T = TypeVar("T")
 
 
 class Dataset:
@@ -107,16 +110,23 @@ class Dataset:
 
     @cached_property
     def _attached(self) -> Any:
-        for attempt in range(_TRIES):
+        def attached() -> Any:
+            with reading(self.folder):
+                return attach(self.folder, absent_tables(self.folder, self.manifest))
+
+        return self._current(attached)
+
+    def _current(self, ask: Callable[[], T]) -> T:
+        """The answer of one version of the dataset: asked again where a build replaces it meanwhile."""
+        for _ in range(_TRIES):
             version = _version(self.folder)
             try:
-                with reading(self.folder):
-                    return attach(self.folder, absent_tables(self.folder, self.manifest))
+                return ask()
             except HearthError:
-                if _version(self.folder) == version or attempt == _TRIES - 1:
+                if _version(self.folder) == version:
                     raise
-                self.manifest = read_json(self.folder / NAME) or self.manifest  # it was replaced in the meantime
-        raise AssertionError
+                self.manifest = read_json(self.folder / NAME) or self.manifest
+        return ask()
 
     def _reopen(self, version: tuple[int, int]) -> None:
         """Read the dataset that replaced the opened one."""
@@ -147,12 +157,15 @@ class Dataset:
         """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
         import duckdb
 
-        relation = self.sql(query, **parameters)
-        try:
-            found = relation if limit is None or self._explains(query) else relation.limit(limit)
-            return list(relation.columns), without_zones(found).fetchall()
-        except duckdb.Error as error:
-            raise _refused(error) from error
+        def answer() -> tuple[list[str], list[tuple[Any, ...]]]:
+            relation = self.sql(query, **parameters)
+            try:
+                found = relation if limit is None or self._explains(query) else relation.limit(limit)
+                return list(relation.columns), without_zones(found).fetchall()
+            except duckdb.Error as error:
+                raise _refused(error) from error
+
+        return self._current(answer)
 
     def _explains(self, query: str) -> bool:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
@@ -243,9 +256,13 @@ class Dataset:
         Raises:
             HearthError: DAMAGED_FILE, where a table cannot be read.
         """
-        with reading(self.folder):
-            rows: list[Any] = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
-            return rows
+
+        def answer() -> list[Any]:
+            with reading(self.folder):
+                rows: list[Any] = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
+                return rows
+
+        return self._current(answer)
 
 
 _TRIES = 10
