@@ -4,8 +4,6 @@ Each command is a function of `hearth.commands`; its module is imported when it 
 Bad input becomes a message and an exit status here, for all commands.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import sys

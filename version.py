@@ -1,7 +1,5 @@
 """The version of the code and of what it publishes."""
 
-from __future__ import annotations
-
 VERSION = "0.2.0"
 
 RELEASED = "2026-11-21"

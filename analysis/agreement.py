@@ -1,7 +1,5 @@
 """Agreement of inferred preconditions with those of the release's rules, over a source (thesis 5.5.2)."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """Results of augmentation: outcomes of pairs, and figures beside those of the thesis (table 5.1, figure 5-4)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 from typing import Any

@@ -37,10 +37,7 @@ THESIS_FUNNEL = {
 
 THESIS_VARIETY = {"activities": 576, "actions": 75, "objects": 308, "unique steps": 2709}
 
-THESIS_AVERAGES = {
-    "ActivityPrograms": (2821, 11.6, 3.2, 21.9),
-    "SyntheticPrograms": (5193, 9.6, 3.4, 20.5),
-}
+THESIS_AVERAGES = {"ActivityPrograms": (2821, 11.6, 3.2, 21.9), "SyntheticPrograms": (5193, 9.6, 3.4, 20.5)}
 """Table 4.1: programs, steps a program, sentences and words a description."""
 
 THESIS_DIVERSITY = {

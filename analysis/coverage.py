@@ -3,8 +3,6 @@
 Impossible programs are proven: by two contradictory steps, or by a fact that forbids the program in any home.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace

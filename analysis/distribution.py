@@ -3,8 +3,6 @@
 Also the diversity of one program's environments (5.5.2, figure 5-4).
 """
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice

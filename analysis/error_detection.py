@@ -1,7 +1,5 @@
 """Error detection: precision and recall of faults in a corpus with known faults."""
 
-from __future__ import annotations
-
 import csv
 from collections import Counter
 from collections.abc import Iterable

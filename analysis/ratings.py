@@ -1,7 +1,5 @@
 """Completeness of programs (thesis 3.4.1): estimated from inserted repair steps, and rated by people."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections import Counter, defaultdict

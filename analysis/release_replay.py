@@ -1,7 +1,5 @@
 """Replaying a release: every grounded program on its stored start graph, against its stored end graph."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Evaluation of inferred sketches against annotated ones: precision, recall and F1 over steps (thesis 5.5.1)."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """CSV for spreadsheets, in which cells of text never run as formulas."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterable

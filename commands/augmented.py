@@ -1,7 +1,5 @@
 """`augmented`: compares an augmented dataset with the thesis's."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Any
 

@@ -77,8 +77,7 @@ Scheduler = Annotated[
     str, typer.Option("--scheduler", metavar="ADDRESS", help="With --engine dask: use a running cluster.")
 ]
 TimeLimit = Annotated[
-    float,
-    typer.Option("--time-limit", metavar="SECONDS", min=0, help="Time limit of a record in a stage; 0 for none."),
+    float, typer.Option("--time-limit", metavar="SECONDS", min=0, help="Time limit of a record in a stage; 0 for none.")
 ]
 LogJson = Annotated[bool, typer.Option("--log-json", help="Progress as lines of JSON on stderr.")]
 Force = Annotated[bool, typer.Option("--force", help="Build even if the disk seems too small.")]

@@ -1,7 +1,5 @@
 """`doctor`: checks libraries, codecs, disk and data, with the consequence of each that is missing."""
 
-from __future__ import annotations
-
 import ctypes
 import importlib.metadata
 import importlib.util

@@ -1,7 +1,5 @@
 """`export`: a published dataset in another form."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

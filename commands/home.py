@@ -18,9 +18,7 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
 
 app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    help="The homes: list, show, check, convert, edit and generate them.",
+    no_args_is_help=True, add_completion=False, help="The homes: list, show, check, convert, edit and generate them."
 )
 
 Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]

@@ -1,7 +1,5 @@
 """Options and arguments of several commands, each declared once; those of one command are in its file."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Annotated

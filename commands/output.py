@@ -1,7 +1,5 @@
 """Output of commands: tables, JSON, faults with their source underlined; and exit statuses."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

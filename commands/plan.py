@@ -1,7 +1,5 @@
 """`plan`: solves a dataset's problems with a planner and runs the plans in the engine."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer
@@ -12,10 +10,7 @@ Problems = Annotated[int, typer.Option("--problems", "-n", metavar="N", min=1, h
 
 
 def plan(
-    dataset: options.Dataset,
-    problems: Problems = 200,
-    workers: options.Workers = 0,
-    as_json: options.Json = False,
+    dataset: options.Dataset, problems: Problems = 200, workers: options.Workers = 0, as_json: options.Json = False
 ) -> None:
     """Solve planning problems of a dataset with Fast Downward, and run the plans in the engine.
 

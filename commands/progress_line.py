@@ -1,7 +1,5 @@
 """Progress of a long command on the terminal: items done, rate and time left."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterable, Iterator

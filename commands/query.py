@@ -1,7 +1,5 @@
 """`query`: SQL over a published dataset."""
 
-from __future__ import annotations
-
 from datetime import date, datetime, time
 from decimal import Decimal
 from typing import Annotated, Any

@@ -141,11 +141,7 @@ def _json(found: Augmented) -> dict[str, Any]:
 def _pair_json(pair: Pair) -> dict[str, Any]:
     return {
         "perturbations": [
-            {
-                "kind": one.kind,
-                "dropped": [*map(str, one.dropped)],
-                "added": [*map(str, one.added)],
-            }
+            {"kind": one.kind, "dropped": [*map(str, one.dropped)], "added": [*map(str, one.added)]}
             for one in pair.perturbations
         ],
         "original": _texts(pair.environment.program.steps),

@@ -1,7 +1,5 @@
 """`report`: a dataset as static HTML."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 
@@ -13,10 +11,7 @@ Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new fol
 
 
 def report(
-    dataset: options.Dataset,
-    out: Out = Path("report_out"),
-    workers: options.Workers = 0,
-    as_json: options.Json = False,
+    dataset: options.Dataset, out: Out = Path("report_out"), workers: options.Workers = 0, as_json: options.Json = False
 ) -> None:
     """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 

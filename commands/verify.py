@@ -1,7 +1,5 @@
 """`verify`: checks a dataset against its manifest, and runs its executions again."""
 
-from __future__ import annotations
-
 import sys
 from typing import Annotated
 

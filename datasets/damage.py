@@ -1,7 +1,5 @@
 """What reading a damaged dataset raises, as ours."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The knowledge of a dataset: recorded in its manifest; the user's overlay is stored beside the tables."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 from typing import Any

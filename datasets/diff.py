@@ -1,7 +1,5 @@
 """Differences between two datasets, by table and row."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

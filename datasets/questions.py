@@ -1,7 +1,5 @@
 """Which SQL only reads: judged by the kind of statement, that of an EXPLAIN by what it explains, and by its clauses."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hearth.schemas.diagnostics import HearthError

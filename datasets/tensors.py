@@ -1,7 +1,5 @@
 """Graphs and steps as arrays for graph networks, with the ids of the dataset's vocabulary."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 

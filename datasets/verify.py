@@ -1,7 +1,5 @@
 """Verification of a dataset: files, columns, counts, references, and a replay of every execution from disk."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache

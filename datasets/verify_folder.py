@@ -1,7 +1,5 @@
 """Checks of a dataset's folder besides its tables: unlisted files, the catalog, the manifest itself."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -4,8 +4,6 @@ Depth-first over the ticks: a tick that names a new object runs with each of the
 try is undone by going back to the world before, at no cost because worlds are values.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import reduce

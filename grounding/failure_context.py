@@ -1,7 +1,5 @@
 """The context of a failed step, which abduction and repairs both start from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge

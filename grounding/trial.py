@@ -1,7 +1,5 @@
 """Running a program in a home: bound to the home's own objects if it can run, else in an environment sampled for it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from hearth.grounding.binding import Binding, bind

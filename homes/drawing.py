@@ -1,7 +1,5 @@
 """A home's floor plan as a drawing: SVG written directly, PNG from the same shapes. North is up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Writing homes: plans, scene graphs in the release's layout, drawings, and files of node ids."""
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The shapes of things as a floor plan needs them: sizes, where they are mounted, where things stand on and in them."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass, replace
 from functools import lru_cache

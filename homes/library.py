@@ -1,7 +1,5 @@
 """The library of homes: the designed ones, and a user's own from `--homes DIR`."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """Faults of a scene graph, each with the ids of the nodes concerned."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Geometry -> edges: ON, INSIDE and BETWEEN from the plan, CLOSE from free distance, FACING from fronts and sight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import cos, radians, sin
 

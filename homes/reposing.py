@@ -1,7 +1,5 @@
 """Boxes for things that were moved in a home with geometry: on or in a thing, or on a floor."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 

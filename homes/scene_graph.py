@@ -1,7 +1,5 @@
 """Layout -> scene graph: nodes with stable ids, classes, properties and default states, and their edges."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from operator import attrgetter
 

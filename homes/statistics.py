@@ -1,7 +1,5 @@
 """Figures of homes beside each other: room sizes, things, degrees, relations (thesis table 5.1)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable
 from statistics import fmean, median

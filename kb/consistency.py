@@ -1,7 +1,5 @@
 """Contradictions in the knowledge: facts that are each well formed and cannot all be true."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Programs against the action grammar: known names, the right number of objects, objects that afford the action."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Groups of actions: those that follow from what an action needs and changes, and those that an entry names itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 
 from hearth.kb.formula import TRUE, Effect

@@ -1,7 +1,5 @@
 """The knowledge as one value: loaded once, checked, then only dictionary look-ups."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

@@ -1,7 +1,5 @@
 """What the knowledge is made of: actions, requirements, object classes, placements, repairs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Stage 4: programs repaired for environments in which some of their preconditions are violated (thesis 5.5.4)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache

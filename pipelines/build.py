@@ -1,7 +1,5 @@
 """All stages, one after the other, over any mix of sources."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.resources import as_file, files

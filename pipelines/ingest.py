@@ -1,7 +1,5 @@
 """Stage 1: reads descriptions and programs of any known form, one row each, their text unchanged."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypedDict
 

@@ -1,7 +1,5 @@
 """Stage 6: the published tables. An execution that its published row does not reproduce is refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from hearth.datasets.format.cases import difference_on_replay

@@ -151,12 +151,7 @@ def _picture(case: CaseRow, shot: Snapshot, modality: str, made: bool, file: str
 
 def _intrinsics(camera: Camera) -> PinholeRow:
     matrix = camera.intrinsics
-    return {
-        "fx": float(matrix[0, 0]),
-        "fy": float(matrix[1, 1]),
-        "cx": float(matrix[0, 2]),
-        "cy": float(matrix[1, 2]),
-    }
+    return {"fx": float(matrix[0, 0]), "fy": float(matrix[1, 1]), "cx": float(matrix[0, 2]), "cy": float(matrix[1, 2])}
 
 
 def _pose(camera: Camera) -> list[float]:

@@ -1,7 +1,5 @@
 """Stage 3: every program in an environment where it runs: sampled from a home, or stored with the program."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Stage 2: checks programs by the action grammar: syntax, names, arity and affordances."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

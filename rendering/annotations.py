@@ -1,7 +1,5 @@
 """Annotations of a picture: camera, boxes of things, joints of people (thesis 2.4, 4.4)."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import cos, radians, sin
 from typing import Any, NamedTuple

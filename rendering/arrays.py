@@ -1,7 +1,5 @@
 """Types of the arrays of pictures, meshes and rays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Modalities of a picture: colour, depth, ids, normals, flow, boxes, poses (thesis 2.4, 4.4); `render` makes them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ A sketch keeps the steps that any environment would ask for. The functions here 
 program, the actions never meant themselves, and the steps that the description names.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Repairing: run, look the failure up, edit the program, run on from there (thesis 5.5.4, A.2, algorithm 4)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple

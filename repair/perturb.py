@@ -4,8 +4,6 @@ A perturbation takes conditions away and asks for others. The thesis drops sitti
 plugged, on, open and free; the others here are ours.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice

@@ -1,7 +1,5 @@
 """Inferring sketches: the steps from which the repairer can make the rest, in several environments (thesis 5.5.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -113,11 +111,7 @@ def _smallest(
 
 
 def _suffices(
-    keep: Sequence[bool],
-    places: Sequence[_Place],
-    goal: Postconditions,
-    passed: Postconditions,
-    knowledge: Knowledge,
+    keep: Sequence[bool], places: Sequence[_Place], goal: Postconditions, passed: Postconditions, knowledge: Knowledge
 ) -> bool:
     for program, world in places:
         rest = program.with_steps(step for step, kept in zip(program.steps, keep, strict=True) if kept)

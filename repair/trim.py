@@ -4,8 +4,6 @@ A step that a repair has inserted stays only if without it the program stops or 
 the character has just walked; nothing is opened only to be closed again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from hearth.grounding.preconditions.postconditions import Postconditions, nodes_of, reached

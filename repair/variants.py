@@ -1,7 +1,5 @@
 """Augmenting a program in a home: perturb its preconditions, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -200,14 +198,7 @@ def _pair(
         return Pair(number, perturbed.perturbations, environment, program, sources, execution, (), failure)
     done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, options.rules, tries=options.tries)
     return Pair(
-        number,
-        perturbed.perturbations,
-        drawn,
-        done.program,
-        done.sources,
-        done.execution,
-        done.attempts,
-        done.failure,
+        number, perturbed.perturbations, drawn, done.program, done.sources, done.execution, done.attempts, done.failure
     )
 
 

@@ -1,7 +1,5 @@
 """Where one program of a text ends and the next begins."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Bytes to text: what people's editors write, or a diagnostic."""
 
-from __future__ import annotations
-
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 

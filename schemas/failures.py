@@ -1,7 +1,5 @@
 """Everything that can go wrong, as data: one enum of codes for parsing, checking, executing and sampling."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Self

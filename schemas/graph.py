@@ -1,7 +1,5 @@
 """Environment graphs: the nodes of a home and how they relate (thesis 2.3.2, 5.4.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Diagnoses a line that is not a step: its first fault, the place, and the remedy."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

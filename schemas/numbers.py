@@ -1,7 +1,5 @@
 """Numbers that others wrote: ids, instances and quantities, as far as tables and people's input hold them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 LARGEST = 2**31 - 1

@@ -1,7 +1,5 @@
 """Randomness that depends on nothing but (seed, stage, record id)."""
 
-from __future__ import annotations
-
 import hashlib
 import random
 

@@ -5,8 +5,6 @@ Node ids are those of the environment's graph; steps and ticks count from 0. In 
 marks those that are. `schemas.tables` makes Arrow schemas of these declarations, column by column.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Annotated, Any, TypedDict, TypeVar, cast
 

@@ -1,7 +1,5 @@
 """The structs within rows of tables: graphs, changes, steps, failures; declared as `schemas.rows` declares the rows."""
 
-from __future__ import annotations
-
 from typing import Annotated, TypedDict
 
 

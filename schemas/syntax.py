@@ -7,8 +7,6 @@ modifiers are optional; `|` parts what several agents do in one tick. Names are 
 Printing what was parsed gives canonical text back unchanged.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

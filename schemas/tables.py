@@ -3,8 +3,6 @@
 A column's comment stands in its field's metadata (`comment`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from types import UnionType
 from typing import Any, Final, Union, get_args, get_origin, get_type_hints, is_typeddict

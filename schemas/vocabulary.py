@@ -3,8 +3,6 @@
 Ids are published; append only. Sources: thesis 2.3.2, 5.4.1, table A.2, and the ActivityPrograms release.
 """
 
-from __future__ import annotations
-
 STATES: tuple[str, ...] = (
     "CLOSED", "OPEN", "OFF", "ON", "DIRTY", "CLEAN", "PLUGGED_OUT", "PLUGGED_IN", "SITTING", "LYING",
 )  # fmt: skip

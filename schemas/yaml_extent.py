@@ -1,7 +1,5 @@
 """How much YAML from others may hold: an alias takes four characters to write, and may stand for a million values."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import yaml

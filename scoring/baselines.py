@@ -1,7 +1,5 @@
 """Baselines of the thesis on a dataset's own splits (4.3, 5.6.2; tables 4.4, 4.5 and 5.2)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from random import Random
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Percentile bootstrap intervals of means, reproducible from a seed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Predictions scored against a dataset: its programs are the references, its environments where they run."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

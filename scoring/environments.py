@@ -1,7 +1,5 @@
 """The environments in which predictions run, named by their rows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path

@@ -155,10 +155,7 @@ def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[LcsScore]:
 
 
 def evaluate(
-    pairs: Sequence[Pair],
-    knowledge: Knowledge,
-    environments: Environments | None = None,
-    options: Options = Options(),
+    pairs: Sequence[Pair], knowledge: Knowledge, environments: Environments | None = None, options: Options = Options()
 ) -> list[Scored]:
     """Score every prediction, in order (thesis 4.3, 5.6.1).
 

@@ -1,7 +1,5 @@
 """Final graphs from files, and the nodes that programs name from the command line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hearth.schemas.diagnostics import HearthError

@@ -1,7 +1,5 @@
 """Input of scorers: a program, a text or a list of steps, read as a sequence of lines."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hearth.schemas.diagnostics import Diagnostic

@@ -1,7 +1,5 @@
 """Binding of a predicted program's objects to nodes of its environment."""
 
-from __future__ import annotations
-
 from collections.abc import Set
 
 from hearth.kb.knowledge import Knowledge

@@ -1,7 +1,5 @@
 """Rows of a JSON Lines or Parquet file of programs by id."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

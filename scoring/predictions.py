@@ -1,7 +1,5 @@
 """Prediction files: one row per id, with the predicted program and, unless in a separate file, the reference."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Signatures: a short string with every option that changes a score's value."""
 
-from __future__ import annotations
-
 VERSION = "v1"
 """Incremented whenever the same input could score differently."""
 

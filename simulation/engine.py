@@ -1,7 +1,5 @@
 """Running programs: ticks of instructions, each giving a new world or a failure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 

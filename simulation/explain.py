@@ -1,7 +1,5 @@
 """Why a step could be done: each check of its action, and the edges or states by which it held."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -156,10 +154,7 @@ def _edge(atom: Literal[Term], cast: _Cast) -> str:
     return f"character {atom.name} {cast.name(x)}" if atom.name == "FACING" and cast.agent.facing >> x & 1 else ""
 
 
-_NEGATED_WITNESSES: dict[str, Callable[[Literal[Term], _Cast], str]] = {
-    "hidden": _open,
-    "state": _states,
-}
+_NEGATED_WITNESSES: dict[str, Callable[[Literal[Term], _Cast], str]] = {"hidden": _open, "state": _states}
 
 _WITNESSES: dict[str, Callable[[Literal[Term], _Cast], str]] = {
     "FACING": _edge,

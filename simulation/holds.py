@@ -3,8 +3,6 @@
 A literal whose terms stand for several nodes holds when it holds of some subject and some target.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar

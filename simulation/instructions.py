@@ -1,7 +1,5 @@
 """Instructions as text, for agents that write: `[Walk] <kitchen> (1)`, `<char1> [Grab] <cup> (1.41)`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from hearth.kb.grammar import check

@@ -1,7 +1,5 @@
 """Named options of the engine: where the release's accidents and people's expectations differ."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple
 
 

@@ -1,7 +1,5 @@
 """Packed sources read in place: members of a zip, gzip and zstd files; refused where they unpack to too many bytes."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import stat

@@ -1,7 +1,5 @@
 """A folder takes the place of another in one step: whoever opens it finds the old or the new one, never none."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Files that are either whole or absent: temporary names, fsync, rename; and their hashes."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Bytes of a file that somebody names: a regular file, no larger than its kind is."""
 
-from __future__ import annotations
-
 import os
 import stat
 import sys

@@ -1,7 +1,5 @@
 """The manifest of a stage: what it was made from, what it counts, and the hash of every file it wrote."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Names that come with data, as names of files: the only place where one becomes a path."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from pathlib import Path, PurePosixPath

@@ -1,7 +1,5 @@
 """A function over many jobs in several processes, where nothing is written and no order of completion matters."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import signal

@@ -9,8 +9,6 @@ fsspec's own caching does not serve here: it keeps files under hashes of their n
 dataset is read by the names of its tables and parts.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import re

@@ -1,7 +1,5 @@
 """Programs, and runs with their programs, read in batches for exporters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`code`: programs as Python functions, a prompt format of planners."""
 
-from __future__ import annotations
-
 import keyword
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Every export format of datasets."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
@@ -29,13 +27,7 @@ FORMATS: dict[str, Callable[[Dataset, Path, Wanted], int]] = {
 }
 """Each writes a dataset, or some of its programs, into a folder and returns the number of written items."""
 
-COUNTED = {
-    "release": "execution",
-    "jsonl": "line",
-    "networkx": "execution",
-    "graphml": "execution",
-    "pddl": "problem",
-}
+COUNTED = {"release": "execution", "jsonl": "line", "networkx": "execution", "graphml": "execution", "pddl": "problem"}
 """The items that a format counts, if not programs."""
 
 

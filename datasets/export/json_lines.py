@@ -1,7 +1,5 @@
 """`jsonl`: every table as JSON Lines, with nested values."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import orjson

@@ -1,7 +1,5 @@
 """`nl`: programs as sentences, for people and for language models."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

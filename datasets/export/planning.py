@@ -5,8 +5,6 @@ omitted (`dispensable`); actions without objects in the problem are omitted; and
 the engine also accepts objects next to a CLOSE one.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import chdir

@@ -10,8 +10,6 @@ door that is closed between the character and the door's own room it walks on it
 room); that is an action of its own here, `WalkToDoor`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from itertools import count
 

@@ -10,8 +10,6 @@ is to be. A plan of the pruned problem is one of the whole home, too: what was l
 something, stop a walk or occupy a seat, and all that does so is kept.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations

@@ -1,7 +1,5 @@
 """`release`: the original release's layout, readable by code written for it and by `ingest`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

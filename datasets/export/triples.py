@@ -1,7 +1,5 @@
 """`rdf`: programs, their steps and the knowledge of actions and objects, as Turtle."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import quote

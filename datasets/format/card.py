@@ -1,7 +1,5 @@
 """The dataset card: `README.md` beside the tables, with the header that `datasets.load_dataset` reads."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Cases, programs run in environments: written as rows, and rebuilt from rows (the tables' `CASE`)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache

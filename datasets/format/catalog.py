@@ -1,7 +1,5 @@
 """The catalog: views and macros over a dataset's files, as a DuckDB file and as SQL."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path

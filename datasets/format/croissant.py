@@ -1,7 +1,5 @@
 """`croissant.json`: the dataset's description in the Croissant format (MLCommons, 1.0)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Ids and versions of published rows: activities, splits, stamps."""
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 

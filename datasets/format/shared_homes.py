@@ -1,7 +1,5 @@
 """Homes inferred from the environments made of them."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 from dataclasses import replace

@@ -5,8 +5,6 @@ nearly the same steps, and programs with nearly the same description. If a rule 
 training runs are excluded. The leakage that remains is measured, beside that of a random split.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Executions read from a dataset by id, with their programs and environments."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any, TypedDict
 

@@ -1,7 +1,5 @@
 """The tables of the report, each with its query (`figures.yaml`)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any

@@ -1,7 +1,5 @@
 """Pictures and films of a dataset for its report: under names of ours, since a dataset could call one `index.html`."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path, PurePosixPath
 

@@ -1,7 +1,5 @@
 """Floor plans of homes, drawn from the boxes of their nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape

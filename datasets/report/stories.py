@@ -1,7 +1,5 @@
 """The data of a program's page: steps, preconditions, runs tick by tick, repairs, graphs, frames."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Writes the report: one page, data in scripts that a browser loads from disk, and pictures."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator
 from functools import lru_cache

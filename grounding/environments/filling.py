@@ -1,7 +1,5 @@
 """Random common-sense objects, so that no two environments are the same (KB-RealEnv, thesis 5.5.2)."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 
 from hearth.grounding.environments.partial import PartialEnvironment

@@ -1,7 +1,5 @@
 """Sampling environments for goals: the objects that a goal counts are there, and it does not hold yet."""
 
-from __future__ import annotations
-
 from collections import Counter
 from functools import reduce
 from operator import or_

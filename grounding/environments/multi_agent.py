@@ -1,7 +1,5 @@
 """Environments for programs of several characters: objects that the home lacks are added where they belong."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 

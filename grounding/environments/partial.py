@@ -1,7 +1,5 @@
 """A partial environment: nodes and edges added and removed, states set, and the binding of objects to nodes."""
 
-from __future__ import annotations
-
 from random import Random
 
 from hearth.grounding.environments.default_state import Base

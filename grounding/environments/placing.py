@@ -1,7 +1,5 @@
 """Choosing a node for each object of a program: one the home has, where the conditions want it, or a new one there."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import reduce
 from operator import and_

@@ -1,7 +1,5 @@
 """Satisfying conditions in a partial environment, one small function a condition."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from hearth.grounding.environments import violating

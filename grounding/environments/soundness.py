@@ -1,7 +1,5 @@
 """Soundness of a sampled environment: the checks of `home lint`, made of its differences from the home only."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.world import rows

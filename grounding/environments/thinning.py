@@ -1,7 +1,5 @@
 """Thinned homes, for environments smaller than a well-stocked home (thesis 5.5.2)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from random import Random
 

@@ -1,7 +1,5 @@
 """Satisfying violated conditions: things in other rooms, closed containers, on seats or in hands (thesis 5.5.4)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from hearth.grounding.environments.default_state import Base

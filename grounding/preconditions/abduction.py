@@ -3,8 +3,6 @@
 Each gets the context of a failure and gives the conditions to try, best first; none if no start prevents the failure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Whether conditions hold in a world, as sampling guarantees."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hearth.grounding.preconditions.conditions import Condition, Preconditions

@@ -3,8 +3,6 @@
 They make environments realistic; a program that can't run with one of them runs without it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.grounding.preconditions.conditions import Condition

@@ -5,8 +5,6 @@ that needs it, and a contradictory program is reported with the step that fails 
 condition (thesis 5.5.2: the function Phi).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for

@@ -4,8 +4,6 @@ Every object has no states and a room of its own, unless a condition says more; 
 its own, so that it can be put back.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from hearth.grounding.preconditions.conditions import Preconditions

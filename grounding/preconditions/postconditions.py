@@ -4,8 +4,6 @@ What the original brings about in its own, unperturbed environment has to be rea
 eq. A.1: the function Omega).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 from hearth.schemas.literals import HOLDS, Key, Literal

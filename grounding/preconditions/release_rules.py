@@ -3,8 +3,6 @@
 They read the program once, in order, and look at names only (facts worked out from the release; thesis 5.5.2).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ Steps along CLOSE are distances, and distances are a map (classical multidimensi
 stretched so that it fills the room's floor, doors to where the doors are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import cos, radians, sin
 

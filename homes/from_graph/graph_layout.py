@@ -4,8 +4,6 @@ The relations decide: things that are CLOSE are put close, things that FACE some
 is room. Relations that cannot be met are reported, edge by edge.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import sqrt

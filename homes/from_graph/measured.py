@@ -1,7 +1,5 @@
 """The layout of a scene graph that has boxes: places are read from them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from hearth.homes.forms import form

@@ -1,7 +1,5 @@
 """Where in a room a thing may stand: free of others, of what is used from its front, of doors and windows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ Things of one class in one room are alike until something is CLOSE to one of the
 chosen so that most of that is met.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import hypot, sqrt
 

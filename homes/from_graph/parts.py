@@ -1,7 +1,5 @@
 """Places by a scene graph's relations: rooms, doors, and for each thing its support or container."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 
 from hearth.homes.forms import form

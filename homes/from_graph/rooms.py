@@ -1,7 +1,5 @@
 """Rooms of a graph as rectangles: side by side where a door joins them, apart everywhere."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 from hearth.homes.geometry import Rect

@@ -1,7 +1,5 @@
 """The relations of a graph that its geometry shows, and those that it does not."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import cos, hypot, radians, sqrt
 

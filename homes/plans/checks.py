@@ -1,7 +1,5 @@
 """Checks of a plan's entries together: rooms do not overlap, doors lead somewhere, furniture can be reached."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Reading a plan's entries: every key by the function that reads it; every fault named with its line."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from difflib import get_close_matches

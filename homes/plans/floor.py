@@ -1,7 +1,5 @@
 """The floor that can be walked: what furniture leaves free, as an occupancy grid."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Places furniture: one function for each key of the plan."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Plan -> boxes: every wall, tile, door, window, piece of furniture and thing on or in it, in metres, y up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """YAML whose every value knows its line, so that a fault in a plan can say where it stands."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import yaml

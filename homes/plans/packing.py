@@ -1,7 +1,5 @@
 """Where things stand on and in furniture: found automatically; tidy in containers, spread on tops, no overlaps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 

@@ -4,8 +4,6 @@ scipy.ndimage has the same three. Importing it takes as long as loading seven ho
 process that loads a home would pay for it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """The shell of a home: openings, wall panels, floor and ceiling tiles, doors, windows and curtains."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import ceil

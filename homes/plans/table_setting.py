@@ -1,7 +1,5 @@
 """Laying a table: a place for everyone who sits at it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

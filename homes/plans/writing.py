@@ -1,7 +1,5 @@
 """Plans as the YAML that people write: the inverse of reading one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

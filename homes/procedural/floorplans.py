@@ -1,7 +1,5 @@
 """Procedural floor plans: two bands of rooms along a hall, turned and mirrored; every room opens onto the hall."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from random import Random
@@ -97,12 +95,7 @@ def _bands(hall: str, others: Sequence[str], rng: Random) -> list[Rect]:
 def _turned(rect: Rect, turn: int) -> Rect:
     """As drawn, mirrored, on its side, or both."""
     x0, z0, x1, z1 = rect
-    return {
-        0: rect,
-        1: Rect(-x1, z0, -x0, z1),
-        2: Rect(z0, x0, z1, x1),
-        3: Rect(-z1, x0, -z0, x1),
-    }[turn]
+    return {0: rect, 1: Rect(-x1, z0, -x0, z1), 2: Rect(z0, x0, z1, x1), 3: Rect(-z1, x0, -z0, x1)}[turn]
 
 
 def _moved(rects: Sequence[Rect]) -> list[Rect]:

@@ -1,7 +1,5 @@
 """Procedural furnishing of a room: data_raw/furnishing.yaml lists its contents, places are tried at random."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -348,10 +346,7 @@ def _washbasin(suite: Suite) -> bool:
 
 
 def _sink(suite: Suite, counter: str, width: float, rest: Sequence[Piece], amounts: Mapping[str, Any]) -> bool:
-    kit = (
-        Piece("sink", place={"spot": (width / 2, 0.33)}),
-        Piece("faucet", place={"spot": (width / 2, 0.09)}),
-    )
+    kit = (Piece("sink", place={"spot": (width / 2, 0.33)}), Piece("faucet", place={"spot": (width / 2, 0.09)}))
     room = suite.furnishing.room.class_name
     piece = Piece(counter, size=(width, None, None), on=(*kit, *rest))
     return _along_walls(suite, stock(piece, amounts, room, suite.knowledge, suite.rng))

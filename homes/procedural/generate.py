@@ -1,7 +1,5 @@
 """Procedural homes: a random floor plan, furniture with clearances, and small things at the knowledge's placements."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from random import Random
 

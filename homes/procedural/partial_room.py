@@ -1,7 +1,5 @@
 """A partially furnished room of a procedural home."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from random import Random
 

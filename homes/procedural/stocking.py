@@ -1,7 +1,5 @@
 """Stocks furniture: things on and in it, drawn at random by the weights of the knowledge's placements."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Steps as phrases and back: `[PutBack] <cup> <table>` is `Put cup on table`."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from functools import lru_cache

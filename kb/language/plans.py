@@ -1,7 +1,5 @@
 """Natural-language steps to a program: `Step 3: Put the milk in the fridge` to `[PutIn] <milk> (1) <fridge> (1)`."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Language understanding: the step that a sentence means, with a score and alternatives."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Actions, derived predicates and repairs, built from their files."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any

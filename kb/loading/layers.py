@@ -1,7 +1,5 @@
 """The files of one directory laid over another's: a later layer's entry replaces an earlier one's of the same name."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from difflib import get_close_matches

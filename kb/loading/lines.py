@@ -3,8 +3,6 @@
 Both readers return plain data and append a Diagnostic for each fault, so that one error can list all of them.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Reading all files into one Knowledge, or one error that lists every fault of all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache

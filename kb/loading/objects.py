@@ -1,7 +1,5 @@
 """Classes, kinds, synonyms, placements and states, built from their files."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 

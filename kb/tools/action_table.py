@@ -1,7 +1,5 @@
 """The table of actions for the documentation, written from the knowledge."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.kb.knowledge import Knowledge

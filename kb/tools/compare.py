@@ -4,8 +4,6 @@ The other may be a directory of our own files, or of the release's five JSON fil
 object_script_placing, class_name_equivalence, affordances), as many as there are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

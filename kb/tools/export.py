@@ -1,7 +1,5 @@
 """The knowledge in other forms: Markdown, PDDL, GraphML, a DuckDB file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

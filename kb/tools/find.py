@@ -1,7 +1,5 @@
 """Classes by affordance, place, property, state and kind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

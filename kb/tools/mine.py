@@ -3,8 +3,6 @@
 Nothing is believed here: proposals carry counts and confidence, and are written as lines to add to a file after review.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field

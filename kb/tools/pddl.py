@@ -5,8 +5,6 @@ found thing (`room(o)`) is stated for every such thing. Where a Grab would remem
 domain remembers all of them, its only difference from the engine.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations

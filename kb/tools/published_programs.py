@@ -1,7 +1,5 @@
 """The programs of a published dataset, as `mine` reads them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

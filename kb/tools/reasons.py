@@ -1,7 +1,5 @@
 """The evidence of facts: the reasons of corrections.yaml for differing from the release."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The facts of the release's five knowledge files, as sets of names."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path

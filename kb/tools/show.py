@@ -1,7 +1,5 @@
 """Everything known about one object or one action, as plain data for people and machines."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge

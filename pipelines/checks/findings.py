@@ -1,7 +1,5 @@
 """The findings of the checks: code, step, message and correction."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from hearth.schemas.failures import Code

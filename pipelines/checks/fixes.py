@@ -1,7 +1,5 @@
 """Safe corrections of program files, made only where a single correction is possible."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from difflib import unified_diff

@@ -3,8 +3,6 @@
 Faults refuse a program; warnings are stored with it. Each names the step, and most name the correction.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any

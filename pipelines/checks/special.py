@@ -1,7 +1,5 @@
 """Special blocks: free text instead of an action, and the reviewed steps that replace some of it (thesis 3.3)."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import cache

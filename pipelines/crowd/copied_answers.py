@@ -1,7 +1,5 @@
 """Copied answers: near-duplicate descriptions and programs, and one program given for many descriptions."""
 
-from __future__ import annotations
-
 import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Programs whose description is unknown, found by the ids of the first stage, kept as digests."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from hearth.pipelines.crowd.seen import SeenSet, digest

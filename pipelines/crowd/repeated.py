@@ -1,7 +1,5 @@
 """Records that were read before: the same id, the same answer of a worker, or the same text."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A set of seen keys with counts, in a dozen bytes a key, so that millions of records fit in little memory."""
 
-from __future__ import annotations
-
 import json
 from array import array
 from hashlib import blake2b

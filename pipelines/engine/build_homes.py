@@ -1,7 +1,5 @@
 """The homes of a build: the catalog, the user's homes laid over it, and homes derived from stored start graphs."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import orjson

@@ -1,7 +1,5 @@
 """The knowledge of a build, and the digests of the user's overlays in a plan."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ A watching thread measures the time of the current record and raises `OverTime` 
 an alarm signal this works in any thread, on any system; like one, it waits for library code to return to Python.
 """
 
-from __future__ import annotations
-
 import ctypes
 import threading
 import time

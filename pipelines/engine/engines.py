@@ -1,7 +1,5 @@
 """Engines spread a stage's partitions over processes or machines. Every engine gives the same bytes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Protocol, Self
 

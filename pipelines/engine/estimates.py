@@ -4,8 +4,6 @@ A rough estimate, from the number of valid programs and the costs of builds of t
 factor of two or three.
 """
 
-from __future__ import annotations
-
 import shutil
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 from collections import Counter

@@ -1,7 +1,5 @@
 """Progress of a build: records done, rate, time left and rejects on a terminal; elsewhere one line a stage."""
 
-from __future__ import annotations
-
 import json
 import sys
 import time

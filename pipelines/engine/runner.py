@@ -1,7 +1,5 @@
 """Runs one stage: an up-to-date stage and complete partitions are kept; the manifest is written last."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The settings of a build."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any

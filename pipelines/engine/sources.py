@@ -1,7 +1,5 @@
 """Sources: the files and folders of a build, with labels that do not reveal their path on this machine."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The stages, in order. To add one: a file that defines `STAGE`, and a row here."""
 
-from __future__ import annotations
-
 import importlib
 
 from hearth.pipelines.engine.stage import Stage

@@ -1,7 +1,5 @@
 """Tiers: sizes of a dataset by name. A tier sets other options, which may also be given themselves."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """JSON documents: recognised by their first line, and read whole unless they are too large."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

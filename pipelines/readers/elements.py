@@ -1,7 +1,5 @@
 """JSON lists read entry by entry, in constant memory: at the top of a file, or under a key."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress

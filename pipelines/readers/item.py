@@ -1,7 +1,5 @@
 """Shared by all readers: items, and text read safely from files and archives."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Records of our own schema as JSON: JSON Lines, a list, or a single object."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

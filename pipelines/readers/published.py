@@ -3,8 +3,6 @@
 Augmented programs are not read; the next build makes them again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The form of a source, recognised by its content."""
 
-from __future__ import annotations
-
 import itertools
 import zipfile
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The ActivityPrograms release, as a zip or a folder in its own layout; any of its folders may be missing."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from operator import itemgetter

@@ -1,7 +1,5 @@
 """Scene graphs: a home in the release's layout, without a program."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import PurePath
 

@@ -1,7 +1,5 @@
 """Sketches: the steps of a program that a person kept as its gist (thesis 4.2), in the release's annotation file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import zip_longest
 

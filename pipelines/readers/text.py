@@ -1,7 +1,5 @@
 """Program text: a title, a description, then one step a line; several programs in a file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

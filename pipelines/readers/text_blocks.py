@@ -1,7 +1,5 @@
 """The programs of a text, found piece by piece in constant memory."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple

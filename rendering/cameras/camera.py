@@ -4,8 +4,6 @@ The world is left-handed, as in Unity: x east, y up, z north. The camera's frame
 z forward. Poses are proper rotations; the intrinsics flip y into image rows.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, degrees, radians, tan

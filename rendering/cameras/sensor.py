@@ -1,7 +1,5 @@
 """A camera sensor for agents: the pictures of `Env.observe`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import NDArray

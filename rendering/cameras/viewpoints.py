@@ -1,7 +1,5 @@
 """The cameras of a home, and the choice of the one that best shows a step (thesis 2.4.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import cos, degrees, radians, sin, tan

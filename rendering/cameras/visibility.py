@@ -1,7 +1,5 @@
 """Visibility of the objects that steps name: by the camera chosen for each step, and from above."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Contact sheets: the steps of a program in one picture, with captions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A page that plays a video with its steps beside it: the current one is highlighted, a click jumps to one."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from html import escape
 

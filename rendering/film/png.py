@@ -1,7 +1,5 @@
 """Deterministic PNG encoding."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

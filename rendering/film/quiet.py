@@ -1,7 +1,5 @@
 """Suppresses what C libraries write to standard error."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Pictures of a recorded execution: one keyframe per tick, by fixed cameras or by the one that sees the step best."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -91,12 +89,7 @@ class Snapshot:
 
 
 def keyframes(
-    execution: Execution,
-    home: EnvironmentGraph,
-    knowledge: Knowledge,
-    *,
-    seed: int = 0,
-    hour: float = 10.0,
+    execution: Execution, home: EnvironmentGraph, knowledge: Knowledge, *, seed: int = 0, hour: float = 10.0
 ) -> Iterator[Keyframe]:
     """The scene at the start and after each tick of an execution.
 

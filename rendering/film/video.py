@@ -1,7 +1,5 @@
 """Videos of executions, with start and end time of each step (thesis 2.4.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import cos, radians, sin

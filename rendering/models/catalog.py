@@ -1,7 +1,5 @@
 """Every model by name. To add one, write an entry in the file of its family, and its classes in `looks.yaml`."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache

@@ -5,8 +5,6 @@ An entry is read from top to bottom. `let` names quantities, paints and meshes; 
 `when` holds) or `use` (a named mesh), and then the moves `stretch`, `turn` and `shift`, in their order.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import TypeAlias, cast
 

@@ -1,7 +1,5 @@
 """The leaf of a house plant."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hearth.rendering.models.mesh import Mesh

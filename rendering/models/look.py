@@ -1,7 +1,5 @@
 """Appearance parameters of an object, and recipes that draw it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar

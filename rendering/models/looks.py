@@ -1,7 +1,5 @@
 """The recipe of a class and its parameters: by `looks.yaml`, else by hypernyms, else a plain box."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib.resources import files

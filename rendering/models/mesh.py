@@ -1,7 +1,5 @@
 """Triangle meshes with paint, which recipes make and scenes consist of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 

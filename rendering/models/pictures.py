@@ -1,7 +1,5 @@
 """Pictures that objects show, drawn by the strokes of `pictures.yaml`: pages, screens, paintings, keyboards."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """The vocabulary of the model files: shapes, functions, paints, and quantities of the drawn object."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeVar

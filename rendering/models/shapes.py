@@ -1,7 +1,5 @@
 """Basic shapes of recipes. All lengths are metres; y is up."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise

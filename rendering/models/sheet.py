@@ -1,7 +1,5 @@
 """The sheet of all recipes, variants, kinds and states, for review by eye."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import radians, tan
 from typing import Any

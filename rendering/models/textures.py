@@ -1,7 +1,5 @@
 """Procedural textures, made once per process: repeating tiles that modulate a colour, and pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

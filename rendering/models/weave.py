@@ -1,7 +1,5 @@
 """Components of textures: repeating noise, grids and blends over a square of SIDE texels."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hearth.rendering.arrays import Floats

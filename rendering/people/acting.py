@@ -1,7 +1,5 @@
 """Characters through a program: position, posture and body pose after each tick."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin

@@ -1,7 +1,5 @@
 """People: bodies in clothes, drawn around the joints of a body pose."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Gestures of actions: targets of hands and gaze, and stride."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from hearth.schemas.program import Step

@@ -1,7 +1,5 @@
 """Animation of steps: relax, rise, walk, turn, sit down, reach; the world changes when the hand arrives."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Joints of a body pose: forward kinematics, and two-bone inverse kinematics."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import acos, cos, radians, sin, sqrt
 from typing import Any

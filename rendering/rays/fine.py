@@ -1,7 +1,5 @@
 """Fine pictures: soft shadows, ambient occlusion, and four rays per pixel at edges."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

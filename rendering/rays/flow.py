@@ -1,7 +1,5 @@
 """Optical flow between two pictures (thesis 2.4)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

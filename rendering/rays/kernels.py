@@ -6,8 +6,6 @@ double would turn every result into doubles. Kernels called for every pixel take
 of arrays cost more than the computation, and threads contend for them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 

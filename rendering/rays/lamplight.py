@@ -1,7 +1,5 @@
 """Compiled loops over surface points: incoming light, reflections, and the resulting colours."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compiled loops over surface points: their positions and normals, and rays from them to lights."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compiled loops over a picture's pixels: depth, labels, normals, boxes, flow, and smoothing for fine pictures."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Reused memory: allocating fresh pages costs more than most loops over them."""
 
-from __future__ import annotations
-
 import ctypes
 import threading
 from functools import cache

@@ -1,7 +1,5 @@
 """Shots: a camera's rays, cast once at a scene; every modality is computed from them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache

@@ -1,7 +1,5 @@
 """Threads for compiled loops, which release the interpreter's lock."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor

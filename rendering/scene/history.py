@@ -1,7 +1,5 @@
 """The graphs of an execution, one per tick, at a cost proportional to the changes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.schemas.change import WorkingGraph

@@ -1,7 +1,5 @@
 """Things of a scene, each with a model, a position and a node id."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import lru_cache
 

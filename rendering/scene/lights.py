@@ -1,7 +1,5 @@
 """Lights: the sun by the time of day, the sky through windows, lamps that are on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
@@ -89,10 +87,7 @@ SPILL = 2.0
 
 
 def lamp(
-    position: Point,
-    strength: float = 1.5,
-    room: tuple[float, float, float, float] | None = None,
-    spill: float = SPILL,
+    position: Point, strength: float = 1.5, room: tuple[float, float, float, float] | None = None, spill: float = SPILL
 ) -> Light:
     """A lamp that lights its room and `spill` metres around it."""
     red, green, blue = (strength * c for c in LAMP_COLOR)

@@ -1,7 +1,5 @@
 """From an environment graph to a scene: models, positions and lights."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property

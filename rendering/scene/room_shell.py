@@ -1,7 +1,5 @@
 """Walls, floors and ceilings for the rooms of graphs without them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from hearth.rendering.models.look import Look

@@ -1,7 +1,5 @@
 """Routes of walks: the walkable floor of a graph with boxes, and straightened paths over it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

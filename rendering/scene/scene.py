@@ -1,7 +1,5 @@
 """Scenes: an environment graph with boxes, made of triangles that rays can hit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """The floor area that opening doors and drawers sweep; characters stand outside it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

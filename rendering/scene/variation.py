@@ -1,7 +1,5 @@
 """Random variation between films of one execution, chosen by a seed and recorded with the film."""
 
-from __future__ import annotations
-
 import random
 from dataclasses import asdict, dataclass, replace
 from typing import cast

@@ -1,7 +1,5 @@
 """Homes with geometry for drawing; a layout is made for a graph that has none."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from hearth.homes.from_graph.graph_layout import lay_out

@@ -1,7 +1,5 @@
 """Several characters in each other's way."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before

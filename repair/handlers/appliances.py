@@ -1,7 +1,5 @@
 """Open and closed, on and off, plugged and unplugged: what is so already is left out, what is needed is done first."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, before, removed
 from hearth.repair.handlers.locomotion import walked_to
 

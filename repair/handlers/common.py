@@ -1,7 +1,5 @@
 """What the handlers share: the context they are given, and the edits they answer with."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple

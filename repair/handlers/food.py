@@ -1,7 +1,5 @@
 """Nothing to eat on the plate."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, before
 from hearth.simulation.world.bits import indices
 

@@ -1,7 +1,5 @@
 """The program runs, but what it was for is not reached: bring that about at the end (thesis eq. A.1)."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, Splice
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step

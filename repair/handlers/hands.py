@@ -1,7 +1,5 @@
 """Full hands, empty hands, and things without a remembered origin."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, around, before, removed, replaced
 from hearth.schemas.literals import HOLDS
 from hearth.schemas.program import ObjectRef

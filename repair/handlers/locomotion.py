@@ -1,7 +1,5 @@
 """Not close, not in the room, a closed door on the way: the character goes where it has to be."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, around, before
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step

@@ -1,7 +1,5 @@
 """Sitting, lying, standing, and no room on the seat."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before, removed

@@ -1,7 +1,5 @@
 """Handlers by failure code. To add one: a function, a row here, a test, its words in kb/data/repairs.yaml."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers import agents, appliances, food, goals, hands, locomotion, posture, senses
 from hearth.repair.handlers.common import Handler, leaving_out
 from hearth.schemas.failures import Code

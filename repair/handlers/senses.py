@@ -1,7 +1,5 @@
 """Not facing what is to be seen."""
 
-from __future__ import annotations
-
 from hearth.repair.handlers.common import Edit, RepairContext, before
 
 

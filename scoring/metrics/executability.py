@@ -1,7 +1,5 @@
 """Executability: whether a program runs in its environment, else its first failing step and the error class (A.3)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -106,10 +104,7 @@ class Executability:
 
 
 def executability(
-    lines: Lines,
-    world: World,
-    reference: Program | None = None,
-    rules: Rules = DEFAULT,
+    lines: Lines, world: World, reference: Program | None = None, rules: Rules = DEFAULT
 ) -> Executability:
     """Run a predicted program in an environment (thesis 4.5.2, A.3).
 

@@ -1,7 +1,5 @@
 """Goal satisfaction of a final world (thesis 6.3, tables B.1, C.2)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

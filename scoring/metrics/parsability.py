@@ -1,7 +1,5 @@
 """Parsability: whether a program is well formed, independent of its environment (thesis 5.6.1, A.3)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache

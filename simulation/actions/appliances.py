@@ -1,7 +1,5 @@
 """Open, Close, SwitchOn, SwitchOff, PlugIn, PlugOut, Type."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import (
     Check,

@@ -1,7 +1,5 @@
 """Wipe, Wash, Rinse, Scrub, Squeeze."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Check, able, becomes, checked, close, free_hand, refuse
 from hearth.simulation.world.agent import Agent

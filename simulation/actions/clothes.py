@@ -1,7 +1,5 @@
 """PutOn, PutOff: what the character wears."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Check, able, checked, held, refuse
 from hearth.simulation.rules import Rules
@@ -28,7 +26,4 @@ def _put_off(world: World, number: int, o: int, rules: Rules) -> World:
 
 _worn = Check(_need_worn, lambda s, _: s.me.worn)
 
-ACTIONS = (
-    checked("PutOn", held, able, effect=_put_on),
-    checked("PutOff", _worn, able, effect=_put_off),
-)
+ACTIONS = (checked("PutOn", held, able, effect=_put_on), checked("PutOff", _worn, able, effect=_put_off))

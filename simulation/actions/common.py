@@ -3,8 +3,6 @@
 A check is made for one object by the engine and for all nodes at once by `legal`; both readings of it stand together.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Drink, Eat, Cut, Pour."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import (
     Action,

@@ -1,7 +1,5 @@
 """Grab, PutBack, PutIn, PutObjBack, Drop, Release: what the hands hold and where they leave it."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import origins
 from hearth.simulation.actions.common import (

@@ -1,7 +1,5 @@
 """Walk, Run, Find, TurnTo: where the character is and what it faces."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import doors
 from hearth.simulation.actions.common import Action, Masks, need_close, refuse, some

@@ -1,7 +1,5 @@
 """Sit, Lie, StandUp, Sleep, WakeUp."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Action, Check, Masks, able, checked, close, refuse
 from hearth.simulation.actions.situation import Situation

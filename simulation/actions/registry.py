@@ -1,7 +1,5 @@
 """Every action that is executed, by its canonical name; the files name theirs in `ACTIONS`."""
 
-from __future__ import annotations
-
 from hearth.simulation.actions import appliances, cleaning, clothes, food, hands, locomotion, moving, posture, senses
 from hearth.simulation.actions.common import Action
 

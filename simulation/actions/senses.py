@@ -1,7 +1,5 @@
 """LookAt, PointAt, Watch, Read, Touch, Greet: what changes nothing but must be possible."""
 
-from __future__ import annotations
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import (
     Action,

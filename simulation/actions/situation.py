@@ -1,7 +1,5 @@
 """A world for one agent, with sets of nodes that the masks of several actions share."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 from hearth.simulation.observation import reach

@@ -1,7 +1,5 @@
 """Hand and base pose of each step: the place to stand, the way to face, the hand (thesis 2.4.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What an agent sees: nodes and edges, the poses of the others and their last actions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

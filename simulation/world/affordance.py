@@ -1,7 +1,5 @@
 """The nodes of a home that an action's argument may be, as a bit set."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import reduce
 from operator import and_, or_

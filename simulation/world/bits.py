@@ -1,7 +1,5 @@
 """Sets of nodes as integers: bit i stands for the node of index i."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 

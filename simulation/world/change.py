@@ -1,7 +1,5 @@
 """The difference of two worlds, at a cost that follows what moved: `schemas.change` for worlds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Set
 
 from hearth.schemas.change import Change, Parts, State, difference

@@ -3,8 +3,6 @@
 Rows are shared by copying lists of references, so that what is not touched costs a few nanoseconds a node.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from operator import attrgetter, or_

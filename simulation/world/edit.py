@@ -3,8 +3,6 @@
 `extended` is for many environments of one home, `edit` for worlds; what `edit` changes is checked as sampling does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 

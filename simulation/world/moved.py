@@ -4,8 +4,6 @@ Nothing is deleted row by row: a thing that was grabbed is *removed* from a rela
 that relation in both directions at once; what it stands in now is *extra*.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from hearth.simulation.world.bits import indices

@@ -1,7 +1,5 @@
 """Nodes with the states of a moment."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

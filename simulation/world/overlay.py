@@ -1,7 +1,5 @@
 """Adding and taking away single edges in the middle of an execution, whichever kind of node they join."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from operator import or_
 from typing import Any

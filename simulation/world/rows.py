@@ -3,8 +3,6 @@
 All take and give indices and bit sets. Edges between a character and anything stand in the character's `Agent`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hearth.schemas.graph import Edge

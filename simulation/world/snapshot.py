@@ -4,8 +4,6 @@ The graph is the release's own format, so that other tools read it; the origins 
 hold, stand beside it under `memories`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The state of a world: all that reading its rows needs (see `rows`)."""
 
-from __future__ import annotations
-
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import Moved

@@ -1,7 +1,5 @@
 """The sets of `World.states` by number, and entering a state."""
 
-from __future__ import annotations
-
 from hearth.schemas.vocabulary import STATES
 
 CLOSED, OPEN, OFF, ON, DIRTY, CLEAN, PLUGGED_OUT, PLUGGED_IN, SITTING, LYING = range(len(STATES))
