@@ -152,13 +152,13 @@ def applied(conditions: Preconditions, perturbations: Sequence[Perturbation]) ->
 
 
 def _swap(kind: str, pairs: Mapping[str, str]) -> Perturber:
-    """Every condition of these names becomes its opposite."""
+    """Every condition of these names becomes its opposite, or is dropped where that is empty."""
 
     def swap(case: Case) -> Iterator[Perturbation]:
         for condition in case.conditions:
             opposite = pairs.get(condition.name)
             if opposite is not None:
-                yield Perturbation(kind, (condition,), (condition.instead(opposite),))
+                yield Perturbation(kind, (condition,), (condition.instead(opposite),) if opposite else ())
 
     return swap
 
@@ -171,17 +171,6 @@ def _plugged(case: Case) -> Iterator[Perturbation]:
         runs = one.added[0].name == "unplugged" and case.conditions.has("is_on", *one.about.objects)
         if not runs and next(lacking, -1) < 0 and case.knowledge.has(one.about.objects[0][0], "HAS_PLUG"):
             yield one
-
-
-def _drop(kind: str, *names: str) -> Perturber:
-    """Every condition of these names is dropped."""
-
-    def drop(case: Case) -> Iterator[Perturbation]:
-        for condition in case.conditions:
-            if condition.name in names:
-                yield Perturbation(kind, (condition,))
-
-    return drop
 
 
 def _at_reach(case: Case) -> Iterator[Perturbation]:
@@ -287,15 +276,15 @@ def _seated(case: Case) -> Iterator[Perturbation]:
 
 
 PERTURBATIONS: dict[str, Perturber] = {
-    "sitting": _drop("sitting", "sitting"),
-    "lying": _drop("lying", "lying"),
+    "sitting": _swap("sitting", {"sitting": ""}),
+    "lying": _swap("lying", {"lying": ""}),
     "at_reach": _at_reach,
     "plugged": _plugged,
     "on": _swap("on", {"is_on": "is_off", "is_off": "is_on"}),
     "open": _swap("open", {"open": "closed", "closed": "open"}),
     "free": _swap("free", {"free": "occupied", "occupied": "free"}),
     "facing": _swap("facing", {"facing": "facing_away"}),
-    "holding": _drop("holding", "holds"),
+    "holding": _swap("holding", {"holds": ""}),
     "container": _container,
     "location": _location,
     "full_hands": _full_hands,

@@ -45,18 +45,17 @@ def _contents(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
         elif step.action == "Close" and keys[0] in opened:
             opened.remove(keys[0])
         elif step.action == "Grab" and keys[0] not in handled:
-            container = next((key for key in reversed(opened) if _fits(keys[0], key, knowledge)), None)
+            container = next((key for key in reversed(opened) if _belongs(keys[0], "IN", key, knowledge)), None)
             if container is not None:
                 yield Condition(Literal("inside", (keys[0], container)), number, hard=False)
         if step.action in knowledge.group("frees_hand") or step.action == "Grab":
             handled.add(keys[0])
 
 
-def _fits(thing: Key, container: Key, knowledge: Knowledge) -> bool:
-    return any(
-        place.relation == "IN" and place.destination in knowledge.same_class(container[0])
-        for place in knowledge.placements(thing[0])
-    )
+def _belongs(thing: Key, relation: str, place: Key, knowledge: Knowledge) -> bool:
+    """Whether the knowledge places such a thing there."""
+    same = knowledge.same_class(place[0])
+    return any(p.relation == relation and p.destination in same for p in knowledge.placements(thing[0]))
 
 
 def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
@@ -68,19 +67,14 @@ def _supports(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
             new = ref.key not in seen
             seen.add(ref.key)
             movable = new and knowledge.has(ref.name, "GRABBABLE")
-            if movable and last is not None and last[0] in knowledge.table_like and _stands(ref.key, last, knowledge):
+            if not movable or last is None:
+                continue
+            if last[0] in knowledge.table_like and _belongs(ref.key, "ON", last, knowledge):
                 yield Condition(Literal("in", (ref.key, last)), number, hard=False)
-            elif movable and last is not None and last[0] == "chair":
+            elif last[0] == "chair":
                 yield Condition(Literal("atreach", (ref.key, last)), number, hard=False)
         if step.objects and (step.action in knowledge.group("goes") or step.action == "LookAt"):
             last = None if knowledge.is_room(step.objects[0].name) else step.objects[0].key
-
-
-def _stands(thing: Key, support: Key, knowledge: Knowledge) -> bool:
-    return any(
-        place.relation == "ON" and place.destination in knowledge.same_class(support[0])
-        for place in knowledge.placements(thing[0])
-    )
 
 
 def _free_seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:

@@ -23,79 +23,53 @@ class WrongValueError(ValueError):
     """The expected form of a value."""
 
 
-def number(value: Any) -> float:
-    """A length in metres."""
-    if isinstance(value, located.Number) and abs(value) < 1000:
-        return float(value)
-    raise WrongValueError("a number of metres")
+def reads(
+    expected: str, allows: Callable[[Any], object], first: ReadValue | None = None, then: ReadValue | None = None
+) -> ReadValue:
+    """A reader of values of the expected form, which `allows` tells.
 
+    Args:
+        expected: the form, for the message about a value of another.
+        allows: whether a value has it.
+        first: reads the value that is then asked about.
+        then: what the reader makes of an allowed value; the value itself when left out.
+    """
 
-def length(value: Any) -> float:
-    """A length greater than 0."""
-    found = number(value)
-    if found <= 0:
-        raise WrongValueError("a length greater than 0")
-    return found
-
-
-def whole(value: Any) -> int:
-    """A whole number, not negative."""
-    found = number(value)
-    if found != int(found) or not 0 <= found <= MOST:
-        raise WrongValueError(f"a whole number from 0 to {MOST}")
-    return int(found)
-
-
-def yes_or_no(value: Any) -> bool:
-    """true or false."""
-    if isinstance(value, bool):
-        return value
-    raise WrongValueError("true or false")
-
-
-def word(value: Any) -> str:
-    """A name."""
-    if isinstance(value, str) and value:
-        return str(value)
-    raise WrongValueError("a name")
-
-
-def one_of(*words: str) -> ReadValue:
-    """A reader of one of some words."""
-
-    def read(value: Any) -> str:
-        if value in words:
-            return str(value)
-        raise WrongValueError(f"one of {', '.join(words)}")
+    def read(value: Any) -> Any:
+        value = value if first is None else first(value)
+        if not allows(value):
+            raise WrongValueError(expected)
+        return value if then is None else then(value)
 
     return read
 
 
-def pair(value: Any) -> tuple[float, float]:
-    """Two numbers: [x, z]."""
-    if isinstance(value, list) and len(value) == 2:
-        return number(value[0]), number(value[1])
-    raise WrongValueError("two numbers, [east, north]")
+def one_of(*words: str) -> ReadValue:
+    """A reader of one of some words."""
+    return reads(f"one of {', '.join(words)}", lambda value: value in words, then=str)
 
 
-def extent(value: Any) -> tuple[float, float]:
-    """Two lengths: [width, depth]."""
-    x, z = pair(value)
-    if min(x, z) <= 0:
-        raise WrongValueError("two lengths greater than 0")
-    return x, z
+def or_middle(read: ReadValue) -> ReadValue:
+    """A reader of what another reads, or of `middle`, as None."""
+    return lambda value: None if value == "middle" else read(value)
 
 
-def along(value: Any) -> float | None:
-    """A distance from a wall's west or south end, or `middle`."""
-    return None if value == "middle" else number(value)
-
-
-def spot(value: Any) -> tuple[float, float] | None:
-    """A point of the room as [east, north] of its south-west corner, or `middle`."""
-    return None if value == "middle" else pair(value)
-
-
+number = reads("a number of metres", lambda it: isinstance(it, located.Number) and abs(it) < 1000, then=float)
+length = reads("a length greater than 0", lambda metres: metres > 0, first=number)
+whole = reads(f"a whole number from 0 to {MOST}", lambda it: it == int(it) and 0 <= it <= MOST, first=number, then=int)
+yes_or_no = reads("true or false", lambda value: isinstance(value, bool))
+word = reads("a name", lambda value: isinstance(value, str) and value, then=str)
+pair = reads(
+    "two numbers, [east, north]",
+    lambda value: isinstance(value, list) and len(value) == 2,
+    then=lambda value: (number(value[0]), number(value[1])),
+)
+extent = reads("two lengths greater than 0", lambda lengths: min(lengths) > 0, first=pair)
+"""[width, depth]."""
+along = or_middle(number)
+"""A distance from a wall's west or south end."""
+spot = or_middle(pair)
+"""A point of the room as [east, north] of its south-west corner."""
 direction = one_of(*DIRECTIONS)
 
 PLACE_KEYS: dict[str, ReadValue] = {

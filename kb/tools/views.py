@@ -130,18 +130,16 @@ def _originals(knowledge: Knowledge) -> Iterator[str]:
     return (name for name, thing in knowledge.objects.items() if not thing.same_as)
 
 
+def _row(record: object, *columns: str) -> Row:
+    """Attributes of a record, its sets sorted and its tuples as lists."""
+    values = {column: getattr(record, column) for column in columns}
+    lists = {column: sorted(value) for column, value in values.items() if isinstance(value, frozenset)}
+    return {**values, **{c: list(value) for c, value in values.items() if isinstance(value, tuple)}, **lists}
+
+
 def _actions(knowledge: Knowledge) -> Iterator[Row]:
     for action in knowledge.actions.values():
-        yield {
-            "id": action.id,
-            "name": action.name,
-            "arity": action.arity,
-            "executed": action.executed,
-            "template": action.template,
-            "words": list(action.words),
-            "aliases": list(action.aliases),
-            "source": action.source,
-        }
+        yield _row(action, "id", "name", "arity", "executed", "template", "words", "aliases", "source")
 
 
 def _arguments(knowledge: Knowledge) -> Iterator[Row]:
@@ -163,23 +161,10 @@ def _literals(knowledge: Knowledge) -> Iterator[Row]:
 
 
 def _objects(knowledge: Knowledge) -> Iterator[Row]:
-    for name, thing in knowledge.objects.items():
-        width, height, depth = thing.size
-        yield {
-            "id": thing.id,
-            "name": name,
-            "category": thing.category,
-            "hypernym": thing.hypernym,
-            "gloss": thing.gloss,
-            "properties": sorted(thing.properties),
-            "states": list(thing.states),
-            "rooms": list(thing.rooms),
-            "width": width,
-            "height": height,
-            "depth": depth,
-            "same_as": thing.same_as,
-            "source": thing.source,
-        }
+    for thing in knowledge.objects.values():
+        row = _row(thing, "id", "name", "category", "hypernym", "gloss", "properties", "states", "rooms")
+        size = dict(zip(("width", "height", "depth"), thing.size, strict=True))
+        yield {**row, **size, "same_as": thing.same_as, "source": thing.source}
 
 
 def _names(knowledge: Knowledge) -> Iterator[Row]:
@@ -208,11 +193,5 @@ def _affordances(knowledge: Knowledge) -> Iterator[Row]:
 
 def _repairs(knowledge: Knowledge) -> Iterator[Row]:
     for repair in knowledge.repairs.values():
-        yield {
-            "name": repair.name,
-            "failure": repair.code.value,
-            "actions": list(repair.actions),
-            "raised_when": repair.when,
-            "say": repair.say,
-            "source": repair.source,
-        }
+        row = {"name": repair.name, "failure": repair.code.value, "actions": list(repair.actions)}
+        yield {**row, "raised_when": repair.when, "say": repair.say, "source": repair.source}

@@ -58,7 +58,9 @@ def _grab(world: World, number: int, o: int, rules: Rules) -> World:
         agent.index, agent.bit, close, agent.facing, agent.faced, agent.inside & ~bit, agent.contents & ~bit,
         agent.on & ~bit, agent.worn & ~bit, right, left, memory,
     )  # fmt: skip
-    agents = (taken,) if len(world.agents) == 1 else _taken_from_others(world.agents, number, taken, bit)
+    agents: tuple[Agent, ...] = (taken,)
+    if len(world.agents) > 1:
+        agents = tuple(taken if i == number else other.parted(bit) for i, other in enumerate(world.agents))
     return World(world.home, world.states, agents, lift(world.moved, o, room))
 
 
@@ -138,23 +140,6 @@ def _freed(agent: Agent, o: int, close: int, worn: int, memory: tuple[tuple[int,
 
 def _forgotten(agent: Agent, o: int) -> tuple[tuple[int, int, int], ...]:
     return tuple(entry for entry in agent.origins if entry[0] != o)
-
-
-def _taken_from_others(agents: tuple[Agent, ...], number: int, taken: Agent, bit: int) -> tuple[Agent, ...]:
-    """Void the other characters' edges to a thing that one has grabbed."""
-    rest = ~bit
-    return tuple(
-        taken
-        if i == number
-        else other._replace(
-            close=other.close & rest,
-            inside=other.inside & rest,
-            contents=other.contents & rest,
-            on=other.on & rest,
-            worn=other.worn & rest,
-        )
-        for i, other in enumerate(agents)
-    )
 
 
 def _hand_over(world: World, number: int, o: int, s: int) -> World | Failure:

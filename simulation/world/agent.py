@@ -13,24 +13,6 @@ AGENT_IN = {"CLOSE": "close", "FACING": "faced", "INSIDE": "contents", "ON": "wo
 """The field in which an edge to a character stands, by relation."""
 
 
-class AgentRow(NamedTuple):
-    """A character's edges as a home has them, under the names of `Agent`."""
-
-    close: int = 0
-    facing: int = 0
-    faced: int = 0
-    inside: int = 0
-    contents: int = 0
-    on: int = 0
-    worn: int = 0
-    right: int = 0
-    left: int = 0
-
-    def without(self, bit: int) -> AgentRow:
-        """Without the edges to and from these nodes."""
-        return AgentRow(*[row & ~bit for row in self])
-
-
 class Agent(NamedTuple):
     """One character.
 
@@ -60,19 +42,18 @@ class Agent(NamedTuple):
     left: int = 0
     origins: tuple[tuple[int, int, int], ...] = ()
 
-    @classmethod
-    def start(cls, index: int, row: AgentRow) -> Agent:
-        """A character as a home has it."""
-        return cls(index, 1 << index, *row)
-
     @property
     def held(self) -> int:
         """What either hand holds."""
         return self.right | self.left
 
-    def row(self) -> AgentRow:
-        """Its edges alone."""
-        return AgentRow(*self[2:-1])
+    def without(self, bit: int) -> Agent:
+        """Without the edges to and from these nodes."""
+        return Agent._make((self.index, self.bit, *[row & ~bit for row in self[2:-1]], self.origins))
+
+    def parted(self, bit: int) -> Agent:
+        """Without the edges to and from these nodes but those of FACING."""
+        return self.without(bit)._replace(facing=self.facing, faced=self.faced)
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:

@@ -22,7 +22,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
-from hearth.simulation.world.agent import AgentRow
+from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 
 Rows = list[int]
@@ -67,7 +67,7 @@ class Edges(NamedTuple):
     facing: Rows
     faced: Rows
     between: Rows
-    agent_rows: list[AgentRow]
+    agent_rows: list[Agent]
     others: list[Raw]
 
 
@@ -262,14 +262,15 @@ def _edge(columns: Columns, i: int) -> Raw:
     return columns[0][i], columns[1][i], columns[2][i]
 
 
-def _part_characters(tables: list[Rows], nodes: Nodes, others: list[Raw]) -> list[AgentRow]:
+def _part_characters(tables: list[Rows], nodes: Nodes, others: list[Raw]) -> list[Agent]:
     """Move the characters' edges out of the things' rows; edges of hands that are no character's go to `others`."""
     on, bears, inside, contents, close, facing, faced, _between, right, left = tables
     characters = mask_of(nodes.agents)
     mine = (close, facing, faced, inside, contents, on, bears, right, left)
     # Edges between two characters stay with the one they go out from (see `Agent`).
     things = (-1, -1, ~characters, -1, ~characters, -1, ~characters, -1, -1)
-    found = [AgentRow(*[row[i] & mask for row, mask in zip(mine, things, strict=True)]) for i in nodes.agents]
+    edges = ([row[i] & mask for row, mask in zip(mine, things, strict=True)] for i in nodes.agents)
+    found = [Agent._make((i, 1 << i, *own, ())) for i, own in zip(nodes.agents, edges, strict=True)]
     opposite = (close, faced, facing, contents, inside, bears, on)
     for i in nodes.agents:
         for table, inverse in zip(mine, opposite, strict=False):
@@ -288,7 +289,7 @@ def _hands_without_character(nodes: Nodes, right: Rows, left: Rows) -> Iterator[
             yield from chain.from_iterable(((ids[i], name, ids[j]) for j in indices(r)) for i, r in enumerate(rows))
 
 
-def _held_once(rows: list[AgentRow]) -> list[AgentRow]:
+def _held_once(rows: list[Agent]) -> list[Agent]:
     """Take from each character what one before it holds."""
     if len(rows) < 2:
         return rows

@@ -14,7 +14,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, AgentRow
+from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.building import CHARACTER_PROPERTIES
 from hearth.simulation.world.home import Home
@@ -132,9 +132,8 @@ def without(home: Home, i: int) -> Home:
     new.by_class[home.classes[i]] &= ~bit
     new.properties = {name: mask & ~bit for name, mask in home.properties.items()}
     new.states = tuple(row & ~bit for row in home.states)
-    rows = [(a, row.without(bit)) for a, row in zip(home.agents, home.agent_rows, strict=True)]
-    new.agents = tuple(a for a, _ in rows if a != i)
-    new.agent_rows = [row for a, row in rows if a != i]
+    new.agents = tuple(a for a in home.agents if a != i)
+    new.agent_rows = [row.without(bit) for row in home.agent_rows if row.index != i]
     new.others = [edge for edge in home.others if home.ids[i] not in (edge[0], edge[2])]
     new.base = (home, touched | home.doors)
     return new
@@ -187,7 +186,7 @@ def _append(home: Home, nodes: Sequence[Node]) -> None:
         home.by_class[name] = home.by_class.get(name, 0) | mask
         if name == CHARACTER_CLASS:
             home.agents = (*home.agents, *indices(mask))
-            home.agent_rows += [AgentRow()] * mask.bit_count()
+            home.agent_rows += [Agent(i, 1 << i) for i in indices(mask)]
         elif node.category == ROOM_CATEGORY:
             home.rooms |= mask
         for prop in node.properties:

@@ -13,7 +13,6 @@ from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, STATE_ID
 from hearth.simulation.world import fitting, overlay, rows
 from hearth.simulation.world import moved as kinds
-from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.derived import Movable, added_nodes, extended, without
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -108,8 +107,7 @@ def _with_nodes(world: World, nodes: Sequence[Node]) -> World:
         return _moved_over(world, home)
     rest = world.home.everything
     states = tuple(now | new & ~rest for now, new in zip(world.states, home.states, strict=True))
-    came = (Agent.start(i, row) for i, row in zip(home.agents, home.agent_rows, strict=True))
-    agents = (*world.agents, *(agent for agent in came if not rest & agent.bit))
+    agents = (*world.agents, *(agent for agent in home.agent_rows if not rest & agent.bit))
     return World(home, states, agents, world.moved)
 
 
@@ -135,7 +133,7 @@ def _without_node(world: World, i: int) -> World:
     for agent in world.agents:
         if agent.index != i:
             memory = tuple(entry for entry in agent.origins if i not in entry[:2])
-            agents.append(Agent.start(agent.index, agent.row().without(bit))._replace(origins=memory))
+            agents.append(agent.without(bit)._replace(origins=memory))
     states = tuple(row & ~bit for row in world.states)
     return World(home, states, tuple(agents), world.moved._replace(extra=extra))
 
@@ -150,8 +148,7 @@ def _placed(world: World, i: int, relation: str, j: int) -> World:
         if agent.index == i:
             agents[number] = agent._replace(close=0, inside=0, on=0)
         else:
-            rest = agent.row().without(bit)._replace(facing=agent.facing, faced=agent.faced)
-            agents[number] = Agent.start(agent.index, rest)._replace(origins=agent.origins)
+            agents[number] = agent.parted(bit)
     edges = [(i, relation, j)]
     if j != room:
         edges.append((i, "CLOSE", j))

@@ -45,7 +45,7 @@ class Home:
         between: the rooms a door is BETWEEN.
         states: the start's states, one set of nodes for each of `vocabulary.STATES`.
         agents: indices of the characters, in id order.
-        agent_rows: each character's own edges.
+        agent_rows: the characters at the start, each with its own edges.
         others: edges that take no part in the simulation, kept for printing.
         nodes: as they were given; `node(i)` also knows the states that `edit.extended` gave.
         restated: nodes whose states at the start are others than the node says.

@@ -6,7 +6,7 @@ All take and give indices and bit sets. Edges between a character and anything s
 from collections.abc import Iterator
 
 from hearth.schemas.graph import Edge
-from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import BEARS, CLOSE, CONTENTS, FACED, FACING, INSIDE, NOTHING, ON
 from hearth.simulation.world.state import WorldState
@@ -48,6 +48,10 @@ def facing(world: WorldState, i: int) -> int:
 def faced(world: WorldState, i: int) -> int:
     """The things that are FACING i."""
     return _row(world.home.faced[i], world.moved.facing, world.moved.extra, i, FACED)
+
+
+_READERS = (on, bears, inside, contents, close, facing, faced)
+"""By kind of row (see `moved`), and in the order of `Home.rows`."""
 
 
 def _row(row: int, removed: int, extra: dict[int, int], i: int, kind: int) -> int:
@@ -187,13 +191,11 @@ def thing_edges(world: WorldState, among: int = -1) -> Iterator[Numbered]:
 def agent_edges(agent: Agent) -> Iterator[Numbered]:
     """Every edge of a character, in both directions, as (index, relation, index)."""
     me = agent.index
-    out = (("ON", agent.on), ("INSIDE", agent.inside), ("CLOSE", agent.close), ("FACING", agent.facing))
-    for relation, row in (*out, ("HOLDS_RH", agent.right), ("HOLDS_LH", agent.left)):
-        for j in indices(row):
+    for relation, field in AGENT_OUT.items():
+        for j in indices(getattr(agent, field)):
             yield me, relation, j
-    into = (("ON", agent.worn), ("INSIDE", agent.contents), ("CLOSE", agent.close), ("FACING", agent.faced))
-    for relation, row in into:
-        for j in indices(row):
+    for relation, field in AGENT_IN.items():
+        for j in indices(getattr(agent, field)):
             yield j, relation, me
 
 
@@ -218,17 +220,11 @@ def difference(world: WorldState) -> frozenset[tuple[int, int, int]]:
         return frozenset()
     home = world.home
     found = set()
+    pairs = tuple(zip(_READERS, home.rows[:-1], strict=True))
     touched = {key >> 3 for key in moved.extra} | set(indices(moved.on | moved.inside | moved.close | moved.facing))
     for i in touched:
-        for kind, now, before in (
-            (ON, on(world, i), home.on[i]),
-            (BEARS, bears(world, i), home.bears[i]),
-            (INSIDE, inside(world, i), home.inside[i]),
-            (CONTENTS, contents(world, i), home.contents[i]),
-            (CLOSE, close(world, i), home.close[i]),
-            (FACING, facing(world, i), home.facing[i]),
-            (FACED, faced(world, i), home.faced[i]),
-        ):
-            if now != before:
+        for kind, (read, before) in enumerate(pairs):
+            now = read(world, i)
+            if now != before[i]:
                 found.add((i, kind, now))
     return frozenset(found)

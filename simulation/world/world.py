@@ -35,8 +35,7 @@ class World(WorldState):
     @classmethod
     def start(cls, home: Home) -> World:
         """The home as it is given."""
-        agents = tuple(Agent.start(i, row) for i, row in zip(home.agents, home.agent_rows, strict=True))
-        return cls(home, home.states, agents, NOTHING)
+        return cls(home, home.states, tuple(home.agent_rows), NOTHING)
 
     def with_agent(self, number: int, agent: Agent) -> World:
         """The same world with one agent's edges replaced."""
