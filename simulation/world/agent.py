@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 AGENT_OUT = {
     "CLOSE": "close", "FACING": "facing", "INSIDE": "inside", "ON": "on", "HOLDS_RH": "right", "HOLDS_LH": "left",
@@ -68,3 +69,21 @@ def _beside(agent: Agent, close: int, other: int) -> Agent:
     if agent.close & other == close:
         return agent
     return agent._replace(close=agent.close & ~other | close)
+
+
+def change_characters(agents: list[Agent], edge: tuple[int, str, int], change: Callable[[int, int], int]) -> bool:
+    """Change the rows of the characters at either end; whether there were any. Edges between two characters stand in
+    the row of the one they go out from, CLOSE in both.
+    """
+    i, relation, j = edge
+    part = False
+    for me, fields, other in ((i, AGENT_OUT, j), (j, AGENT_IN, i)):
+        number = next((n for n, agent in enumerate(agents) if agent.index == me), -1)
+        field = fields.get(relation)
+        if number < 0 or field is None or (part and relation != "CLOSE"):
+            continue
+        part = True
+        agent = agents[number]
+        row: dict[str, Any] = {field: change(getattr(agent, field), 1 << other)}
+        agents[number] = agent._replace(**row)
+    return part

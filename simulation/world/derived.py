@@ -14,7 +14,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY, STATE_ID
-from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
+from hearth.simulation.world.agent import Agent, change_characters
 from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.building import CHARACTER_PROPERTIES
 from hearth.simulation.world.home import Home
@@ -271,20 +271,11 @@ def _each(home: Home, edges: Iterable[Edge], put: bool) -> int:
 def _each_agent(home: Home, edge: tuple[int, str, int], change: Callable[[int, int], int]) -> None:
     """The same for an edge that a character has, or that takes no part in the simulation."""
     i, relation, j = edge
-    part = False
-    for me, fields, other in ((i, AGENT_OUT, j), (j, AGENT_IN, i)):
-        field = fields.get(relation)
-        if field is None or me not in home.agents:
-            continue
-        if part and relation != "CLOSE":
-            break  # between two characters it stays with the one it goes out from
-        part = True
-        number = home.agents.index(me)
-        row = home.agent_rows[number]
-        home.agent_rows[number] = row._replace(**{field: change(getattr(row, field), 1 << other)})
-    if not part and relation == "BETWEEN":
+    if change_characters(home.agent_rows, edge, change):
+        return
+    if relation == "BETWEEN":
         home.between[i] = change(home.between[i], 1 << j)
-    elif not part:
+    else:
         raw = (home.ids[i], relation, home.ids[j])
         home.others = [other for other in home.others if other != raw]
         if change(0, 1):

@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable
 from operator import or_
-from typing import Any
 
 from hearth.simulation.world import moved as kinds
 from hearth.simulation.world import rows
-from hearth.simulation.world.agent import AGENT_IN, AGENT_OUT, Agent
+from hearth.simulation.world.agent import change_characters
 from hearth.simulation.world.bits import cleared, indices
 from hearth.simulation.world.moved import Moved, link, unlink
 from hearth.simulation.world.rows import Numbered
@@ -27,7 +26,7 @@ def linked(world: World, edges: Iterable[Numbered]) -> World:
     extra = dict(world.moved.extra)
     agents = list(world.agents)
     for i, relation, j in edges:
-        if not _each_agent(agents, (i, relation, j), or_) and relation in _KINDS:
+        if not change_characters(agents, (i, relation, j), or_) and relation in _KINDS:
             link(extra, i, _KINDS[relation], j)
     return World(world.home, world.states, tuple(agents), world.moved._replace(extra=extra))
 
@@ -40,7 +39,7 @@ def unlinked(world: World, edges: Iterable[Numbered]) -> World:
     """
     for i, relation, j in edges:
         agents = list(world.agents)
-        if _each_agent(agents, (i, relation, j), cleared):
+        if change_characters(agents, (i, relation, j), cleared):
             world = World(world.home, world.states, tuple(agents), world.moved)
         elif relation in _KINDS:
             moved = _without(world, i, relation, j)
@@ -67,21 +66,3 @@ def _without(world: World, i: int, relation: str, j: int) -> Moved:
         moved = moved._replace(**{field: removed | 1 << k})
     unlink(extra, i, kind, j)
     return moved._replace(extra=extra)
-
-
-def _each_agent(agents: list[Agent], edge: Numbered, change: Callable[[int, int], int]) -> bool:
-    """Change the rows of the characters at either end; whether there were any. Edges between two characters stand in
-    the row of the one they go out from, CLOSE in both.
-    """
-    i, relation, j = edge
-    part = False
-    for me, fields, other in ((i, AGENT_OUT, j), (j, AGENT_IN, i)):
-        number = next((n for n, agent in enumerate(agents) if agent.index == me), -1)
-        field = fields.get(relation)
-        if number < 0 or field is None or (part and relation != "CLOSE"):
-            continue
-        part = True
-        agent = agents[number]
-        row: dict[str, Any] = {field: change(getattr(agent, field), 1 << other)}
-        agents[number] = agent._replace(**row)
-    return part
