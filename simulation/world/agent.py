@@ -54,7 +54,8 @@ class Agent(NamedTuple):
 
     def parted(self, bit: int) -> Agent:
         """Without the edges to and from these nodes but those of FACING."""
-        return self.without(bit)._replace(facing=self.facing, faced=self.faced)
+        index, me, close, facing, faced, *rest, origins = self
+        return Agent._make((index, me, close & ~bit, facing, faced, *[row & ~bit for row in rest], origins))
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:
