@@ -26,7 +26,7 @@ class WrongValueError(ValueError):
 def reads(
     expected: str, allows: Callable[[Any], object], first: ReadValue | None = None, then: ReadValue | None = None
 ) -> ReadValue:
-    """A reader of values of the expected form, which `allows` tells.
+    """A reader of values of the expected form; those of another are faults.
 
     Args:
         expected: the form, for the message about a value of another.
