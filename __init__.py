@@ -1,61 +1,34 @@
 """Hearth turns what people say they do at home into datasets that machines can run.
 
 The usual entry points are attributes of this package, as `hearth.run`; each is imported when it is first used.
+Their modules are those of `__init__.pyi`, which type checkers read too.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from hearth.version import VERSION
 
 if TYPE_CHECKING:
-    from hearth.datasets.dataset import Dataset as Dataset
-    from hearth.datasets.export.formats import export as export
-    from hearth.datasets.verify import verify as verify
-    from hearth.grounding.binding import bind as bind
-    from hearth.grounding.environments.sampling import sample as sample
-    from hearth.grounding.preconditions.infer import infer as infer
-    from hearth.homes.library import load_graph as load_graph
-    from hearth.homes.procedural.generate import generate as generate
+    from hearth.datasets.dataset import Dataset
     from hearth.kb.knowledge import Knowledge
-    from hearth.kb.language.understanding import understand as understand
-    from hearth.kb.tools.find import Query as Query
-    from hearth.kb.tools.find import find as find
-    from hearth.pipelines.build import build as build
-    from hearth.rendering.film.snapshots import trajectory_of as trajectory_of
-    from hearth.rendering.film.video import record as record
-    from hearth.rendering.modalities import render as render
-    from hearth.rendering.scene.prepared import scene_of as scene_of
-    from hearth.repair.sketch import sketch as sketch
-    from hearth.repair.variants import augment as augment
-    from hearth.schemas.goals import Goal as Goal
-    from hearth.schemas.literals import Literal as Literal
     from hearth.schemas.program import Program
-    from hearth.scoring.evaluate import evaluate as evaluate
-    from hearth.scoring.metrics.executability import executability as executability
-    from hearth.scoring.predictions import read_pairs as read_pairs
-    from hearth.simulation.engine import run as run
-    from hearth.simulation.env import Env as Env
-    from hearth.simulation.goals import Progress as Progress
-    from hearth.simulation.holds import holds as holds
-    from hearth.simulation.world.edit import edit as edit
-    from hearth.simulation.world.home import Home as Home
-    from hearth.simulation.world.world import World as World
+    from hearth.simulation.env import Env
+    from hearth.simulation.world.home import Home
 
 __version__ = VERSION
 
-_PLACES = """
-datasets.dataset:Dataset datasets.export.formats:export datasets.verify:verify grounding.binding:bind
-grounding.environments.sampling:sample grounding.preconditions.infer:infer homes.library:load_graph
-homes.procedural.generate:generate kb.language.understanding:understand kb.tools.find:find kb.tools.find:Query
-pipelines.build:build rendering.film.snapshots:trajectory_of rendering.film.video:record rendering.modalities:render
-rendering.scene.prepared:scene_of repair.sketch:sketch repair.variants:augment schemas.goals:Goal
-schemas.literals:Literal scoring.evaluate:evaluate scoring.metrics.executability:executability
-scoring.predictions:read_pairs simulation.engine:run simulation.goals:Progress simulation.holds:holds
-simulation.world.edit:edit simulation.world.home:Home simulation.world.world:World
-"""
-_MODULES = {name: module for module, name in (place.split(":") for place in _PLACES.split())}
+
+@lru_cache(maxsize=1)
+def _modules() -> dict[str, str]:
+    """The module of each entry point."""
+    import re
+    from pathlib import Path
+
+    names = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+    return {name: module for module, name in re.findall(r"^from (\S+) import (\w+) as \2$", names, re.MULTILINE)}
 
 
 def __getattr__(name: str) -> Any:
@@ -64,8 +37,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "Env":
         value = _env()
-    elif name in _MODULES:
-        value = getattr(import_module(f"hearth.{_MODULES[name]}"), name)
+    elif name in _modules():
+        value = getattr(import_module(_modules()[name]), name)
     else:
         raise AttributeError(f"module `hearth` has no attribute `{name}`")
     globals()[name] = value

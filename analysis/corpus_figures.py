@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,18 +64,9 @@ def _tables(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
         "objects": [{"object": name, "steps": count} for name, count in _ranked(objects)],
         "together": [{"object": a, "other": b, "programs": n} for (a, b), n in _ranked(numbers.together(found))],
         "specials": [{"text": text, "times": count} for text, count in _ranked(found.specials)],
-        "diversity": [
-            {
-                "activity": one.name,
-                "title": one.title,
-                "programs": one.programs,
-                "lcs": one.lcs,
-                "normalised": one.normalised,
-            }
-            for one in alike.activities
-        ],
+        "diversity": [asdict(one) for one in alike.activities],
         "similarity": [
-            {"activity": one.name, "other": other.name, "similarity": float(alike.matrix[i, j])}
+            {"activity": one.activity, "other": other.activity, "similarity": float(alike.matrix[i, j])}
             for i, one in enumerate(compared)
             for j, other in enumerate(compared)
         ],
@@ -150,13 +142,7 @@ def _together(found: Corpus, objects: Counter[str]) -> Figure:
     for (one, other), programs in numbers.together(found).items():
         if one in place and other in place:
             counts[place[one], place[other]] = counts[place[other], place[one]] = programs
-    figure, axes = _figure(9, 8)
-    if names:
-        shown = axes.imshow(counts, cmap="viridis")
-        figure.colorbar(shown, ax=axes, shrink=0.7, label="programs that use both")
-    axes.set_xticks(range(len(names)), list(map(_label, names)), rotation=90, fontsize=8)
-    axes.set_yticks(range(len(names)), list(map(_label, names)), fontsize=8)
-    return figure
+    return _heat_map(counts, [_label(name) for name in names], "programs that use both", (9, 8), fontsize=8)
 
 
 def _label(name: str) -> str:
@@ -164,11 +150,18 @@ def _label(name: str) -> str:
 
 
 def _matrix(alike: Similarities) -> Figure:
-    figure, axes = _figure(10, 9)
     names = [alike.activities[number].title for number in alike.order]
+    most = max(0.5, float(alike.matrix.max(initial=0)))
+    return _heat_map(alike.matrix, names, "mean normalised LCS", (10, 9), fontsize=6, vmin=0, vmax=most)
+
+
+def _heat_map(
+    values: Any, names: list[str], label: str, size: tuple[float, float], fontsize: int, **limits: float
+) -> Figure:
+    """A square matrix with the same names along both sides; empty without names."""
+    figure, axes = _figure(*size)
     if names:
-        shown = axes.imshow(alike.matrix, cmap="viridis", vmin=0, vmax=max(0.5, float(alike.matrix.max())))
-        figure.colorbar(shown, ax=axes, shrink=0.7, label="mean normalised LCS")
-    axes.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
-    axes.set_yticks(range(len(names)), names, fontsize=6)
+        figure.colorbar(axes.imshow(values, cmap="viridis", **limits), ax=axes, shrink=0.7, label=label)
+    axes.set_xticks(range(len(names)), names, rotation=90, fontsize=fontsize)
+    axes.set_yticks(range(len(names)), names, fontsize=fontsize)
     return figure

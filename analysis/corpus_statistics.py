@@ -179,7 +179,7 @@ def together(corpus: Corpus) -> Counter[tuple[str, str]]:
 class Activity:
     """Similarity of an activity's programs, over all pairs (table 3.1)."""
 
-    name: str
+    activity: str
     title: str
     programs: int
     lcs: float
@@ -260,6 +260,6 @@ def _sorted(between: NDArray[np.float32]) -> list[int]:
 
 def beside_thesis(activities: Sequence[Activity]) -> Iterator[tuple[str, tuple[int, float, float], Activity | None]]:
     """The rows of table 3.1, each with our activity of the same name, if any."""
-    ours = {normal_name(one.title): one for one in activities} | {one.name: one for one in activities}
+    ours = {normal_name(one.title): one for one in activities} | {one.activity: one for one in activities}
     for title, row in THESIS_DIVERSITY.items():
         yield title, row, ours.get(activity_id(title))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from inspect import Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -134,16 +135,20 @@ def build(
     _run(context, only, tiered(tier, context.params, given))
 
 
-def ingest(
-    context: typer.Context,
-    sources: Sources = None,
-    out: Out = _OUT,
-    limit: options.Limit = None,
-    salt: Salt = None,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
-) -> None:
+def _with_options(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a stage's command these options of `build`, and those of every stage."""
+    of_build = signature(build, eval_str=True).parameters
+    wanted = [of_build[name] for name in ("context", *names, "workers", "strict", "as_json")]
+
+    def given(command: Callable[..., None]) -> Callable[..., None]:
+        command.__signature__ = Signature(wanted)  # type: ignore[attr-defined]
+        return command
+
+    return given
+
+
+@_with_options("sources", "out", "limit", "salt")
+def ingest(context: typer.Context, **_: Any) -> None:
     """Read descriptions and programs of any known form.
 
     \b
@@ -153,14 +158,8 @@ def ingest(
     _run(context, "ingest")
 
 
-def validate(
-    context: typer.Context,
-    out: Out = _OUT,
-    kb: options.Kb = None,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
-) -> None:
+@_with_options("out", "kb")
+def validate(context: typer.Context, **_: Any) -> None:
     """Check every ingested program against the action grammar.
 
     \b
@@ -251,18 +250,8 @@ def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
 
 
-def render(
-    context: typer.Context,
-    out: Out = _OUT,
-    seed: options.Seed = 0,
-    pictures: Pictures = 3,
-    videos: Videos = 1,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
-) -> None:
+@_with_options("out", "seed", "pictures", "videos", "homes", "kb")
+def render(context: typer.Context, **_: Any) -> None:
     """Picture a few programs while they run, and film some of them.
 
     \b
@@ -272,16 +261,8 @@ def render(
     _run(context, "render")
 
 
-def publish(
-    context: typer.Context,
-    out: Out = _OUT,
-    seed: options.Seed = 0,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
-) -> None:
+@_with_options("out", "seed", "homes", "kb")
+def publish(context: typer.Context, **_: Any) -> None:
     """Write the tables, the catalog and the manifest; an execution that does not replay is refused.
 
     \b

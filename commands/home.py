@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hearth.commands import options, output
+from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
     from hearth.homes.from_graph.graph_layout import GraphLayout
-    from hearth.kb.knowledge import Knowledge
     from hearth.schemas.diagnostics import Diagnostic
     from hearth.schemas.graph import EnvironmentGraph
 
@@ -102,8 +102,9 @@ def lint(
     from hearth.homes.lint import lint as check
 
     graph = _graph(home, homes)
-    faults = check(graph, _known(), file=home if Path(home).suffix else "")
-    made = library.graph_layout(home, _known(), homes) if layout else None
+    known = read_knowledge(None)
+    faults = check(graph, known, file=home if Path(home).suffix else "")
+    made = library.graph_layout(home, known, homes) if layout else None
     if as_json:
         document = {"home": home, "faults": faults, "by_code": _codes(faults)}
         output.emit(document if made is None else {**document, "met": met(made), "unmet": made.unmet})
@@ -157,8 +158,8 @@ def convert(
     if out.name.endswith(".ids.csv"):
         written = exporting.write_ids(_layout(home, homes), out)
     else:
-        graph = _graph(home, homes)
-        written = exporting.write_release(library.graph_layout(home, _known(), homes).graph if layout else graph, out)
+        made = library.graph_layout(home, read_knowledge(None), homes).graph if layout else _graph(home, homes)
+        written = exporting.write_release(made, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
 
 
@@ -182,10 +183,11 @@ def generate(
     from hearth.homes.procedural.generate import generate as generated_layout
     from hearth.homes.scene_graph import scene
 
-    layout = generated_layout(rooms, seed, _known())
+    known = read_knowledge(None)
+    layout = generated_layout(rooms, seed, known)
     if out is not None:
-        exporting.write(layout, out, _known())
-    figures = _figures(scene(layout, _known()))
+        exporting.write(layout, out, known)
+    figures = _figures(scene(layout, known))
     names = ", ".join(room.name for room in layout.plan.rooms)
     text = f"{names}: {figures['nodes']:,} nodes, {figures['edges']:,} edges" + (f"; {out}" if out else "")
     output.say(text, {"home": layout.plan.name, "seed": seed, **figures, "file": out}, as_json)
@@ -214,7 +216,7 @@ def edit(
     from hearth.homes import exporting
 
     graph, new = edited(_graph(home, homes), add=add or (), remove=remove or (), move=move or (), states=states or (),
-                        knowledge=_known(), name=home)  # fmt: skip
+                        knowledge=read_knowledge(None), name=home)  # fmt: skip
     exporting.write_release(graph, out)
     ids = f", new ids {', '.join(map(str, new))}" if new else ""
     text = f"{out}: {output.counted(len(graph.nodes), 'node')}, {output.counted(len(graph.edges), 'edge')}{ids}"
@@ -244,7 +246,7 @@ def stats(
     from hearth.homes.scene_graph import scene
     from hearth.homes.statistics import beside, of_homes
 
-    known, ours = _known(), library.names()
+    known, ours = read_knowledge(None), library.names()
     theirs = [name for name in library.names(homes) if name not in ours] if homes else []
     groups = {
         "ours": of_homes((_graph(name, None) for name in ours), known),
@@ -265,22 +267,24 @@ def stats(
         for figure in found["ours"]])  # fmt: skip
 
 
-def _known() -> Knowledge:
-    from hearth.kb.loading.load import default
-
-    return default()
-
-
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:
     from hearth.homes import library
 
-    return library.graph_of(home, _known()) if Path(home).suffix else library.load_graph(home, _known(), homes)
+    return (
+        library.graph_of(home, read_knowledge(None))
+        if Path(home).suffix
+        else library.load_graph(home, read_knowledge(None), homes)
+    )
 
 
 def _layout(home: str, homes: Path | None) -> Any:
     from hearth.homes import library
 
-    return library.layout_of(home, _known()) if Path(home).suffix else library.load_layout(home, _known(), homes)
+    return (
+        library.layout_of(home, read_knowledge(None))
+        if Path(home).suffix
+        else library.load_layout(home, read_knowledge(None), homes)
+    )
 
 
 def _figures(graph: EnvironmentGraph) -> dict[str, Any]:

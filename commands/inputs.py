@@ -26,9 +26,9 @@ def read_knowledge(overlay: Path | None) -> Knowledge:
     Raises:
         HearthError: every fault of the user's files.
     """
-    from hearth.kb.loading.load import default, load
+    from hearth.kb.loading.load import overlaid
 
-    return load(overlay=overlay) if overlay else default()
+    return overlaid(overlay)
 
 
 def read_program(file: Path, known: Knowledge) -> Program:

@@ -9,6 +9,7 @@ import typer
 
 from hearth.commands import options, output
 from hearth.commands.inputs import read_knowledge
+from hearth.schemas.diagnostics import HearthError
 
 if TYPE_CHECKING:
     from hearth.kb.tools.compare import Comparison
@@ -35,7 +36,6 @@ def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: option
     """
     from hearth.kb.tools.find import unknown
     from hearth.kb.tools.show import about_object
-    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     thing = known.object_class(name)
@@ -57,7 +57,6 @@ def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> 
     """
     from hearth.kb.tools.find import unknown
     from hearth.kb.tools.show import about_action
-    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     found = known.action(name)
@@ -118,7 +117,6 @@ def path(
     """
     from hearth.kb.tools.find import unknown
     from hearth.kb.tools.paths import path as chain
-    from hearth.schemas.diagnostics import HearthError
 
     known = read_knowledge(kb)
     try:

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.simulation.engine import Execution
 
-app = typer.Typer(no_args_is_help=True, help="Pictures of a program, and of every model.")
-
 File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file.")]
 HomeName = Annotated[
     str, typer.Option("--home", metavar="NAME", help="A home; without geometry it is laid out by its relations.")
@@ -56,7 +54,6 @@ Names = Annotated[
 ]
 
 
-@app.command()
 def program(
     file: File,
     out: Out,
@@ -87,18 +84,19 @@ def program(
     known = default()
     execution = _execution(file, home, homes, seed, known)
     place = with_geometry(library.load_graph(home, known, homes), home, known)
-    graph, note = place.graph, place.note(home)
     out.mkdir(parents=True, exist_ok=True)
-    shooting = Shooting((width, width * 3 // 4), seed, hour, f"{execution.program.title}, in {home}", vary)
+    title, size = f"{execution.program.title}, in {home}", (width, width * 3 // 4)
+    shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
     if mode == "video":
-        made = _videos(execution, graph, known, out, _split(cameras), shooting, fps)
+        made = _videos(shooting, _split(cameras), fps)
     else:
-        made = _snapshots(execution, graph, known, out, "fine" if fine else "draft", shooting, _split(modalities))
+        made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
         facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
         output.emit({**facts, **made})
     else:
+        note = place.note(home)
         print(note, end="\n" if note else "")
         print(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
         if made.get("visible") is not None:
@@ -112,8 +110,12 @@ def program(
 
 
 class Shooting(NamedTuple):
-    """Options of pictures: width and height, seed, hour, title of the contact sheet, and whether to vary."""
+    """What is pictured, in which folder, and how: width and height, seed, hour, title of the sheet, whether to vary."""
 
+    execution: Execution
+    graph: EnvironmentGraph
+    known: Knowledge
+    out: Path
     size: tuple[int, int]
     seed: int
     hour: float
@@ -125,39 +127,23 @@ def _split(names: str) -> list[str]:
     return [name.strip() for name in names.split(",") if name.strip()]
 
 
-def _snapshots(
-    execution: Execution,
-    graph: EnvironmentGraph,
-    known: Knowledge,
-    out: Path,
-    quality: str,
-    shooting: Shooting,
-    modalities: list[str],
-) -> dict[str, Any]:
+def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[str, Any]:
     from hearth.rendering.film.contact import caption
     from hearth.rendering.film.snapshots import TOP, snapshots
 
     frames, files, seen = [], [], []
     how = {"size": shooting.size, "quality": quality, "seed": shooting.seed, "hour": shooting.hour}
-    for shot in snapshots(execution, graph, known, modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
-        files += _write(out, shot, modalities)
+    for shot in snapshots(*shooting[:3], modalities=("rgb", *modalities), **how):  # type: ignore[arg-type]
+        files += _write(shooting.out, shot, modalities)
         if shot.camera.name != TOP:
             frames.append((shot.pictures["rgb"], caption(shot.tick, shot.steps)))
             seen.append(shot.seen)
     visible = [share for share in seen[1:] if share is not None]
     found = round(sum(share == 1 for share in visible) / len(visible), 4) if visible else None
-    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(out, frames, shooting.title)}
+    return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
 
 
-def _videos(
-    execution: Execution,
-    graph: EnvironmentGraph,
-    known: Knowledge,
-    out: Path,
-    names: list[str],
-    shooting: Shooting,
-    fps: float,
-) -> dict[str, Any]:
+def _videos(shooting: Shooting, names: list[str], fps: float) -> dict[str, Any]:
     import orjson
 
     from hearth.rendering.film.contact import caption
@@ -168,10 +154,11 @@ def _videos(
     from hearth.storage.names import inside
 
     variation = drawn(shooting.seed, shooting.title) if shooting.vary else None
-    trajectory = trajectory_of(execution, graph, known, seed=shooting.seed, hour=shooting.hour, variation=variation)
+    trajectory = trajectory_of(*shooting[:3], seed=shooting.seed, hour=shooting.hour, variation=variation)
+    out = shooting.out
     videos, frames, pages = [], [], []
     for name in names:
-        done = record(trajectory, graph, out, name, size=shooting.size, fps=fps)
+        done = record(trajectory, shooting.graph, out, name, size=shooting.size, fps=fps)
         files = [path.name for path in done.files]
         pages.append(str(inside(out, f"{name}.html")))
         Path(pages[-1]).write_text(page(shooting.title, files, done.steps), encoding="utf-8")
@@ -180,19 +167,18 @@ def _videos(
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     count = sum(int(video["frames"]) for video in videos)  # type: ignore[call-overload]
-    return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(out, frames, shooting.title)}
+    return {"pictures": count, "videos": videos, "pages": pages, "sheet": _sheet(shooting, frames)}
 
 
-def _sheet(out: Path, frames: list[Any], title: str) -> str:
+def _sheet(shooting: Shooting, frames: list[Any]) -> str:
     from hearth.rendering.film.contact import contact_sheet
     from hearth.rendering.film.png import encode
 
-    path = out / "sheet.png"
-    path.write_bytes(encode(contact_sheet(frames, title)))
+    path = shooting.out / "sheet.png"
+    path.write_bytes(encode(contact_sheet(frames, shooting.title)))
     return str(path)
 
 
-@app.command()
 def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> None:
     """Draw every model, variant and state at 128 pixels.
 
@@ -210,7 +196,6 @@ def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> No
     output.say(f"Every model ({len(labels)}) is in {out}.", {"file": out, "models": labels}, as_json)
 
 
-@app.command()
 def visible(
     sources: Annotated[
         list[Path] | None, typer.Argument(metavar="SOURCE...", help="Sources; our corpus if none.")

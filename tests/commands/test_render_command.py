@@ -8,7 +8,7 @@ pytest.importorskip("open3d")
 
 from typer.testing import CliRunner
 
-from hearth.commands.render import app
+from hearth.cli import app
 from hearth.rendering.film import png
 
 
@@ -16,7 +16,7 @@ from hearth.rendering.film import png
 def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
     file = tmp_path / "sit.txt"
     file.write_text("Sit\nRest\n\n\n[Walk] <couch> (1)\n[Sit] <couch> (1)\n")
-    result = CliRunner().invoke(app, ["program", str(file), "--out", str(tmp_path / "out"), "--width", "64"])
+    result = CliRunner().invoke(app, ["render-program", str(file), "--out", str(tmp_path / "out"), "--width", "64"])
     assert result.exit_code == 0, result.output
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
     assert len(names) == 3 * 2 * 2 + 1
@@ -29,7 +29,18 @@ def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
 def test_a_program_becomes_a_video_that_a_page_plays(tmp_path):
     file = tmp_path / "sit.txt"
     file.write_text("Sit\nRest\n\n\n[Walk] <couch> (1)\n[Sit] <couch> (1)\n")
-    command = ["program", str(file), "--out", str(tmp_path / "out"), "--width", "48", "--mode", "video", "--fps", "5"]
+    command = [
+        "render-program",
+        str(file),
+        "--out",
+        str(tmp_path / "out"),
+        "--width",
+        "48",
+        "--mode",
+        "video",
+        "--fps",
+        "5",
+    ]
     result = CliRunner().invoke(app, [*command, "--cameras", "top", "--json"])
     assert result.exit_code == 0, result.output
     found = json.loads(result.stdout)

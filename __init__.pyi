@@ -1,0 +1,39 @@
+from hearth.datasets.dataset import Dataset as Dataset
+from hearth.datasets.export.formats import export as export
+from hearth.datasets.verify import verify as verify
+from hearth.grounding.binding import bind as bind
+from hearth.grounding.environments.sampling import sample as sample
+from hearth.grounding.preconditions.infer import infer as infer
+from hearth.homes.library import load_graph as load_graph
+from hearth.homes.procedural.generate import generate as generate
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.understanding import understand as understand
+from hearth.kb.tools.find import Query as Query
+from hearth.kb.tools.find import find as find
+from hearth.pipelines.build import build as build
+from hearth.rendering.film.snapshots import trajectory_of as trajectory_of
+from hearth.rendering.film.video import record as record
+from hearth.rendering.modalities import render as render
+from hearth.rendering.scene.prepared import scene_of as scene_of
+from hearth.repair.sketch import sketch as sketch
+from hearth.repair.variants import augment as augment
+from hearth.schemas.goals import Goal as Goal
+from hearth.schemas.literals import Literal as Literal
+from hearth.schemas.program import Program
+from hearth.scoring.evaluate import evaluate as evaluate
+from hearth.scoring.metrics.executability import executability as executability
+from hearth.scoring.predictions import read_pairs as read_pairs
+from hearth.simulation.engine import run as run
+from hearth.simulation.env import Env as Env
+from hearth.simulation.goals import Progress as Progress
+from hearth.simulation.holds import holds as holds
+from hearth.simulation.world.edit import edit as edit
+from hearth.simulation.world.home import Home as Home
+from hearth.simulation.world.world import World as World
+
+__version__: str
+
+def load(path: str) -> Dataset: ...
+def knowledge(overlay: str | None = None) -> Knowledge: ...
+def home(name: str, knowledge: Knowledge | None = None) -> Home: ...
+def parse_program(text: str, knowledge: Knowledge | None = None) -> Program: ...
