@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hearth.analysis.corpus_figures import saved
+from hearth.analysis.corpus_figures import blank, saved
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,10 +35,7 @@ def conditions(shares: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Figur
 
 def lengths(counts: Mapping[str, Mapping[str, int]]) -> Figure:
     """Shares of programs by length, of originals and of augmented ones."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7, 4), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank(7, 4)
     names = list(counts["executable"])
     shares = {}
     for label, group in (("before", "executable"), ("after", "augmented")):

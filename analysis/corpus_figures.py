@@ -84,7 +84,8 @@ def _ranked(counts: Counter[Any]) -> list[tuple[Any, int]]:
     return sorted(counts.items(), key=lambda pair: (-pair[1], pair[0]))
 
 
-def _figure(width: float, height: float) -> tuple[Figure, Any]:
+def blank(width: float, height: float) -> tuple[Figure, Any]:
+    """A figure of a size in inches, and its axes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
@@ -106,7 +107,7 @@ def saved(figure: Figure, path: Path) -> list[Path]:
 
 
 def _funnel(counts: dict[str, int]) -> Figure:
-    figure, axes = _figure(8, 3.2)
+    figure, axes = blank(8, 3.2)
     names = list(counts)
     for offset, colour, row, label in (
         (-0.2, _BLUE, counts, "this corpus"),
@@ -124,7 +125,7 @@ def _funnel(counts: dict[str, int]) -> Figure:
 
 
 def _bars(counts: Counter[str], label: str) -> Figure:
-    figure, axes = _figure(11, 3.8)
+    figure, axes = blank(11, 3.8)
     shown = _ranked(counts)[:BARS]
     axes.bar(range(len(shown)), [count for _, count in shown], color=_BLUE)
     axes.set_xticks(range(len(shown)), [_label(name) for name, _ in shown], rotation=90, fontsize=8)
@@ -159,7 +160,7 @@ def _heat_map(
     values: Any, names: list[str], label: str, size: tuple[float, float], fontsize: int, **limits: float
 ) -> Figure:
     """A square matrix with the same names along both sides; empty without names."""
-    figure, axes = _figure(*size)
+    figure, axes = blank(*size)
     if names:
         figure.colorbar(axes.imshow(values, cmap="viridis", **limits), ax=axes, shrink=0.7, label=label)
     axes.set_xticks(range(len(names)), names, rotation=90, fontsize=fontsize)

@@ -105,8 +105,7 @@ def program(
             print(f"Open {page} in a browser.")
         if failure:
             print(f"Stopped: {failure}")
-    if failure:
-        raise typer.Exit(output.BAD_INPUT)
+    output.status(failure is not None, strict=True)
 
 
 class Shooting(NamedTuple):

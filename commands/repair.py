@@ -59,8 +59,8 @@ def repair(
         output.emit({"home": place.name, "seed": seed, **_json(found)})
     else:
         _print(program, found, place.name, known)
-    if any(pair.failure is not None and pair.failure.code not in _HARMLESS for pair in found.pairs):
-        raise typer.Exit(output.BAD_INPUT)
+    failed = sum(pair.failure is not None and pair.failure.code not in _HARMLESS for pair in found.pairs)
+    output.status(failed, strict=True)
 
 
 _HARMLESS = ("UNPERTURBED", "DUPLICATE")

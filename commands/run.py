@@ -64,8 +64,7 @@ def run(
         output.emit(_json(trial, place, homes))
     else:
         _print(program, trial, place, explain, homes)
-    if failure is not None:
-        raise typer.Exit(output.BAD_INPUT)
+    output.status(failure is not None, strict=True)
 
 
 def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, homes: Path | None) -> None:
