@@ -139,11 +139,14 @@ def _must_stay(make: Callable[[Path, str], Path], ground: Ground, name: str) -> 
 
 def inputs() -> Iterator[Attack]:
     """Files that never end or lie elsewhere, where a file is named, and where data names one."""
+    from hearth.homes.library import read_graph
     from hearth.kb.loading.load import default
     from hearth.scoring.environments import by_row
-    from hearth.scoring.graph_files import final_graph
     from hearth.scoring.predictions import Pair, read_pairs
     from hearth.storage.inputs import load_yaml, read_input
+
+    def final_graph(path: Path) -> Any:
+        return read_graph(path, "final_graph")
 
     def read(reader: Callable[[Path], Any], name: str, ground: Ground) -> Any:
         return reader(_prepared(ground) / name)

@@ -304,11 +304,13 @@ def graphs(
     Example:
       python cli.py score graphs mine.json theirs.json --nodes 41,65
     """
-    from hearth.scoring.graph_files import final_graph, node_ids
+    from hearth.homes.library import read_graph
+    from hearth.scoring.graph_files import node_ids
     from hearth.scoring.metrics.graph_f1 import f1_signature, score
 
     ours, theirs = node_ids(nodes)
-    found = score(final_graph(predicted), final_graph(reference), ours, theirs, match=match, scope=scope)
+    final, expected = (read_graph(path, "final_graph") for path in (predicted, reference))
+    found = score(final, expected, ours, theirs, match=match, scope=scope)
     signature = f1_signature(match, scope)
     if as_json:
         parts = {name: getattr(found, name) for name in ("states", "relations", "both", "exact", "assigned")}

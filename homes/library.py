@@ -120,14 +120,23 @@ def _scene(path: Path, knowledge: Knowledge) -> EnvironmentGraph:
 
 @lru_cache(maxsize=64)
 def _graph(path: Path) -> EnvironmentGraph:
+    return read_graph(path, "init_graph")
+
+
+def read_graph(path: Path, which: str) -> EnvironmentGraph:
+    """Read a scene graph, or the `init_graph` or `final_graph` of a pair as the release stores it.
+
+    Raises:
+        HearthError: MISSING_FILE, BAD_JSON or BAD_GRAPH.
+    """
     import orjson
 
     try:
         data = orjson.loads(read_input(path))
     except orjson.JSONDecodeError as error:
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error
-    if isinstance(data, dict) and "init_graph" in data:
-        data = data["init_graph"]
+    if isinstance(data, dict) and which in data:
+        data = data[which]
     if not isinstance(data, dict):
         raise HearthError.of(Code.BAD_GRAPH, "not an environment graph", file=str(path), suggestion="nodes and edges")
     return from_release(data, str(path))
