@@ -24,8 +24,7 @@ from hearth.pipelines.readers import release
 from hearth.pipelines.readers.item import Item
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
-from hearth.schemas.rows import IngestedRow, Row
-from hearth.schemas.structs import DifferenceRow
+from hearth.schemas.rows import DifferenceRow, IngestedRow, Row
 from hearth.storage.rejects import Reject
 
 ANY_HOME = "any home"

@@ -17,8 +17,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
-from hearth.schemas.rows import ProgramRow, RepairedRow, SketchRow, StoredRunRow
-from hearth.schemas.structs import ConditionRow
+from hearth.schemas.rows import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
 from hearth.storage.files import read_json
 from hearth.storage.manifest import FORMAT, NAME
 

@@ -28,8 +28,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import CaseRow, SketchRow, TriedRow
-from hearth.schemas.structs import DifferenceRow, PerturbationRow, RepairRow
+from hearth.schemas.rows import CaseRow, DifferenceRow, PerturbationRow, RepairRow, SketchRow, TriedRow
 from hearth.schemas.syntax import print_step
 from hearth.schemas.tables import CASE, SKETCHED, TRIED
 from hearth.simulation.engine import Execution

@@ -13,8 +13,7 @@ from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
-from hearth.schemas.rows import CaseRow, FilmedRow, RenderedRow
-from hearth.schemas.structs import PinholeRow, TrackRow
+from hearth.schemas.rows import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
 from hearth.schemas.tables import FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest

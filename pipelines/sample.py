@@ -21,8 +21,7 @@ from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import CaseRow, GroundingRow, RunRow, ValidatedRow
-from hearth.schemas.structs import ConditionRow, DifferenceRow, GraphRow
+from hearth.schemas.rows import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
 from hearth.simulation.rules import REPLAY, RULES, Rules

@@ -10,7 +10,7 @@ from typing import Any, Final, Union, get_args, get_origin, get_type_hints, is_t
 import pyarrow as pa
 
 from hearth.schemas import rows
-from hearth.schemas.structs import Arrow
+from hearth.schemas.rows import Arrow
 
 _PLAIN = {str: pa.string(), bool: pa.bool_(), int: pa.int32(), float: pa.float64()}
 

@@ -19,8 +19,7 @@ from hearth.grounding.environments.sampling import Environment
 from hearth.grounding.environments.thinning import without
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
-from hearth.schemas.rows import CaseRow, RunRow
-from hearth.schemas.structs import DifferenceRow
+from hearth.schemas.rows import CaseRow, DifferenceRow, RunRow
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
 from hearth.simulation.world.change import encode_whole

@@ -14,8 +14,7 @@ from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import RENAMED, Literal
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import NamedRow, ScriptRow, columns_of
-from hearth.schemas.structs import (
+from hearth.schemas.rows import (
     BindingRow,
     BoxRow,
     ChangeRow,
@@ -25,11 +24,14 @@ from hearth.schemas.structs import (
     FailureRow,
     GraphRow,
     InstructionRow,
+    NamedRow,
     NodeRow,
     PointRow,
+    ScriptRow,
     StepRow,
     TickRow,
     WarningRow,
+    columns_of,
 )
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from hearth.datasets.format.codecs import change_of, edges_of, program_of
 from hearth.datasets.report.pictures import shown_as
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.rows import ProgramRow, RepairedRow, Row
-from hearth.schemas.structs import ConditionRow, DifferenceRow, FailureRow, RepairRow
+from hearth.schemas.rows import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
 from hearth.schemas.syntax import print_step
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})

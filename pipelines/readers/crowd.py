@@ -14,8 +14,7 @@ from hearth.pipelines.crowd.topics import no_activity
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, fault_of, lines, record, refused
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
-from hearth.schemas.structs import QuantityRow
+from hearth.schemas.rows import IngestedRow, QuantityRow
 from hearth.schemas.syntax import normal_name
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

@@ -9,8 +9,7 @@ from typing import Any, BinaryIO
 
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
-from hearth.schemas.structs import ConditionRow, QuantityRow
+from hearth.schemas.rows import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
 from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 

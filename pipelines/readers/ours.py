@@ -13,8 +13,7 @@ from hearth.schemas.blocks import STEP
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import IngestedRow
-from hearth.schemas.structs import QuantityRow
+from hearth.schemas.rows import IngestedRow, QuantityRow
 from hearth.schemas.syntax import normal_name, print_lines
 from hearth.storage.archives import Place
 from hearth.storage.names import leaves

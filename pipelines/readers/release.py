@@ -17,8 +17,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, read_node
 from hearth.schemas.numbers import stored
-from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
-from hearth.schemas.structs import ChangeRow, ConditionRow, GraphRow
+from hearth.schemas.rows import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.storage.archives import archive, members, refusal_of
 from hearth.storage.files import file_digest, walk

@@ -9,8 +9,7 @@ from hearth.pipelines.readers.item import Item, record, refused, suffixless
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
-from hearth.schemas.rows import IngestedRow, WrittenGroundingRow
-from hearth.schemas.structs import NodeRow
+from hearth.schemas.rows import IngestedRow, NodeRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import OPPOSITE
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from html import escape
 
-from hearth.schemas.structs import FilmedStepRow
+from hearth.schemas.rows import FilmedStepRow
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; margin: 2rem; color: #23262c; background: #fafaf8; }

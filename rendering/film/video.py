@@ -21,7 +21,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.program import Step
-from hearth.schemas.structs import FilmedStepRow
+from hearth.schemas.rows import FilmedStepRow
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.storage.names import inside
 

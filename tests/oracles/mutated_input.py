@@ -21,8 +21,7 @@ from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import IngestedRow, ProgramRow, Row
-from hearth.schemas.structs import StepRow
+from hearth.schemas.rows import IngestedRow, ProgramRow, Row, StepRow
 from hearth.storage.rejects import Reject
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"

@@ -7,7 +7,7 @@ import pyarrow as pa
 import pytest
 
 from hearth.schemas import rows, tables
-from hearth.schemas.structs import Arrow, Long
+from hearth.schemas.rows import Arrow, Long
 
 SCHEMAS = {
     **{name: value for name, value in vars(tables).items() if isinstance(value, pa.Schema) and name.isupper()},
