@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_knowledge import other_base
@@ -174,15 +173,16 @@ def _split(dataset: Dataset) -> Iterator[Diagnostic]:
     """Check that `splits` assigns each program to the side of `programs.split`, or to none."""
     query = """SELECT DISTINCT program_id FROM splits s JOIN programs p USING (program_id)
         WHERE s.split = 'activities' AND s.part <> 'none' AND NOT starts_with(s.part, p.split) ORDER BY 1"""
-    values = [row[0] for row in dataset.rows(query)[1]]
-    yield from _listed(dataset, Code.BAD_TABLE, "splits", values, "{value} has another split than in `programs`")
+    yield from _listed(dataset, Code.BAD_TABLE, "splits", query, "{value} has another split than in `programs`")
 
 
 def _count(dataset: Dataset, table: str) -> int:
     return int(dataset.rows(f"SELECT count(*) FROM {table}")[1][0][0])
 
 
-def _listed(dataset: Dataset, code: Code, table: str, values: list[Any], message: str) -> Iterator[Diagnostic]:
+def _listed(dataset: Dataset, code: Code, table: str, query: str, message: str) -> Iterator[Diagnostic]:
+    """A fault of the table for each value that a query finds."""
+    values = [value for (value,) in dataset.rows(query)[1]]
     for value in values[:SHOWN]:
         yield Diagnostic(code, message.format(value=value), str(dataset.folder / table), found=str(value))
     if len(values) > SHOWN:
@@ -191,18 +191,15 @@ def _listed(dataset: Dataset, code: Code, table: str, values: list[Any], message
 
 def _keys(dataset: Dataset) -> Iterator[Diagnostic]:
     for table, key in KEYS.items():
-        _, found = dataset.rows(f"SELECT {key} FROM {table} GROUP BY 1 HAVING count(*) > 1 ORDER BY 1")
-        yield from _listed(
-            dataset, Code.DUPLICATE, table, [row[0] for row in found], f"two rows have the {key} {{value}}"
-        )
+        query = f"SELECT {key} FROM {table} GROUP BY 1 HAVING count(*) > 1 ORDER BY 1"
+        yield from _listed(dataset, Code.DUPLICATE, table, query, f"two rows have the {key} {{value}}")
 
 
 def _references(dataset: Dataset) -> Iterator[Diagnostic]:
     for table, column, other, key in REFERENCES:
         query = f"""SELECT DISTINCT t.{column} FROM {table} t WHERE t.{column} IS NOT NULL
             AND NOT EXISTS (SELECT 1 FROM {other} o WHERE o.{key} = t.{column}) ORDER BY 1"""
-        values = [row[0] for row in dataset.rows(query)[1]]
-        yield from _listed(dataset, Code.UNKNOWN_ID, table, values, f"its {column} {{value}} is not in `{other}`")
+        yield from _listed(dataset, Code.UNKNOWN_ID, table, query, f"its {column} {{value}} is not in `{other}`")
 
 
 def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
@@ -215,11 +212,9 @@ def _counts(dataset: Dataset) -> Iterator[Diagnostic]:
         key = KEYS[table]
         ask = f"""SELECT t.{key} FROM {table} t LEFT JOIN ({query}) q USING ({key})
             WHERE t.{column} IS DISTINCT FROM coalesce(q.found, 0) ORDER BY 1"""
-        values = [row[0] for row in dataset.rows(ask)[1]]
-        yield from _listed(dataset, Code.BAD_TABLE, table, values, f"wrong number of {column} for {{value}}")
+        yield from _listed(dataset, Code.BAD_TABLE, table, ask, f"wrong number of {column} for {{value}}")
     query = "SELECT stage FROM ledger WHERE records_in <> records_through + records_rejected ORDER BY 1"
-    values = [row[0] for row in dataset.rows(query)[1]]
-    yield from _listed(dataset, Code.BAD_TABLE, "ledger", values, "the records of stage {value} do not add up")
+    yield from _listed(dataset, Code.BAD_TABLE, "ledger", query, "the records of stage {value} do not add up")
 
 
 class StoredHomes:

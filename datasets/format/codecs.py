@@ -8,31 +8,14 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.schemas import rows as forms
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, edge_set
 from hearth.schemas.literals import RENAMED, Literal
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import (
-    BindingRow,
-    BoxRow,
-    ChangeRow,
-    ConditionRow,
-    DifferenceRow,
-    EdgeRow,
-    FailureRow,
-    GraphRow,
-    InstructionRow,
-    NamedRow,
-    NodeRow,
-    PointRow,
-    ScriptRow,
-    StepRow,
-    TickRow,
-    WarningRow,
-    columns_of,
-)
+from hearth.schemas.rows import columns_of
 
 if TYPE_CHECKING:
     from hearth.simulation.engine import Execution
@@ -43,9 +26,9 @@ _EDGE = itemgetter("source", "relation", "target")
 _STATE = itemgetter("node", "state")
 
 
-def node_row(node: Node) -> NodeRow:
+def node_row(node: Node) -> forms.NodeRow:
     """A node, as a row."""
-    box: BoxRow | None = node.box and {"center": _point_row(node.box.center), "size": _point_row(node.box.size)}
+    box: forms.BoxRow | None = node.box and {"center": _point_row(node.box.center), "size": _point_row(node.box.size)}
     return {
         "id": node.id,
         "class_name": node.class_name,
@@ -58,11 +41,11 @@ def node_row(node: Node) -> NodeRow:
     }
 
 
-def _point_row(point: tuple[float, float, float]) -> PointRow:
+def _point_row(point: tuple[float, float, float]) -> forms.PointRow:
     return {"x": point[0], "y": point[1], "z": point[2]}
 
 
-def node_of(row: NodeRow) -> Node:
+def node_of(row: forms.NodeRow) -> Node:
     """The inverse of `node_row`."""
     box = row["box"]
     return Node(
@@ -77,11 +60,11 @@ def node_of(row: NodeRow) -> Node:
     )
 
 
-def _point(row: PointRow) -> tuple[float, float, float]:
+def _point(row: forms.PointRow) -> tuple[float, float, float]:
     return row["x"], row["y"], row["z"]
 
 
-def graph_row(graph: EnvironmentGraph) -> GraphRow:
+def graph_row(graph: EnvironmentGraph) -> forms.GraphRow:
     """A graph, edges sorted, each once."""
     edges = sorted(edge_set(graph.edges))
     return {
@@ -92,13 +75,13 @@ def graph_row(graph: EnvironmentGraph) -> GraphRow:
     }
 
 
-def graph_of(row: GraphRow) -> EnvironmentGraph:
+def graph_of(row: forms.GraphRow) -> EnvironmentGraph:
     """The inverse of `graph_row`."""
     edges = map(Edge, row["sources"], row["relations"], row["targets"])
     return EnvironmentGraph(tuple(map(node_of, row["nodes"])), tuple(edges))
 
 
-def change_row(change: Change) -> ChangeRow:
+def change_row(change: Change) -> forms.ChangeRow:
     """A change, as a row."""
     # Arrow accepts named tuples and pairs as structs, and reads them much faster than dicts.
     found: Any = {
@@ -107,11 +90,11 @@ def change_row(change: Change) -> ChangeRow:
         "set_states": list(change.set_states),
         "cleared_states": list(change.cleared_states),
     }
-    row: ChangeRow = found
+    row: forms.ChangeRow = found
     return row
 
 
-def change_of(row: ChangeRow) -> Change:
+def change_of(row: forms.ChangeRow) -> Change:
     """The inverse of `change_row`."""
     return Change(
         tuple(edges_of(row["added"])),
@@ -121,29 +104,29 @@ def change_of(row: ChangeRow) -> Change:
     )
 
 
-def environment_row(change: Change) -> DifferenceRow:
+def environment_row(change: Change) -> forms.DifferenceRow:
     """A difference from a home, as a row."""
     came, went = list(map(node_row, change.added_nodes)), list(change.removed_nodes)
     return {"added_nodes": came, "removed_nodes": went, **change_row(change)}
 
 
-def environment_change(row: DifferenceRow) -> Change:
+def environment_change(row: forms.DifferenceRow) -> Change:
     """The inverse of `environment_row`."""
     came, went = tuple(map(node_of, row["added_nodes"])), tuple(row["removed_nodes"])
     return replace(change_of(row), added_nodes=came, removed_nodes=went)
 
 
-def edges_of(rows: Iterable[EdgeRow]) -> Iterator[Edge]:
+def edges_of(rows: Iterable[forms.EdgeRow]) -> Iterator[Edge]:
     """The edges of rows."""
     return map(Edge._make, map(_EDGE, rows))
 
 
-def named(row: NamedRow) -> NamedRow:
+def named(row: forms.NamedRow) -> forms.NamedRow:
     """The columns of a row that a program keeps from stage to stage."""
-    return columns_of(NamedRow, row)
+    return columns_of(forms.NamedRow, row)
 
 
-def step_rows(program: Program) -> list[StepRow]:
+def step_rows(program: Program) -> list[forms.StepRow]:
     """A program's steps as rows, without node ids."""
     return [
         {
@@ -158,7 +141,7 @@ def step_rows(program: Program) -> list[StepRow]:
     ]
 
 
-def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
+def steps_of(rows: Iterable[forms.StepRow], bindings: Bindings | None = None) -> tuple[Step, ...]:
     """The inverse of `step_rows`; objects in `bindings` are bound."""
     bound: Bindings = bindings or {}
     return tuple(
@@ -176,13 +159,13 @@ def steps_of(rows: Iterable[StepRow], bindings: Bindings | None = None) -> tuple
     )
 
 
-def program_of(row: ScriptRow, bindings: Bindings | None = None) -> Program:
+def program_of(row: forms.ScriptRow, bindings: Bindings | None = None) -> Program:
     """The program of a row."""
     lines = tuple(step["line"] for step in row["steps"])
     return Program(row["title"], row["description"], steps_of(row["steps"], bindings), lines)
 
 
-def binding_rows(program: Program) -> list[BindingRow]:
+def binding_rows(program: Program) -> list[forms.BindingRow]:
     """The node of each object in a bound program, as rows."""
     return [
         {"name": ref.name, "instance": ref.instance, "node": ref.node}
@@ -191,12 +174,12 @@ def binding_rows(program: Program) -> list[BindingRow]:
     ]
 
 
-def bindings_of(rows: Iterable[BindingRow]) -> Bindings:
+def bindings_of(rows: Iterable[forms.BindingRow]) -> Bindings:
     """The inverse of `binding_rows`."""
     return {(row["name"], row["instance"]): row["node"] for row in rows}
 
 
-def failure_row(failure: Failure) -> FailureRow:
+def failure_row(failure: Failure) -> forms.FailureRow:
     """A failure, as a row."""
     return {
         "code": str(failure.code),
@@ -210,12 +193,12 @@ def failure_row(failure: Failure) -> FailureRow:
     }
 
 
-def tick_rows(execution: Execution) -> list[TickRow]:
+def tick_rows(execution: Execution) -> list[forms.TickRow]:
     """Instructions and changes of each executed tick, as rows."""
-    rows: list[TickRow] = []
+    rows: list[forms.TickRow] = []
     number = 0
     for steps, change in zip(execution.program.ticks(), execution.changes(), strict=False):
-        instructions: list[InstructionRow] = [
+        instructions: list[forms.InstructionRow] = [
             {"agent": step.agent, "step": number + place} for place, step in enumerate(steps)
         ]
         rows.append({"instructions": instructions, **change_row(change)})
@@ -223,7 +206,7 @@ def tick_rows(execution: Execution) -> list[TickRow]:
     return rows
 
 
-def condition_rows(conditions: Iterable[Condition]) -> list[ConditionRow]:
+def condition_rows(conditions: Iterable[Condition]) -> list[forms.ConditionRow]:
     """Preconditions, as rows."""
     return [
         {
@@ -236,7 +219,7 @@ def condition_rows(conditions: Iterable[Condition]) -> list[ConditionRow]:
     ]
 
 
-def conditions_of(rows: Iterable[ConditionRow]) -> Preconditions:
+def conditions_of(rows: Iterable[forms.ConditionRow]) -> Preconditions:
     """The inverse of `condition_rows`; conditions that came with a program are soft."""
     return Preconditions(
         tuple(
@@ -253,7 +236,7 @@ def conditions_of(rows: Iterable[ConditionRow]) -> Preconditions:
     )
 
 
-def warning_row(fault: Diagnostic) -> WarningRow:
+def warning_row(fault: Diagnostic) -> forms.WarningRow:
     """A diagnostic that does not stop a program."""
     return {
         "code": str(fault.code),

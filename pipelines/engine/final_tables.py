@@ -5,6 +5,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -23,31 +24,14 @@ from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
+from hearth.schemas import rows as forms
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import (
-    ActivityRow,
-    DescriptionRow,
-    FrameRow,
-    HomeEdgeRow,
-    HomeNodeRow,
-    HomeRow,
-    IngestedRow,
-    LedgerRow,
-    NameRow,
-    ProgramRow,
-    RejectRow,
-    Row,
-    SketchRow,
-    SplitRow,
-    TriedRow,
-    VideoRow,
-    columns_of,
-)
+from hearth.schemas.rows import Row, columns_of
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world.world import World
-from hearth.storage.files import TEMPORARY, commit, sync_folder, write_json
+from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts, part_path, read_rows, write_table
 
@@ -83,7 +67,7 @@ def finish(job: Job, counts: Counts) -> None:
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
     failed = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
-    write_rows(failed, TABLES["repairs"], _failed_attempts(job))
+    write_rows(failed, TABLES["repairs"], _rows(job, "augment", "attempts"))  # those that gave no program
     counts.rows["repairs"] += pq.read_metadata(failed).num_rows
     _copy_pictures(job)
     copy_overlay(job.settings.kb_folder, job.folder)
@@ -95,19 +79,10 @@ def finish(job: Job, counts: Counts) -> None:
 def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
     """Write a table from rows, each stamped with the versions it belongs to."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    batches = list(_batches(schema, rows))
+    stamped = ({**row, **STAMP} for row in rows)
+    shares = iter(lambda: list(islice(stamped, BATCH)), [])
+    batches = [pa.RecordBatch.from_pylist(share, schema) for share in shares]
     write_table(path, pa.Table.from_batches(batches, schema))
-
-
-def _batches(schema: pa.Schema, rows: Iterable[Row]) -> Iterator[pa.RecordBatch]:
-    waiting: list[Row] = []
-    for row in rows:
-        waiting.append({**row, **STAMP})
-        if len(waiting) == BATCH:
-            yield pa.RecordBatch.from_pylist(waiting, schema)
-            waiting = []
-    if waiting:
-        yield pa.RecordBatch.from_pylist(waiting, schema)
 
 
 _KEYS = {"programs": "program_id", "environments": "environment_id", "executions": "execution_id"}
@@ -139,19 +114,19 @@ class _Activities:
     """Activities and descriptions, gathered from the ingested records and the published programs."""
 
     activities: dict[str, _Activity] = field(default_factory=dict)
-    descriptions: dict[str, DescriptionRow] = field(default_factory=dict)
+    descriptions: dict[str, forms.DescriptionRow] = field(default_factory=dict)
     described: set[str] = field(default_factory=set)
 
-    def describe(self, row: IngestedRow) -> None:
+    def describe(self, row: forms.IngestedRow) -> None:
         """Add an ingested row; a description's own row replaces a copy that came with a program."""
         name, own = row["description_id"], row["kind"] == "description"
         if name not in self.descriptions or (own and name not in self.described):
             words = {**row, "activity_id": activity_id(row["title"]), "programs": 0}
-            self.descriptions[name] = columns_of(DescriptionRow, words)
+            self.descriptions[name] = columns_of(forms.DescriptionRow, words)
         if own:
             self.described.add(name)
 
-    def count(self, program: ProgramRow) -> None:
+    def count(self, program: forms.ProgramRow) -> None:
         """Add a published program."""
         activity = self.activities.setdefault(program["activity_id"], _Activity())
         activity.programs += 1
@@ -168,7 +143,7 @@ class _Activities:
             if row["scene"]:
                 activity.scenes.add(row["scene"])
 
-    def activity_rows(self) -> Iterator[ActivityRow]:
+    def activity_rows(self) -> Iterator[forms.ActivityRow]:
         for name, activity in sorted(self.activities.items()):
             title = min(activity.titles, key=lambda title: (-activity.titles[title], title))
             yield {
@@ -179,19 +154,18 @@ class _Activities:
                 "programs": activity.programs,
             }
 
-    def description_rows(self) -> Iterator[DescriptionRow]:
+    def description_rows(self) -> Iterator[forms.DescriptionRow]:
         yield from (row for _, row in sorted(self.descriptions.items()))
 
 
-_WORDS = ("kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform")
+_WORDS = ["kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform"]
 
 
 def _activities(job: Job) -> _Activities:
     found = _Activities()
-    for path in _parts(job, "ingest"):
-        for row in read_rows(path, list(_WORDS)):
-            if row["kind"] in ("program", "description"):
-                found.describe(row)
+    for row in _rows(job, "ingest", columns=_WORDS):
+        if row["kind"] in ("program", "description"):
+            found.describe(row)
     for path in sorted((job.folder / "programs").glob("part-*.parquet")):
         for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
             found.count(row)
@@ -199,21 +173,13 @@ def _activities(job: Job) -> _Activities:
     return found
 
 
-def _sketches(job: Job) -> Iterator[SketchRow]:
+def _sketches(job: Job) -> Iterator[forms.SketchRow]:
     """Inferred and inherited sketches; and those that people drew, whose program is the id of its description."""
-    for path in _parts(job, "augment", "sketches"):
-        yield from read_rows(path)
-    for path in _parts(job, "ingest"):
-        for row in read_rows(path, ["kind", "description_id", "keep", "text"]):
-            if row["kind"] == "sketch":
-                steps = row["text"].removesuffix("\n").split("\n")
-                yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
-
-
-def _failed_attempts(job: Job) -> Iterator[TriedRow]:
-    """The repairs of pairs that gave no program."""
-    for path in _parts(job, "augment", "attempts"):
-        yield from read_rows(path)
+    yield from _rows(job, "augment", "sketches")
+    for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
+        if row["kind"] == "sketch":
+            steps = row["text"].removesuffix("\n").split("\n")
+            yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
 
 
 def _manifest(job: Job, stage: str) -> Manifest:
@@ -222,11 +188,12 @@ def _manifest(job: Job, stage: str) -> Manifest:
     return manifest
 
 
-def _parts(job: Job, stage: str, table: str = "") -> Iterator[Path]:
-    """The parts of one table of a stage."""
+def _rows(job: Job, stage: str, table: str = "", columns: list[str] | None = None) -> Iterator[Any]:
+    """The rows of one table of a stage."""
     folder = job.settings.folder(stage)
-    for part in _manifest(job, stage).parts:
-        yield from (folder / file for file in part["files"] if (folder / file).parent == folder / table)
+    for path in (folder / file for part in _manifest(job, stage).parts for file in part["files"]):
+        if path.parent == folder / table:
+            yield from read_rows(path, columns)
 
 
 def _used_homes(job: Job) -> list[str]:
@@ -236,7 +203,7 @@ def _used_homes(job: Job) -> list[str]:
     return sorted(names)
 
 
-def _homes(job: Job, homes: Homes) -> Iterator[HomeRow]:
+def _homes(job: Job, homes: Homes) -> Iterator[forms.HomeRow]:
     for name in _used_homes(job):
         home = homes.home(name)
         rooms = [node for node in map(home.node, range(len(home))) if home.rooms >> home.index[node.id] & 1]
@@ -250,31 +217,30 @@ def _homes(job: Job, homes: Homes) -> Iterator[HomeRow]:
         }
 
 
-def _home_nodes(job: Job, homes: Homes) -> Iterator[HomeNodeRow]:
+def _home_nodes(job: Job, homes: Homes) -> Iterator[forms.HomeNodeRow]:
     for name in _used_homes(job):
         for node in World.start(homes.home(name)).graph().nodes:
             yield {"home": name, **node_row(node)}
 
 
-def _home_edges(job: Job, homes: Homes) -> Iterator[HomeEdgeRow]:
+def _home_edges(job: Job, homes: Homes) -> Iterator[forms.HomeEdgeRow]:
     for name in _used_homes(job):
         for edge in sorted(homes.edges(name)):
             yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
 
 
-def _frames(job: Job, kind: str) -> Iterator[FrameRow | VideoRow]:
+def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow]:
     home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet"):
         table = pq.read_table(path, columns=["execution_id", "home"])
         home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
-    for path in _parts(job, "render", kind):
-        for row in read_rows(path):
-            if row["execution_id"] in home:
-                row["home"] = home[row["execution_id"]]
-                yield row
+    for row in _rows(job, "render", kind):
+        if row["execution_id"] in home:
+            row["home"] = home[row["execution_id"]]
+            yield row
 
 
-def _splits(job: Job) -> list[SplitRow]:
+def _splits(job: Job) -> list[forms.SplitRow]:
     programs = _programs_for_splits(job.folder)
     runs: list[Any] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
@@ -333,14 +299,13 @@ def _copy_folder(source: Path, folder: Path) -> None:
         target = folder / name
         if name.suffix != ".parquet" and not name.name.startswith("."):
             target.parent.mkdir(parents=True, exist_ok=True)
-            temporary = target.with_name(f".{target.name}{TEMPORARY}")
-            shutil.copyfile(source / name, temporary)
-            commit(temporary, target)
+            with replacing(target) as temporary:
+                shutil.copyfile(source / name, temporary)
     if wanted:
         sync_folder(folder)
 
 
-def _vocabulary(knowledge: Knowledge) -> Iterator[NameRow]:
+def _vocabulary(knowledge: Knowledge) -> Iterator[forms.NameRow]:
     for action in sorted(knowledge.actions.values(), key=lambda action: action.id):
         yield _name("action", action.id, action.name, action.arity, action.executed)
     for thing in sorted(knowledge.objects.values(), key=lambda thing: thing.id):
@@ -352,11 +317,11 @@ def _vocabulary(knowledge: Knowledge) -> Iterator[NameRow]:
         yield _name("failure", code.number, str(code))
 
 
-def _name(kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None) -> NameRow:
+def _name(kind: str, number: int, name: str, arity: int | None = None, simulated: bool | None = None) -> forms.NameRow:
     return {"kind": kind, "id": number, "name": name, "arity": arity, "simulated": simulated}
 
 
-def _rejects(job: Job) -> Iterator[RejectRow]:
+def _rejects(job: Job) -> Iterator[forms.RejectRow]:
     for stage in STAGES:
         folder = job.folder if stage == job.stage.name else job.settings.folder(stage)
         for row in read_rows(folder / "rejects.parquet"):
@@ -364,7 +329,7 @@ def _rejects(job: Job) -> Iterator[RejectRow]:
             yield row
 
 
-def _ledger(job: Job, counts: Counts) -> Iterator[LedgerRow]:
+def _ledger(job: Job, counts: Counts) -> Iterator[forms.LedgerRow]:
     for order, stage in enumerate(STAGES):
         stage_counts = counts if stage == job.stage.name else _manifest(job, stage).counts
         codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
