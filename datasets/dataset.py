@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.damage import reading
 from hearth.datasets.format.catalog import absent_tables, attach, without_zones
 from hearth.datasets.questions import check_question
+from hearth.datasets.steady import steady, version
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
 
     from hearth.datasets.tensors import Tensors
     from hearth.kb.knowledge import Knowledge
-
-
-T = TypeVar("T")
 
 
 class Dataset:
@@ -49,7 +47,7 @@ class Dataset:
     def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
         self.folder = folder
         self.manifest = manifest
-        self._version = _version(folder)
+        self._version = version(folder)
 
     @classmethod
     def open(cls, path: str | Path) -> Dataset:
@@ -64,7 +62,7 @@ class Dataset:
         folder = fetched(path)
         if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():
             folder = present(folder / "publish")
-        version, content = _version(folder), read_json(folder / NAME)
+        opened, content = version(folder), read_json(folder / NAME)
         if not isinstance(content, dict) or content.get("stage") != "publish":
             suggestion = "name the folder that `build` gave with --out, or the dataset inside it"
             raise HearthError.of(Code.MISSING_FILE, "no dataset here", file=str(path), suggestion=suggestion)
@@ -76,7 +74,7 @@ class Dataset:
             message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
             raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
         dataset = cls(folder, content)
-        dataset._version = version
+        dataset._version = opened
         return dataset
 
     def __repr__(self) -> str:
@@ -102,35 +100,20 @@ class Dataset:
         Raises:
             HearthError: MISSING_FILE, if a table is missing; DAMAGED_FILE, if one cannot be read.
         """
-        now = _version(self.folder)
+        now = version(self.folder)
         if now is not None and now != self._version:
             self._reopen(now)
         return self._attached
 
     @cached_property
     def _attached(self) -> Any:
-        def attached() -> Any:
-            with reading(self.folder):
-                return attach(self.folder, absent_tables(self.folder, self.manifest))
+        with reading(self.folder):
+            return attach(self.folder, absent_tables(self.folder, self.manifest))
 
-        return self._current(attached)
-
-    def _current(self, ask: Callable[[], T]) -> T:
-        """The answer of one version of the dataset: asked again where a build replaces it meanwhile."""
-        for _ in range(_TRIES):
-            version = _version(self.folder)
-            try:
-                return ask()
-            except HearthError:
-                if _version(self.folder) == version:
-                    raise
-                self.manifest = read_json(self.folder / NAME) or self.manifest
-        return ask()
-
-    def _reopen(self, version: tuple[int, int]) -> None:
+    def _reopen(self, now: tuple[int, int]) -> None:
         """Read the dataset that replaced the opened one."""
-        self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, version
-        for name in ("_attached", "_built", "knowledge"):
+        self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, now
+        for name in ("_attached", "_homes", "knowledge"):
             self.__dict__.pop(name, None)
 
     def sql(self, query: str, **parameters: Any) -> Any:
@@ -156,7 +139,7 @@ class Dataset:
         """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
         import duckdb
 
-        def answer() -> tuple[list[str], list[tuple[Any, ...]]]:
+        def ask() -> tuple[list[str], list[tuple[Any, ...]]]:
             relation = self.sql(query, **parameters)
             try:
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
@@ -164,7 +147,7 @@ class Dataset:
             except duckdb.Error as error:
                 raise _refused(error) from error
 
-        return self._current(answer)
+        return steady(self.folder, ask)
 
     def _explains(self, query: str) -> bool:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
@@ -174,7 +157,7 @@ class Dataset:
 
         if name not in (*TABLES, "steps", "ticks"):
             raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
-        return self.connection.table(name)
+        return steady(self.folder, lambda: self.connection.table(name))
 
     def __len__(self) -> int:
         return int(self.read("SELECT count(*) AS number FROM programs")[0]["number"])
@@ -192,6 +175,9 @@ class Dataset:
         Raises:
             KeyError: the id is unknown.
         """
+        return steady(self.folder, lambda: self._entry(program_id))
+
+    def _entry(self, program_id: str) -> Entry:
         found = self._rows("SELECT * FROM programs WHERE program_id = $id", program_id)
         if not found:
             raise KeyError(program_id)
@@ -256,25 +242,12 @@ class Dataset:
             HearthError: DAMAGED_FILE, where a table cannot be read.
         """
 
-        def answer() -> list[Any]:
+        def ask() -> list[Any]:
             with reading(self.folder):
                 rows: list[Any] = self.connection.sql(query, params=asked).to_arrow_table().to_pylist()
                 return rows
 
-        return self._current(answer)
-
-
-_TRIES = 10
-"""Times that a dataset is opened, where each time a build replaces it while that is done."""
-
-
-def _version(folder: Path) -> tuple[int, int] | None:
-    """What differs once a build has replaced a dataset; None while it cannot be seen."""
-    try:
-        found = (folder / NAME).stat()
-    except OSError:
-        return None
-    return found.st_ino, found.st_mtime_ns
+        return steady(self.folder, ask)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,14 @@
 """Checks of a dataset's folder besides its tables: unlisted files, the catalog, the manifest itself."""
 
 from collections.abc import Iterator
+from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_knowledge import FIELD
-from hearth.datasets.format.catalog import CATALOG, make_catalog
+from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, statements
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json, value_digest
@@ -18,6 +19,9 @@ AGAIN = "fetch or publish the dataset again"
 
 _ASKED = ("stage", "code", "settings", "plan")
 """Fields of the manifest that its key is the digest of, with the inputs."""
+
+EARLIER = {"181edd5cc9f6d9041001864f3d8da78cf4614790e5cfff2fb5a83af64476b645": "0.1.0"}
+"""SHA-256 of the catalog's SQL in earlier versions; add that of the last one when the SQL of the next differs."""
 
 _FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", FIELD, "counts", "parts", "files"}
 
@@ -57,10 +61,16 @@ def _contradictions(dataset: Dataset) -> Iterator[str]:
     counts = Counts.from_json(content["counts"])
     counts.check("its counts")
     ledger = dataset.read("SELECT * FROM ledger WHERE stage = 'publish'")
-    told = (counts.records_in, counts.through, counts.rejected, counts.partial, dict(counts.codes))
+    expected = (counts.records_in, counts.through, counts.rejected, counts.partial, dict(counts.codes))
     for row in ledger:
         codes = {one["code"]: one["count"] for one in row["codes"]}
-        if told != (row["records_in"], row["records_through"], row["records_rejected"], row["partial_rejects"], codes):
+        if expected != (
+            row["records_in"],
+            row["records_through"],
+            row["records_rejected"],
+            row["partial_rejects"],
+            codes,
+        ):
             yield "its counts differ from those of the ledger"
     yield from _other_parts(dataset.folder, content)
 
@@ -80,18 +90,30 @@ def other_files(folder: Path) -> Iterator[Diagnostic]:
     path, timing = folder / CATALOG, folder / TIMING
     if not path.is_file():
         yield Diagnostic(Code.MISSING_FILE, "a dataset has it, the folder has not", str(path), suggestion=AGAIN)
-    elif _holds(path) != _expected(folder):
-        message = "other views or macros than those of a dataset"
+    elif (sql := _known_sql(folder)) is None:
+        message = "not the SQL of any version, so that the catalog cannot be made again and compared"
+        yield Diagnostic(Code.DAMAGED_FILE, message, str(folder / SQL), suggestion=f"do not run it; {AGAIN}")
+    elif _holds(path) != _expected(folder, sql):
+        message = "other views or macros than those of its SQL"
         yield Diagnostic(Code.DAMAGED_FILE, message, str(path), suggestion=f"do not open it; {AGAIN}")
     said = read_json(timing)
     if timing.exists() and (not isinstance(said, dict) or said.keys() != {"seconds", "workers"}):
         yield Diagnostic(Code.BAD_JSON, "not the seconds and workers of a build", str(timing), suggestion=AGAIN)
 
 
-def _expected(folder: Path) -> list[Any]:
+def _known_sql(folder: Path) -> str | None:
+    """The SQL that the catalog was made by, if it is ours: that of strangers is never run."""
+    try:
+        text = (folder / SQL).read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+    return text if text == statements() or sha256(text.encode()).hexdigest() in EARLIER else None
+
+
+def _expected(folder: Path, sql: str) -> list[Any]:
     with TemporaryDirectory() as aside:
         path = Path(aside) / CATALOG
-        make_catalog(path, folder)
+        make_catalog(path, folder, sql)
         return _holds(path)
 
 

@@ -30,11 +30,11 @@ def write_catalog(folder: Path) -> None:
     write_bytes(folder / SQL, statements().encode())
     with replacing(folder / CATALOG) as temporary:
         temporary.unlink(missing_ok=True)
-        make_catalog(temporary, folder)
+        make_catalog(temporary, folder, statements())
 
 
-def make_catalog(path: Path, folder: Path) -> None:
-    """Make the catalog of a folder's tables as a DuckDB file."""
+def make_catalog(path: Path, folder: Path, sql: str) -> None:
+    """Make the catalog of a folder's tables as a DuckDB file, by `statements` of this version or of an earlier one."""
     import duckdb
 
     with TemporaryDirectory() as aside:
@@ -43,7 +43,7 @@ def make_catalog(path: Path, folder: Path) -> None:
         link.symlink_to(folder.resolve())
         with duckdb.connect(str(path)) as connection:
             connection.execute(f"SET file_search_path = '{link}'")
-            connection.execute(statements())
+            connection.execute(sql)
 
 
 _CLOSED = (

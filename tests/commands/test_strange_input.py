@@ -61,9 +61,9 @@ def test_now_is_answered(run, made):
 
 def test_control_characters_do_not_reach_the_terminal(run, made):
     question = "SELECT chr(27) || '[31mred' || chr(7) || chr(155) || chr(8238) || 'é' AS \"a\x1b]0;b\""
-    told = run("query", made.out, question)
-    assert "\\x1b[31mred\\x07\\x9b\\u202eé" in told and "a\\x1b]0;b" in told
-    assert not {"\x1b", "\x07", "\x9b", "\u202e"} & {*told}
+    output = run("query", made.out, question)
+    assert "\\x1b[31mred\\x07\\x9b\\u202eé" in output and "a\\x1b]0;b" in output
+    assert not {"\x1b", "\x07", "\x9b", "\u202e"} & {*output}
     assert json.loads(run("query", made.out, question, "--json")) == [{"a\x1b]0;b": "\x1b[31mred\x07\x9b\u202eé"}]
     said = run("query", made.out, "SELECT error(chr(27) || '[2J')", status=1)
     assert "\x1b" not in said and "\\x1b[2J" in said
@@ -73,8 +73,8 @@ def test_control_characters_do_not_reach_the_terminal(run, made):
 def test_numbers_of_nodes_that_are_none(run, number):
     for option, text in (("--move", f"144:on:{number}"), ("--move", f"{number}:on:144"), ("--set", f"{number}:OPEN"),
                          ("--add", f"cup:on:{number}")):  # fmt: skip
-        told = run("home", "edit", "maple", option, text, "--out", "x.json", status=1)
-        assert "is not a node id" in told and len(told) < 500
+        output = run("home", "edit", "maple", option, text, "--out", "x.json", status=1)
+        assert "is not a node id" in output and len(output) < 500
 
 
 def test_which_texts_are_numbers():
@@ -157,8 +157,8 @@ def test_only_line_ends_end_lines(run, tmp_path, odd):
     path = tmp_path / "p.txt"
     text = f"Sit{odd}down\nOn it.{odd}\n\n\n[Walk] <sofa> (1)\n[Sit] <sofaa> (1)\n[Nonsense] <sofa> (1)\n"
     path.write_text(text, newline="")
-    told = run("check", path, status=1)
-    assert f"{path}:6:" in told and f"{path}:7:" in told and "[Sit] <sofaa>" in told
+    output = run("check", path, status=1)
+    assert f"{path}:6:" in output and f"{path}:7:" in output and "[Sit] <sofaa>" in output
     run("check", "--fix", path, status=1)
     assert path.read_bytes().decode() == text.replace("<sofaa>", "<sofa>")
 

@@ -65,7 +65,7 @@ def test_programs_one_after_another_stay_apart(several):
 def test_lines_say_where_each_step_stood(program):
     text = print_program(program)
     read, _ = parse_program(text)
-    source = text.splitlines()
+    source = text.split("\n")
     for number, step in enumerate(read.steps):
         assert print_step(step, show_agent=program.agents() > 1) in source[read.line(number) - 1]
 
@@ -81,10 +81,8 @@ MESS = st.lists(SCRAPS | st.text(max_size=5), max_size=25).map("".join)
 def test_no_line_vanishes(text):
     """Every line that is not blank is a title, part of a description, steps, or named by a diagnostic."""
     parsed = parse_programs(text)
-    lines = text.splitlines()
-    heads = sum(
-        len([line for line in (each.title, *each.description.splitlines()) if line]) for each in parsed.programs
-    )
+    lines = text.split("\n")
+    heads = sum(len([line for line in (each.title, *each.description.split("\n")) if line]) for each in parsed.programs)
     steps = {line for program in parsed.programs for line in program.lines}
     faulty = {fault.line for fault in parsed.diagnostics if fault.line and fault.code != Code.EMPTY}
     assert not steps & faulty
@@ -93,7 +91,7 @@ def test_no_line_vanishes(text):
 
 @given(MESS)
 def test_every_fault_has_a_code_a_place_and_a_remedy(text):
-    lines = text.splitlines()
+    lines = text.split("\n")
     for fault in parse_programs(text, "some.txt").diagnostics:
         assert fault.code and fault.message and fault.suggestion and fault.file == "some.txt"
         if fault.line:
@@ -103,7 +101,7 @@ def test_every_fault_has_a_code_a_place_and_a_remedy(text):
             assert fault.found == source[fault.column - 1 :][: len(fault.found)]
 
 
-@given(MESS.map(lambda text: " ".join(text.splitlines())))
+@given(MESS.map(lambda text: " ".join(text.split("\n"))))
 def test_a_line_is_steps_or_a_fault_and_steps_print_as_they_were_meant(line):
     found = parse_steps(line)
     if not isinstance(found, Diagnostic):
