@@ -51,3 +51,9 @@ def test_the_film_plays_and_the_current_step_is_highlighted(browser, tmp_path):
     shown.wait_for_function(f"{current} === 2")
     assert shown.evaluate("document.querySelector('video').currentTime") == pytest.approx(2.0, abs=0.2)
     assert not faults
+
+
+def test_the_title_is_shown_as_text():
+    html = page("<script>harm()</script> & tea", ["auto.webm"], STEPS)
+    assert html.count("&lt;script&gt;harm()&lt;/script&gt; &amp; tea") == 2
+    assert "<script>harm" not in html
