@@ -67,7 +67,8 @@ class Preconditions:
         merged = {c.literal: c for c in self.conditions}
         for condition in new:
             known = merged.setdefault(condition.literal, condition)
-            merged[condition.literal] = replace(known, hard=known.hard or condition.hard)
+            if condition.hard and not known.hard:
+                merged[condition.literal] = replace(known, hard=True)
         return Preconditions(tuple(merged.values()))
 
     def without(self, *removed: Condition) -> Preconditions:
