@@ -111,11 +111,11 @@ docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, comman
 lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock and requirements-tools.lock
 	@rm -rf build/lock && mkdir -p build/lock
 	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
-	@build/lock/all/bin/python -m pip install -q -e '.[test,tools]' setuptools
-	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth | sort > build/lock/all.txt
-	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[test]' setuptools
+	@build/lock/all/bin/python -m pip install -q -e '.[pictures,test,tools]' setuptools
+	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/all.txt
+	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[pictures,test]' setuptools
 	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
-	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth | sort > build/lock/base.txt
+	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/base.txt
 	@{ sed '/^#/!d' requirements.lock; \
 	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/" build/lock/base.txt; \
 	   } > build/lock/requirements.lock

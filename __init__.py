@@ -6,8 +6,9 @@ Their modules are those of `__init__.pyi`, which type checkers read too.
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import lru_cache, wraps
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from hearth.version import VERSION
 
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
 __version__ = VERSION
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 @lru_cache(maxsize=1)
@@ -39,14 +43,33 @@ def __getattr__(name: str) -> Any:
         value = _env()
     elif name in _modules():
         value = getattr(import_module(_modules()[name]), name)
+        if not isinstance(value, type):
+            value = import_module("hearth.schemas.arguments").explained(value)
+            value.__module__ = __name__  # where it is found when it is pickled
     else:
         raise AttributeError(f"module `hearth` has no attribute `{name}`")
     globals()[name] = value
     return value
 
 
+def _explained(function: Callable[P, T]) -> Callable[P, T]:
+    """The function, with errors of ours for wrong arguments; what explains them is imported only then."""
+
+    @wraps(function)
+    def call(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            return function(*args, **kwargs)
+        except Exception as error:
+            from hearth.schemas.arguments import explain
+
+            explain(function, args, kwargs, error)
+
+    return call
+
+
 def _env() -> type[Env]:
     """The environment, by default with our own knowledge."""
+    from hearth.schemas.arguments import explained
     from hearth.simulation import env
     from hearth.simulation.rules import DEFAULT, Rules
 
@@ -56,6 +79,8 @@ def _env() -> type[Env]:
         def __init__(self, rules: Rules = DEFAULT, partial: bool = True, knowledge: Knowledge | None = None) -> None:
             super().__init__(rules, partial, _or_ours(knowledge))
 
+    for method in (env.Env.reset, env.Env.restore, env.Env.step, env.Env.observe, env.Env.legal):
+        setattr(Env, method.__name__, explained(method))
     return Env
 
 
@@ -63,8 +88,13 @@ def _or_ours(given: Knowledge | None) -> Knowledge:
     return given or knowledge()
 
 
-def load(path: str) -> Dataset:
+@_explained
+def load(path: str, failures: bool = False) -> Dataset:
     """Open a published dataset folder for reading.
+
+    Args:
+        path: a dataset, or the folder of a build; may be a URL that fsspec reads.
+        failures: whether runs, tensors, exports and scores have the executions in which the program fails, too.
 
     Raises:
         HearthError: the folder is not a dataset, or was written by a newer version.
@@ -75,12 +105,15 @@ def load(path: str) -> Dataset:
         ['text:milk.txt', 'text:milk.txt+maple.0']
         >>> dataset["text:milk.txt"].title
         'Fetch milk'
+        >>> {run.executable for run in hearth.load(folder, failures=True)["text:milk.txt"].runs}
+        {False, True}
     """
     from hearth.datasets.dataset import Dataset
 
-    return Dataset.open(path)
+    return Dataset.open(path, failures)
 
 
+@_explained
 def knowledge(overlay: str | None = None) -> Knowledge:
     """Hearth's knowledge of actions, objects and places, with the files of the folder `overlay` laid over it.
 
@@ -101,6 +134,7 @@ def knowledge(overlay: str | None = None) -> Knowledge:
     return overlaid(Path(overlay) if overlay else None)
 
 
+@_explained
 def home(name: str, knowledge: Knowledge | None = None) -> Home:
     """One of our homes by name (`homes.library.names()` lists them), by default with our knowledge.
 
@@ -118,6 +152,7 @@ def home(name: str, knowledge: Knowledge | None = None) -> Home:
     return Home.from_graph(load_graph(name, known), name, known)
 
 
+@_explained
 def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
     """Read a program from text, with canonical names by the grammar (thesis 2.3.3).
 

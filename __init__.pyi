@@ -1,4 +1,5 @@
 from hearth.datasets.dataset import Dataset as Dataset
+from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export
 from hearth.datasets.verify import verify as verify
 from hearth.grounding.binding import bind as bind
@@ -25,6 +26,7 @@ from hearth.scoring.metrics.executability import executability as executability
 from hearth.scoring.predictions import read_pairs as read_pairs
 from hearth.simulation.engine import run as run
 from hearth.simulation.env import Env as Env
+from hearth.simulation.goal_text import read_goal as read_goal
 from hearth.simulation.goals import Progress as Progress
 from hearth.simulation.holds import holds as holds
 from hearth.simulation.world.edit import edit as edit
@@ -33,7 +35,7 @@ from hearth.simulation.world.world import World as World
 
 __version__: str
 
-def load(path: str) -> Dataset: ...
+def load(path: str, failures: bool = False) -> Dataset: ...
 def knowledge(overlay: str | None = None) -> Knowledge: ...
 def home(name: str, knowledge: Knowledge | None = None) -> Home: ...
 def parse_program(text: str, knowledge: Knowledge | None = None) -> Program: ...

@@ -101,11 +101,15 @@ def load(name: str) -> Any:
 
     module, attribute = COMMANDS_BY_NAME[name].place.split(":")
     target = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
+    described = importlib.import_module("hearth.commands.options").described
     if isinstance(target, typer.Typer):
+        for each in target.registered_commands:
+            described(each.callback)
         target.rich_markup_mode = None
         command = typer.main.get_group(target)
         command.name = name
         return command
+    described(target)
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name)(target)
     return typer.main.get_command(single)

@@ -4,6 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from hearth.pipelines.augment import ORIGINAL
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.manifest import TIMING, read_manifest
@@ -36,7 +37,7 @@ def outcome(folder: Path) -> dict[str, Any]:
     idle = sum(row["code"] == Code.UNPERTURBED and "where" not in row["message"] for row in rejects)
     codes = Counter(row["code"] for row in rejects if row["fault"] == 0)
     codes[str(Code.UNPERTURBED)] -= idle
-    programs = manifest.counts.rows[""]
+    programs = manifest.counts.tally.total() - manifest.counts.tally[ORIGINAL]
     tried = programs + codes.total()
     given_up = sum(codes[str(code)] for code in GIVEN_UP)
     return {
@@ -114,12 +115,12 @@ def _lengths(data: Any, group: str) -> dict[str, int]:
 
 
 def _conditions(data: Any, name: str) -> dict[str, dict[str, float]]:
-    """Shares of the conditions whose first object is of a class, before and after augmentation."""
+    """Shares of the conditions whose first object is of a class, before and after perturbation."""
     found: dict[str, dict[str, float]] = {}
-    for label, where in (("before", "IS NULL"), ("after", "IS NOT NULL")):
+    for label, where in (("before", "NOT IN"), ("after", "IN")):
         query = f"""
-            WITH literal AS (SELECT unnest(v.conditions) AS c FROM environments v JOIN programs p USING (program_id)
-                          WHERE p.parent_id {where})
+            WITH literal AS (SELECT unnest(conditions) AS c FROM environments
+                          WHERE environment_id {where} (SELECT environment_id FROM perturbations))
             SELECT c.name, count(*) FROM literal WHERE c.objects[1].name = $name GROUP BY 1 ORDER BY 2 DESC, 1"""
         rows = data.rows(query, name=name)[1]
         total = sum(count for _, count in rows) or 1
@@ -148,7 +149,7 @@ def _share(data: Any) -> float | None:
 
 def _bytes(dataset: Path, data: Any) -> int | None:
     """Bytes of programs, environments, executions and repairs on disk, per execution."""
-    tables = ("programs", "environments", "executions", "repairs")
+    tables = ("programs", "environments", "executions", "perturbations", "repairs")
     size = sum(path.stat().st_size for table in tables for path in dataset.rglob(f"{table}/part-*.parquet"))
     (count,) = data.rows("SELECT count(*) FROM executions")[1][0]
     return round(size / count) if count else None

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.analysis.corpus_figures import blank, saved
+from hearth.schemas.libraries import library
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,9 +24,7 @@ def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
 
 def conditions(shares: Mapping[str, Mapping[str, Mapping[str, float]]]) -> Figure:
     """Shares of the conditions of a class, before and after, one panel per class (figure 5-4)."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.2 * len(shares), 4), layout="constrained")
+    figure: Figure = library("matplotlib.figure").Figure(figsize=(5.2 * len(shares), 4), layout="constrained")
     for axes, (name, rows) in zip(figure.subplots(1, len(shares), squeeze=False)[0], shares.items(), strict=True):
         _pairs(axes, list(rows), {label: [row[label] for row in rows.values()] for label in COLOURS})
         axes.set_title(name.replace("_", " "))

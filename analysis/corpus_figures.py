@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 from hearth.analysis import corpus_statistics as numbers
 from hearth.analysis.corpus_statistics import Corpus, Similarities
+from hearth.schemas.libraries import library
 from hearth.storage.files import replacing
 from hearth.storage.names import inside
 
@@ -42,9 +45,6 @@ def write(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
 
 
 def _tables(found: Corpus, alike: Similarities, folder: Path) -> list[Path]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     actions, objects = numbers.frequencies(found)
     compared = [alike.activities[number] for number in alike.order]
     rows: dict[str, list[dict[str, Any]]] = {
@@ -86,18 +86,14 @@ def _ranked(counts: Counter[Any]) -> list[tuple[Any, int]]:
 
 def blank(width: float, height: float) -> tuple[Figure, Any]:
     """A figure of a size in inches, and its axes."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure: Figure = library("matplotlib.figure").Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots()
 
 
 def saved(figure: Figure, path: Path) -> list[Path]:
     """Write a figure as PNG and SVG, deterministically."""
-    import matplotlib as mpl
-
     files = []
-    with mpl.rc_context({"svg.hashsalt": "hearth", "svg.fonttype": "none"}):
+    with library("matplotlib").rc_context({"svg.hashsalt": "hearth", "svg.fonttype": "none"}):
         for suffix, metadata in ((".png", {"Software": None}), (".svg", {"Date": None, "Creator": None})):
             file = path.with_suffix(suffix)
             with replacing(file) as temporary:

@@ -3,12 +3,16 @@
 Impossible programs are proven: by two contradictory steps, or by a fact that forbids the program in any home.
 """
 
+import io
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
+
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import environment_of
 from hearth.datasets.format.codecs import program_of
@@ -24,7 +28,8 @@ from hearth.pipelines.readers import release
 from hearth.pipelines.readers.item import Item
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
-from hearth.schemas.rows import DifferenceRow, IngestedRow, Row
+from hearth.schemas.row_types import DifferenceRow, IngestedRow, Row
+from hearth.schemas.tables import CASE
 from hearth.storage.rejects import Reject
 
 ANY_HOME = "any home"
@@ -176,13 +181,6 @@ class _Stored:
     _FULL = 500
 
     def __init__(self) -> None:
-        import io
-
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        from hearth.schemas.tables import CASE
-
         self._schema = pa.schema([CASE.field("environment")])
         self._rows: list[Row] = []
         self._bytes = io.BytesIO()
@@ -195,8 +193,6 @@ class _Stored:
             self._flush()
 
     def _flush(self) -> None:
-        import pyarrow as pa
-
         if self._rows:
             self._writer.write_table(pa.Table.from_pylist(self._rows, schema=self._schema))
             self._rows = []

@@ -3,6 +3,7 @@
 Also the diversity of one program's environments (5.5.2, figure 5-4).
 """
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -20,6 +21,7 @@ from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import ROOM_CATEGORY, STATE_ID, STATES
+from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
 
 Counts = dict[str, Counter[str]]
@@ -44,8 +46,6 @@ def observed(path: Path, knowledge: Knowledge, limit: int | None = None) -> tupl
 
 
 def _bound(text: str) -> set[int]:
-    import re
-
     return {int(number) for number in re.findall(r"\(\d+\.(\d+)\)", text)}
 
 
@@ -188,8 +188,6 @@ def of_programs(path: Path, knowledge: Knowledge, classes: Sequence[str], limit:
 
 def of_cases(folder: Path, classes: Sequence[str]) -> Counts:
     """The same over a stage's cases (`sample` or `augment`), with violated conditions as perturbed."""
-    from hearth.storage.partitions import read_rows
-
     found: Counts = {name: Counter() for name in classes}
     for part in sorted(folder.glob("part-*.parquet")):
         for row in read_rows(part, ["conditions"]):

@@ -20,7 +20,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
 from hearth.simulation.world.home import Home
-from hearth.storage.inputs import read_input
+from hearth.storage.input_files import read_input
 
 
 class Completeness(IntEnum):

@@ -10,7 +10,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import sketches as reader
 from hearth.repair.sketch import Keep, sketch
 from hearth.schemas.program import Program
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.syntax import print_step
 from hearth.simulation.world.home import Home
 from hearth.storage.archives import Place

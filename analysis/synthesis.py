@@ -15,7 +15,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
-from hearth.storage.inputs import load_yaml
+from hearth.storage.input_files import load_yaml
 
 DEFAULT_COUNT = 5_193
 """Number of programs in the thesis's SyntheticPrograms (table 4.1)."""

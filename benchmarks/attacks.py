@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[1]]
 
-from hostile import rename  # noqa: E402
+from hostile import rename, replace_texts  # noqa: E402
 
 from hearth.datasets.dataset import Dataset  # noqa: E402
 from hearth.schemas.diagnostics import HearthError  # noqa: E402
@@ -143,7 +143,7 @@ def inputs() -> Iterator[Attack]:
     from hearth.kb.loading.load import default
     from hearth.scoring.environments import by_row
     from hearth.scoring.predictions import Pair, read_pairs
-    from hearth.storage.inputs import load_yaml, read_input
+    from hearth.storage.input_files import load_yaml, read_input
 
     def final_graph(path: Path) -> Any:
         return read_graph(path, "final_graph")
@@ -196,7 +196,7 @@ def yaml_files() -> Iterator[Attack]:
     from hearth.homes.library import layout_of
     from hearth.kb.loading.load import default
     from hearth.repair.variants import load_chances
-    from hearth.storage.inputs import load_yaml
+    from hearth.storage.input_files import load_yaml
 
     def read(reader: Callable[[Path], Any], text: str, ground: Ground) -> None:
         path = ground.folder / "home.yaml"
@@ -209,7 +209,139 @@ def yaml_files() -> Iterator[Attack]:
             yield Attack("yaml", f"{kind}: {name}", lambda ground, r=reader, t=text: read(r, t, ground))
 
 
-GROUPS = (queries, exports, names, inputs, yaml_files)
+PLAN = "home: hut\nheight: {height}\nrooms:\n{rooms}"
+ROOM = "- {{name: {name}, class: kitchen, at: [{at}, 0], size: [{size}, 3], furniture: [{things}]}}\n"
+
+
+def plans() -> Iterator[Attack]:
+    """Plans of homes of absurd size."""
+    from hearth.homes.library import layout_of
+    from hearth.kb.loading.load import default
+
+    def room(name: str = "kitchen", at: str = "0", size: str = "4", things: str = "") -> str:
+        return ROOM.format(name=name, at=at, size=size, things=things)
+
+    texts = {
+        "wide": room(size="900"), "far": room() + room("other", at="990"), "infinite": room(size=".inf"),
+        "not a number": room(size=".nan"), "rooms": "".join(room(f"r{n}", str(n % 90)) for n in range(5_000)),
+        "things": room(things=", ".join(["{bench: {wall: west}}"] * 5_000)),
+        "unknown things": room(things=", ".join(f"{{bench{n}: {{wall: west}}}}" for n in range(5_000))),
+        "on one another": room(things="{bench: {wall: west, on: [" + ", ".join(["plate*60"] * 900) + "]}}"),
+        "counted": room(things="cup*99999999999999999999"), "digits": room(size="9" * 5_000),
+    }  # fmt: skip
+    for name, rooms in texts.items():
+
+        def read(ground: Ground, rooms: str = rooms) -> None:
+            path = ground.folder / "home.yaml"
+            path.write_text(PLAN.format(height=2.5, rooms=rooms))
+            layout_of(path, default())
+
+        yield Attack("plan", name, read)
+
+
+def archives() -> Iterator[Attack]:
+    """Archives as sources of a build."""
+    from hearth.pipelines.engine.sources import labelled
+    from hearth.pipelines.ingest import items, read
+
+    good = "Sleep\nGo to bed.\n\n\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n"
+
+    def write(path: Path, kind: str, ground: Ground) -> None:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("good.txt", good)
+            if kind == "link":
+                link = zipfile.ZipInfo("link.txt")
+                link.create_system, link.external_attr = 3, 0o120777 << 16
+                archive.writestr(link, str(ground.guard / "secret.csv"))
+            elif kind == "bomb":
+                archive.writestr("bomb.txt", b"\0" * 300_000_000)
+            elif kind == "members":
+                for n in range(5_000):
+                    archive.writestr(f"{n}/x.txt", "")
+            elif kind == "nested":
+                archive.write(_zipped(ground.folder / "inner.zip", 8), "inner.zip")
+            elif kind == "twice":
+                archive.writestr("good.txt", good)
+            else:
+                archive.writestr(kind.replace("{guard}", str(ground.guard)), good)
+        if kind == "good.txt\\broken":
+            path.write_bytes(path.read_bytes()[:-30])
+
+    def ingest(kind: str, ground: Ground) -> Any:
+        path = ground.folder / "source.zip"
+        write(path, kind, ground)
+        return [row for _, item in items(labelled([str(path)])) for row in read(item, salt="s")]
+
+    kinds = ("link", "bomb", "members", "nested", "twice", "good.txt\\broken", "a\x1b[2J.txt", "CON.txt")
+    for kind in (*NAMES[:6], *kinds):
+        yield Attack("archive", f"{kind[:50]!a}", lambda ground, k=kind: ingest(k, ground))
+
+
+def _zipped(path: Path, depth: int) -> Path:
+    """A zip in a zip in a zip."""
+    inner = path.with_name(f"{depth}.zip")
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("x.txt", "x" * 1_000)
+        if depth:
+            archive.write(_zipped(inner, depth - 1), inner.name)
+    return path
+
+
+MARKUP = ("<script>alert(1)</script>", '"><img src=x onerror=alert(1)>', "</title><svg onload=alert(1)>")
+ESCAPES = ("\x1b]0;a\x07", "\x1b[2J\x1b[1;1H", "\x9b2J", "\x1bP+q\x1b\\", "a\rb\x08", "\u202ea\u2066", "\x00")
+
+
+def _renamed(ground: Ground, text: str) -> Path:
+    """A copy of the dataset in which titles, descriptions, homes and places are this text."""
+    copy: Path = shutil.copytree(ground.dataset, ground.folder / "dataset")
+    dataset = Dataset.open(copy)
+    query = "SELECT title FROM programs UNION SELECT description FROM programs UNION SELECT place FROM programs"
+    olds = {old for (old,) in dataset.rows(query)[1] if old} | {"cabin"}
+    replace_texts(copy, dict.fromkeys(olds, text))
+    return copy
+
+
+def reports() -> Iterator[Attack]:
+    """Markup in every text that a page shows."""
+    from markupsafe import escape
+
+    from hearth.datasets.report.write import write_report
+
+    def write(text: str, ground: Ground) -> None:
+        out = ground.folder / "page"
+        write_report(Dataset.open(_renamed(ground, text)), out)
+        pages = "".join(page.read_text("utf-8") for page in out.rglob("*.html"))
+        assert text not in pages and str(escape(text)) in pages
+
+    for text in MARKUP:
+        yield Attack("report", text, lambda ground, t=text: write(t, ground))
+
+
+def terminals() -> Iterator[Attack]:
+    """Control characters in data that commands print."""
+    from typer.testing import CliRunner
+
+    from hearth.cli import app
+
+    def printed(words: list[str], text: str, ground: Ground) -> None:
+        source = ground.folder / "a.txt"
+        source.write_text(f"T{text}\nD{text}\n\n\n[Walk] <b{text}ed> (1)\n[Fly{text}] <bed> (1)\n", "utf-8")
+        folder = _renamed(ground, text) if "{dataset}" in words else ground.dataset
+        filled = [word.format(dataset=folder, file=source) for word in words]
+        shown = CliRunner().invoke(app, filled).output
+        bad = {c for c in shown if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160 or c in "\u202e\u2066")}
+        assert shown and not bad, f"it prints {bad!a}"
+
+    commands = (
+        ["query", "{dataset}", "SELECT title, description, place FROM programs"], ["check", "{file}"],
+        ["run", "{file}", "--home", "maple"], ["diff", "{dataset}", "{dataset}"], ["sketch", "{file}"],
+    )  # fmt: skip
+    for words in commands:
+        for text in ESCAPES:
+            yield Attack("terminal", f"{words[0]} {text!a}", lambda ground, w=words, t=text: printed(w, t, ground))
+
+
+GROUPS = (queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals)
 
 
 def state(folder: Path) -> dict[str, bytes]:

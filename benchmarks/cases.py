@@ -64,7 +64,7 @@ def own() -> tuple[tuple[EnvironmentGraph, Program], ...]:
 
 @lru_cache(maxsize=1)
 def unbound(length: int = 12) -> tuple[tuple[World, Program], ...]:
-    """Unbound crowd-sourced programs of `length` steps, with each home in which they are executable."""
+    """Unbound programs of the embedded corpus of `length` steps, with each home in which they are executable."""
     rows = csv.DictReader(CROWD.read_text("utf-8").splitlines(keepends=True))
     worlds = [
         World.start(Home.from_graph(library.load_graph(name, default()), name, default())) for name in library.names()

@@ -20,7 +20,7 @@ import plain
 from measuring import Figure, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.analysis import corpus_statistics, synthesis
-from hearth.kb.language import plans
+from hearth.kb.language import numbered_steps
 from hearth.kb.loading.load import default
 from hearth.pipelines.readers.crowd import DESCRIPTIONS, PROGRAMS
 from hearth.schemas.program import ObjectRef, Step
@@ -163,7 +163,7 @@ def others() -> Iterator[Figure]:
     grammar = synthesis.load(synthesis.FILE, known)
     words = "".join(as_words(1))
     split = plain.split_words([words] * 1_000)
-    parsed = runs(lambda: [plans.parse_steps(words, 0, "", known) for _ in range(1_000)])
+    parsed = runs(lambda: [numbered_steps.parse_steps(words, 0, "", known) for _ in range(1_000)])
     yield rate("programs in words understood", 1_000, parsed, "a second", ratio=split.ratio(1_000, parsed))
     drawn = passes(lambda seed: list(synthesis.synthesize(SLICE, seed, grammar)), range(13))
     ratio = plain.drawn_steps().ratio(13 * SLICE, drawn)

@@ -21,10 +21,21 @@ def rewrite(folder: Path, table: str, change: Callable[[dict[str, Any]], dict[st
     return count
 
 
+def replace_texts(folder: Path, texts: dict[str, str]) -> None:
+    """Replace several texts in all tables, each wherever it is a whole value."""
+
+    def change(row: dict[str, Any]) -> dict[str, Any]:
+        for old, new in texts.items():
+            row = replaced(row, old, new)
+        return row
+
+    for table in sorted(path.name for path in folder.iterdir() if any(path.glob("*.parquet"))):
+        rewrite(folder, table, change)
+
+
 def rename(folder: Path, old: str, new: str) -> None:
     """Replace a text by another in all tables, wherever it is a whole value."""
-    for table in sorted(path.name for path in folder.iterdir() if any(path.glob("*.parquet"))):
-        rewrite(folder, table, lambda row: replaced(row, old, new))
+    replace_texts(folder, {old: new})
 
 
 def replaced(value: Any, old: str, new: str) -> Any:

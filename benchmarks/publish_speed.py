@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -17,6 +18,7 @@ import plain
 from measuring import Figure, Passes, as_line, finish, parser, passes, rate, runs, seconds
 
 from hearth.datasets.dataset import Dataset
+from hearth.datasets.execution_graphs import ExecutionGraphs
 from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.homes import library
@@ -30,6 +32,9 @@ from hearth.scoring.metrics.lcs import matrix
 
 ASKED = 30_000
 """Numbers of predictions and executions of the targets."""
+
+PAIRS = 1_000
+"""Executions whose graphs are read."""
 
 SHARES, EACH = 8, 25
 """Number of shares of predictions that are read, and of predictions scored in each."""
@@ -61,7 +66,7 @@ def figures(asked: Namespace) -> Iterator[Figure]:
         return
     yield from scoring(dataset)
     read, counted = yardsticks()
-    some = dataset.rows("SELECT execution_id FROM executions ORDER BY hash(execution_id) LIMIT 9")[1]
+    some = dataset.rows("SELECT execution_id FROM executions WHERE executable ORDER BY hash(execution_id) LIMIT 9")[1]
     for macro in ("graph_edges", "graph_nodes"):
         query = f"SELECT * FROM {macro}($id, NULL)"
         each = [passes(lambda name, query=query: dataset.rows(query, id=name), one, 9) for one in some]
@@ -73,6 +78,11 @@ def figures(asked: Namespace) -> Iterator[Figure]:
     worst = max(each, key=lambda one: one.least)
     yield seconds(f"one graph by the library, of {len(some)} the slowest, rows read before", worst, "ms", 10.0,
                   read.ratio(1, worst))  # fmt: skip
+    graphs = ExecutionGraphs(dataset)
+    number = min(PAIRS, len(graphs))
+    pairs = passes(lambda most: sum(1 for _ in islice(graphs, most)), [number], 5)
+    yield seconds(f"start and end graphs of {number:,} executions, by the iterator", pairs, target=5.0,
+                  ratio=read.ratio(2 * number, pairs))  # fmt: skip
     executions = dataset.rows("SELECT count(*) FROM executions")[1][0][0]
     counting = passes(dataset.rows, ["SELECT * FROM start_relations"], 9)
     yield seconds(f"edges per relation over {executions:,} executions", counting, target=executions / ASKED,

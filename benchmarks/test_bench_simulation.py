@@ -5,7 +5,9 @@ Each benchmark says how many units one run of it is, so that rates are printed b
 
 from __future__ import annotations
 
+import zipfile
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import cases
@@ -15,10 +17,13 @@ from oracles import engine as reference
 from oracles.world import Options
 from oracles.world import World as PlainWorld
 
+from hearth.analysis.release_replay import replay
 from hearth.grounding.binding import Binding, bind
+from hearth.kb import grammar
 from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge, Node, from_release
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.syntax import parse_program
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import final, run
 from hearth.simulation.observation.views import view
@@ -27,6 +32,7 @@ from hearth.simulation.world.edit import extended
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
+ENDS = ("init_graph", "final_graph")
 OPTIONS = {"release": (REPLAY, Options(doors=False, watch_needs_on=False)), "own homes": (DEFAULT, Options())}
 
 
@@ -136,6 +142,34 @@ def test_parse_and_build_reference(benchmark):
     data = orjson.dumps(graph)
     note(benchmark, "home")
     benchmark(lambda: PlainWorld(from_release(orjson.loads(data))))
+
+
+@pytest.mark.benchmark(group="replaying a release")
+def test_replay(benchmark):
+    programs = len(_release())
+    note(benchmark, "program", programs, "test_replay_reference")
+    found = benchmark(lambda: list(islice(replay(cases.SAMPLE, default()), programs)))
+    assert all(one.exact for one in found)
+
+
+@pytest.mark.benchmark(group="replaying a release")
+def test_replay_reference(benchmark):
+    """As many programs read, run, and compared with their stored ends, with dicts of sets."""
+    programs = len(_release())
+    note(benchmark, "program", programs)
+
+    def go() -> None:
+        with zipfile.ZipFile(cases.SAMPLE) as sample:
+            names = [name for name in sorted(sample.namelist()) if "/executable_programs/" in name]
+            for name in [name for name in names if name.endswith(".txt")][:programs]:
+                file = name.replace("executable_programs", "init_and_final_graphs").replace(".txt", ".json")
+                graphs = orjson.loads(sample.read(file))
+                world, end = (PlainWorld(from_release(graphs[key]), release=True) for key in ENDS)
+                program, _ = grammar.check(parse_program(sample.read(name).decode(), name)[0], default())
+                assert reference.run(world, program, OPTIONS["release"][1]) is None
+                assert (world.edges(), world.state_pairs()) == (end.edges(), end.state_pairs())
+
+    benchmark.pedantic(go, rounds=3)
 
 
 @pytest.mark.benchmark(group="binding and running programs of 12 steps")

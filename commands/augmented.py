@@ -1,18 +1,14 @@
 """`augmented`: compares an augmented dataset with the thesis's."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-import typer
+from hearth.commands import output
 
-from hearth.commands import options, output
-
-Dataset = Annotated[Path, typer.Argument(metavar="DATASET", help="A published dataset, or the folder of a build.")]
-Figures = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Draw the figures into this folder.")]
 _BAR = 40
 
 
-def augmented(dataset: Dataset = Path("data_out"), out: Figures = None, as_json: options.Json = False) -> None:
+def augmented(dataset: Path = Path("data_out"), out: Path | None = None, as_json: bool = False) -> None:
     """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
 
     Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the

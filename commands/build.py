@@ -6,82 +6,15 @@ import sys
 from collections.abc import Callable, Mapping
 from inspect import Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import options, output
+from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.pipelines.build import Funnel
 
-Sources = Annotated[
-    list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Files and folders; the embedded corpus if none.")
-]
-Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="The folder for the output, one folder a stage.")]
-Jobs = Annotated[
-    int,
-    typer.Option(
-        "--workers", "-j", metavar="N", min=0, callback=options.processes, help="Processes; 0 for one a core."
-    ),
-]
-Only = Annotated[str | None, typer.Option("--only", metavar="STAGE", help="Run one stage on existing output.")]
-InHomes = Annotated[
-    list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; may be given several times.")
-]
-SomeHomes = Annotated[
-    list[str] | None, typer.Option("--homes", metavar="DIR", help="A folder of homes laid over ours, or `all`.")
-]
-TriedSources = Annotated[
-    list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="Try these programs, and write nothing.")
-]
-NodesWanted = Annotated[
-    int | None,
-    typer.Option(
-        "--nodes",
-        metavar="N",
-        min=1,
-        help="With SOURCE: environments of N nodes, within 10: small homes are filled, large ones thinned.",
-    ),
-]
-Salt = Annotated[
-    str | None, typer.Option("--salt", metavar="TEXT", envvar="HEARTH_SALT", help="Hashed with the ids of workers.")
-]
-Pictures = Annotated[int, typer.Option("--pictures", metavar="N", min=0, help="Number of programs to picture.")]
-Videos = Annotated[int, typer.Option("--videos", metavar="N", min=0, help="Number of them to film.")]
-Variants = Annotated[
-    int,
-    typer.Option("--per-program", "--variants", metavar="N", min=0, help="Perturbed environments for each execution."),
-]
-Target = Annotated[
-    int,
-    typer.Option(
-        "--target", metavar="N", min=0, help="Augmented programs in all; 0 for as many as --per-program gives."
-    ),
-]
-HomesEach = Annotated[
-    int,
-    typer.Option("--homes-each", metavar="N", min=0, help="Sample each program in N homes drawn for it; 0 for all."),
-]
-
-Tier = Annotated[
-    str,
-    typer.Option(
-        "--tier", metavar="NAME", help="Size of the dataset: mini, full or frames; other options override it."
-    ),
-]
-
-EngineName = Annotated[
-    str, typer.Option("--engine", metavar="NAME", help="Engine for the partitions: local (processes) or dask.")
-]
-Scheduler = Annotated[
-    str, typer.Option("--scheduler", metavar="ADDRESS", help="With --engine dask: use a running cluster.")
-]
-TimeLimit = Annotated[
-    float, typer.Option("--time-limit", metavar="SECONDS", min=0, help="Time limit of a record in a stage; 0 for none.")
-]
-LogJson = Annotated[bool, typer.Option("--log-json", help="Progress as lines of JSON on stderr.")]
-Force = Annotated[bool, typer.Option("--force", help="Build even if the disk seems too small.")]
 
 _OUT = Path("data_out")
 _CODES = 4
@@ -90,42 +23,44 @@ _ALL = "all"
 
 def build(
     context: typer.Context,
-    sources: Sources = None,
-    out: Out = _OUT,
-    seed: options.Seed = 0,
-    workers: Jobs = 0,
-    limit: options.Limit = None,
-    only: Only = None,
-    home: InHomes = None,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    salt: Salt = None,
-    homes_each: HomesEach = 0,
-    variants: Variants = 3,
-    target: Target = 0,
-    pictures: Pictures = 3,
-    videos: Videos = 1,
-    tier: Tier = "",
-    engine: EngineName = "local",
-    scheduler: Scheduler = "",
-    time_limit: TimeLimit = 60.0,
-    force: Force = False,
-    log_json: LogJson = False,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
+    sources: list[Path] | None = None,
+    out: Path = _OUT,
+    seed: int = 0,
+    workers: int = 0,
+    limit: int | None = None,
+    columns: str = "",
+    only: str | None = None,
+    home: list[str] | None = None,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    salt: str | None = None,
+    homes_each: int = 0,
+    variants: int = 3,
+    target: int = 0,
+    pictures: int = 3,
+    videos: int = 1,
+    tier: str = "",
+    engine: str = "local",
+    scheduler: str = "",
+    time_limit: float = 60.0,
+    force: bool = False,
+    log_json: bool = False,
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Run the stages one after another and publish a dataset.
 
-    Sources are recognised by content: the ActivityPrograms release (zip or folder), crowd-sourcing CSV, program text,
-    natural-language steps, JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only what
-    changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
-    (s3://bucket/folder), with `pip install 'hearth[remote]'`.
+    Sources are recognised by content: the ActivityPrograms release (zip or folder), tables (CSV), program text, plans
+    of language models, JSON or JSON Lines, sketches, scene graphs, a dataset; packed or not. A second build runs only
+    what changed, and a stopped build continues. The last table counts the records of each stage. Folders may be URLs
+    (s3://bucket/folder), with the extra `remote`.
 
     \b
     Examples:
       python cli.py build --out data_out
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
       python cli.py build corpus.csv --out small --tier mini
+      python cli.py build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
     from hearth.pipelines.engine.tiers import tiered
@@ -147,7 +82,7 @@ def _with_options(*names: str) -> Callable[[Callable[..., None]], Callable[..., 
     return given
 
 
-@_with_options("sources", "out", "limit", "salt")
+@_with_options("sources", "out", "limit", "columns", "salt")
 def ingest(context: typer.Context, **_: Any) -> None:
     """Read descriptions and programs of any known form.
 
@@ -171,17 +106,17 @@ def validate(context: typer.Context, **_: Any) -> None:
 
 def sample(
     context: typer.Context,
-    sources: TriedSources = None,
-    out: Out = _OUT,
-    seed: options.Seed = 0,
-    home: InHomes = None,
-    homes: SomeHomes = None,
-    kb: options.Kb = None,
-    size: NodesWanted = None,
-    limit: options.Limit = None,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
+    sources: list[Path] | None = None,
+    out: Path = _OUT,
+    seed: int = 0,
+    home: list[str] | None = None,
+    homes: list[str] | None = None,
+    kb: Path | None = None,
+    size: int | None = None,
+    limit: int | None = None,
+    workers: int = 0,
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Place every valid program in homes where it runs.
 
@@ -210,16 +145,16 @@ def sample(
 
 def augment(
     context: typer.Context,
-    out: Out = _OUT,
-    seed: options.Seed = 0,
-    home: InHomes = None,
-    homes: SomeHomes = None,
-    kb: options.Kb = None,
-    variants: Variants = 3,
-    target: Target = 0,
-    workers: Jobs = 0,
-    strict: options.Strict = False,
-    as_json: options.Json = False,
+    out: Path = _OUT,
+    seed: int = 0,
+    home: list[str] | None = None,
+    homes: list[str] | None = None,
+    kb: Path | None = None,
+    variants: int = 3,
+    target: int = 0,
+    workers: int = 0,
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Perturb the preconditions of programs, run them, and repair the failures.
 
@@ -307,12 +242,26 @@ def _settings(chosen: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _print(found: Funnel, out: Path, *, whole: bool) -> None:
+    from hearth.pipelines.engine.stages import RECORDS
+
     rows = [
-        (name, counts.records_in, counts.through, counts.rejected, counts.rows.total(), _reasons(counts.codes))
+        (
+            name,
+            *(counts.records_in, counts.through, counts.rejected, counts.partial, counts.rows.total()),
+            RECORDS[name],
+            _reasons(counts.codes),
+        )
         for name, counts in found.stages.items()
     ]
+    from hearth.pipelines.readers.columns import shown
+
     sys.stdout.write("\n")
-    output.table(("stage", "records in", "passed", "rejected", "rows out", "reasons"), rows)
+    for place, columns in found.columns.items():
+        print(output.shown(shown(place, columns)))
+    for line in found.unread:
+        print(output.shown(f"Not read: {line}"))
+    head = ("records in", "passed", "rejected", "parts rejected", "rows out", "records are", "reasons")
+    output.table(("stage", *head), rows)
     if whole and found.dataset:
         command = Path(sys.argv[0]).name
         program = "python cli.py" if command == "cli.py" else "hearth"

@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from hearth.commands import inputs, options, output
+from hearth.commands import inputs, output
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_programs
-from hearth.storage.inputs import read_input
+from hearth.storage.input_files import placed, read_input
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
     from hearth.schemas.program import Program
-
-Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Program files; `-` reads standard input.")]
-Affordances = Annotated[bool, typer.Option("--affordances", help="Also report objects that do not afford an action.")]
-
-
-Lint = Annotated[bool, typer.Option("--lint", help="Also warn of contradictions and missing steps.")]
-Fix = Annotated[bool, typer.Option("--fix", help="Make the safe corrections in the files and show a diff.")]
-DryRun = Annotated[bool, typer.Option("--diff", help="Show the diff of --fix without changing the files.")]
+    from hearth.storage.rejects import Reject
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +34,22 @@ class Checked:
 
 
 def check(
-    files: Files,
-    affordances: Affordances = False,
-    lint: Lint = False,
-    fix: Fix = False,
-    diff: DryRun = False,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
+    files: list[Path],
+    affordances: bool = True,
+    lint: bool = False,
+    fix: bool = False,
+    diff: bool = False,
+    columns: str = "",
+    kb: Path | None = None,
+    as_json: bool = False,
 ) -> None:
-    """Check program files and underline the faults.
+    """Check programs and underline the faults.
 
     All faults of all files are reported: lines that are not steps, instances that are not numbers, unknown actions and
-    objects, a wrong number of objects. A file may hold several programs. The status is 1 if there is a fault. With
-    --lint: states set twice, objects used without a walk to them, programs without an effect.
+    objects, a wrong number of objects, objects that do not afford the action or are given twice, plans that are not
+    understood. A file may hold several programs, in any form that `build` reads. The status is 1 if there is a fault.
+    --fix corrects program text. With --lint: states set twice, objects used without a walk to them, programs without an
+    effect.
 
     \b
     Examples:
@@ -62,9 +58,8 @@ def check(
     """
     known = inputs.read_knowledge(kb)
     diffs = {file: _fix(file, known, write=fix) for file in files} if fix or diff else {}
-    checked = [
-        replace(check_file(file, known, affordances=affordances, lint=lint), diff=diffs.get(file, "")) for file in files
-    ]
+    how = {"affordances": affordances, "lint": lint}
+    checked = [replace(check_file(file, known, columns, **how), diff=diffs.get(file, "")) for file in files]
     faults = sum(len(each.faults) for each in checked)
     if as_json:
         output.emit({"files": [_json(each) for each in checked], "faults": faults})
@@ -74,14 +69,11 @@ def check(
 
 
 def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
-    """Correct one file if it is text; the difference as a diff."""
+    """Correct one file if it is program text; the difference as a diff."""
     from hearth.pipelines.checks import fixes
     from hearth.storage.files import write_bytes
 
-    if str(path) == "-" or not path.is_file():
-        return ""
-    text = decode(read_input(path), str(path))
-    if isinstance(text, Diagnostic):
+    if not path.is_file() or (text := _program_text(path, str(path))) is None:
         return ""
     new = fixes.fixed(text, knowledge)
     if write and new != text:
@@ -89,16 +81,60 @@ def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
     return fixes.difference(text, new, str(path))
 
 
-def check_file(path: Path, knowledge: Knowledge, *, affordances: bool = False, lint: bool = False) -> Checked:
-    """Read one file and find all its faults; a file that can't be read is a fault too."""
-    name = "standard input" if path == Path("-") else str(path)
+def _program_text(path: Path, name: str) -> str | None:
+    """The text of a file that is nothing but programs; None for any other form.
+
+    Raises:
+        HearthError: it can't be read.
+    """
+    from hearth.pipelines.readers import text
+    from hearth.pipelines.readers.recognise import recognise
+
+    if not path.is_file() or [entry.reader for entry in recognise(path, name)] != [text.NAME]:
+        return None
+    found = decode(read_input(path), name)
+    return found if isinstance(found, str) else None
+
+
+def check_file(
+    path: Path, knowledge: Knowledge, columns: str = "", *, affordances: bool = False, lint: bool = False
+) -> Checked:
+    """Read an input of any form and find all faults of its programs; one that can't be read is a fault too."""
+    name = inputs.name_of(path)
     try:
-        text = decode(read_input(path), name)
+        with placed(path) as place:
+            text = _program_text(place, name)
+            if text is not None:
+                # Parsed as a whole, so that a line that is too long hides no other fault.
+                return check_text(text, knowledge, name, affordances=affordances, lint=lint)
+            found = inputs.read_programs(place, knowledge, name, columns)
+            return _check_programs(found, name, knowledge, affordances=affordances, lint=lint)
     except HearthError as error:
-        return Checked(name, 0, 0, error.diagnostics)
-    if isinstance(text, Diagnostic):
-        return Checked(name, 0, 0, (text,))
-    return check_text(text, knowledge, name, affordances=affordances, lint=lint)
+        return Checked(name, 0, 0, tuple(fault.at(name) for fault in error.diagnostics))
+
+
+def _check_programs(
+    given: Iterable[inputs.Given | Reject], name: str, knowledge: Knowledge, *, affordances: bool, lint: bool
+) -> Checked:
+    from hearth.kb import grammar
+    from hearth.storage.rejects import Reject
+
+    programs = steps = 0
+    faults: list[Diagnostic] = []
+    warnings: list[Diagnostic] = []
+    for found in given:
+        if isinstance(found, Reject):
+            # A repeated program is read once by `build`, but its text has no fault.
+            repeated = found.code == Code.DUPLICATE
+            faults += () if repeated else found.diagnostics
+            warnings += found.diagnostics if repeated and lint else ()
+            continue
+        programs, steps = programs + 1, steps + len(found.program.steps)
+        faults += found.faults
+        faults += grammar.affordances(found.program, knowledge, found.place) if affordances else ()
+        warnings += found.warnings
+        warnings += _warnings(found.program, knowledge, found.place, []) if lint else ()
+    return Checked(name, programs, steps, tuple(faults), tuple(warnings))
 
 
 def check_text(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import importlib
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import inputs, options, output
+from hearth.commands import inputs, output
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -19,26 +19,36 @@ if TYPE_CHECKING:
 
 app = typer.Typer(help="Descriptions and programs: statistics, synthesis, ratings and error detection.")
 
-Count = Annotated[int, typer.Argument(metavar="[N]", min=1, help="Number of programs.")]
-Out = Annotated[
-    Path | None, typer.Option("--out", "-o", metavar="FILE", help="The file to write; standard output if omitted.")
-]
+
+@app.command()
+def template(out: Path | None = None, as_json: bool = False) -> None:
+    """Write a table to fill in, with a program a row, that `build` reads.
+
+    \b
+    Example:
+      python cli.py corpus template --out mine.csv
+    """
+    from importlib.resources import files
+
+    from hearth.storage.files import write_bytes
+
+    text = (files("hearth.data_raw") / "template.csv").read_text("utf-8")
+    if out is not None:
+        write_bytes(out, text.encode())
+    if out is None or as_json:
+        output.say(text.rstrip("\n"), {"out": out, "template": text}, as_json)
 
 
 @app.command()
 def synthesize(
-    count: Count = 5_193,
-    seed: options.Seed = 0,
-    actions: Annotated[
-        str, typer.Option("--actions", metavar="animated|all", help="The 14 actions that the thesis animates, or all.")
-    ] = "animated",
-    descriptions: Annotated[int, typer.Option(metavar="N", min=1, help="Descriptions of each program.")] = 2,
-    grammar: Annotated[
-        Path | None, typer.Option("--grammar", metavar="FILE", help="A grammar instead of ours.")
-    ] = None,
-    out: Out = None,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
+    count: int = 5_193,
+    seed: int = 0,
+    actions: str = "animated",
+    descriptions: int = 2,
+    grammar: Path | None = None,
+    out: Path | None = None,
+    kb: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Draw distinct programs with descriptions from a probabilistic grammar, as JSON Lines that `build` reads.
 
@@ -67,20 +77,12 @@ def synthesize(
     output.say(text, {"programs": count, "seed": seed, "file": out}, as_json)
 
 
-Sources = Annotated[
-    list[Path] | None, typer.Argument(metavar="[DATASET]...", help="A dataset, or any source; our corpus if none.")
-]
-
-
 @app.command()
 def stats(
-    sources: Sources = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", "-o", metavar="DIR", help="The folder for the figures and for the numbers as Parquet."),
-    ] = None,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
+    sources: list[Path] | None = None,
+    out: Path | None = None,
+    kb: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Print statistics of a corpus beside the thesis's: funnel, variety, diversity, averages, missing actions.
 
@@ -149,14 +151,7 @@ def _print_stats(found: Corpus, alike: Similarities) -> None:
 
 
 @app.command()
-def dirt(
-    key: Annotated[Path, typer.Argument(metavar="KEY", help="A CSV of the faulty records: HITId, fault.")],
-    sources: Annotated[
-        list[Path] | None, typer.Argument(metavar="[SOURCE]...", help="The sources of the key; our corpus if none.")
-    ] = None,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
-) -> None:
+def dirt(key: Path, sources: list[Path] | None = None, kb: Path | None = None, as_json: bool = False) -> None:
     """Measure the error detection in a corpus whose faults are known: precision and recall.
 
     \b
@@ -181,12 +176,7 @@ def _codes(codes: tuple[tuple[str, int], ...]) -> str:
 
 
 @app.command()
-def fuzz(
-    seconds: Annotated[float, typer.Option("--seconds", metavar="S", min=0, help="Time to run.")] = 300,
-    seed: options.Seed = 0,
-    most: Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="At most N cases.")] = None,
-    as_json: options.Json = False,
-) -> None:
+def fuzz(seconds: float = 300, seed: int = 0, most: int | None = None, as_json: bool = False) -> None:
     """Test every reader with mutated input; the status is 1 if a record caused a traceback or was lost.
 
     Prints a line for each reader: files, files refused whole, and the records of the others by outcome.
@@ -224,12 +214,12 @@ def _mutated_input() -> Any:
 
 @app.command()
 def sheet(
-    sources: Sources = None,
-    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Number of programs.")] = 100,
-    raters: Annotated[int, typer.Option("--raters", metavar="N", min=1, help="Number of raters.")] = 5,
-    seed: options.Seed = 0,
-    out: Out = None,
-    as_json: options.Json = False,
+    sources: list[Path] | None = None,
+    count: int = 100,
+    raters: int = 5,
+    seed: int = 0,
+    out: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Write a sheet on which people rate the completeness of programs (thesis 3.4.1).
 
@@ -261,14 +251,12 @@ def _drawn(sources: list[Path] | None, count: int, seed: int) -> list[tuple[str,
 
 @app.command()
 def completeness(
-    sources: Sources = None,
-    sheets: Annotated[
-        list[Path] | None, typer.Option("--sheet", metavar="FILE", help="A sheet filled in by raters.")
-    ] = None,
-    count: Annotated[int, typer.Option("--programs", metavar="N", min=1, help="Number of programs to estimate.")] = 100,
-    home: Annotated[str, typer.Option("--home", metavar="NAME", help="The home to run them in.")] = "maple",
-    seed: options.Seed = 0,
-    as_json: options.Json = False,
+    sources: list[Path] | None = None,
+    sheets: list[Path] | None = None,
+    count: int = 100,
+    home: str = "maple",
+    seed: int = 0,
+    as_json: bool = False,
 ) -> None:
     """Estimate the completeness of programs by the steps that repairs insert, beside raters and the thesis's 64/28/8%.
 

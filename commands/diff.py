@@ -4,23 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from hearth.commands import options, output
+from hearth.commands import output
 
 if TYPE_CHECKING:
     from hearth.datasets.diff import TableDifference
 
-First = Annotated[Path, typer.Argument(metavar="A", help="A dataset, or a build's folder.")]
-Second = Annotated[Path, typer.Argument(metavar="B", help="Another.")]
-Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Print at most N rows a table and kind; 0: all.")]
 
-
-def diff(
-    first: First, second: Second, rows: Rows = 5, strict: options.Strict = False, as_json: options.Json = False
-) -> None:
+def diff(first: Path, second: Path, rows: int = 5, strict: bool = False, as_json: bool = False) -> None:
     """Print the differences between two datasets, by table and by row.
 
     \b

@@ -2,7 +2,6 @@
 
 import ctypes
 import importlib.metadata
-import importlib.util
 import os
 import platform
 import re
@@ -12,12 +11,10 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from hearth.commands import options, output
+from hearth.commands import output
 from hearth.rendering.film.quiet import quiet
+from hearth.schemas.libraries import lacking, remedy
 
 LIBRARIES = {
     "libusb-1.0.so.0": "libusb-1.0-0",
@@ -63,15 +60,15 @@ def python() -> Finding:
 
 
 def packages() -> Finding:
-    """The libraries that Hearth always needs, by their metadata, without importing them."""
-    try:
-        wanted = importlib.metadata.requires("hearth") or []
-    except importlib.metadata.PackageNotFoundError:
+    """The libraries that Hearth always needs, by its metadata, without importing them."""
+    installed = importlib.metadata.packages_distributions().get("hearth")
+    if not installed:
         return Finding("libraries", BROKEN, "Hearth itself is not installed", "run `make setup`")
+    wanted = importlib.metadata.requires(installed[0]) or []
     names = [re.split(r"[^\w.-]", line)[0] for line in wanted if ";" not in line]
-    lacking = [name for name in names if not _installed(name)]
-    if lacking:
-        return Finding("libraries", BROKEN, f"without {', '.join(lacking)}", "run `make setup`")
+    absent = [name for name in names if not _installed(name)]
+    if absent:
+        return Finding("libraries", BROKEN, f"without {', '.join(absent)}", "run `make setup`")
     return Finding("libraries", OK, f"all {len(names)} installed")
 
 
@@ -99,11 +96,11 @@ def _loads(library: str) -> bool:
 def rays() -> Finding:
     """Ray casting, by open3d with Embree."""
     cost = "no pictures; all else works"
-    if importlib.util.find_spec("open3d") is None:
-        return Finding("rays (open3d)", MISSING, "not installed", f"{cost}; x86-64 Linux: pip install open3d-cpu")
-    lacking = missing_libraries()
-    if lacking:
-        return Finding("rays (open3d)", MISSING, "system libraries", f"{cost}; apt-get install {' '.join(lacking)}")
+    if lacking("pictures"):
+        absent = ", ".join(lacking("pictures"))
+        return Finding("rays (open3d)", MISSING, f"without {absent}", f"{cost}; {remedy('pictures')}")
+    if wanted := missing_libraries():
+        return Finding("rays (open3d)", MISSING, "system libraries", f"{cost}; apt-get install {' '.join(wanted)}")
     try:
         return Finding("rays (open3d)", OK, f"open3d {_cast_one_ray()}")
     except Exception as error:  # any of its many native libraries may fail in its own way
@@ -130,15 +127,15 @@ def _cast_one_ray() -> str:
 
 def codecs() -> Finding:
     """The video codecs that OpenCV can open."""
-    if importlib.util.find_spec("cv2") is None:
-        return Finding("video (OpenCV)", BROKEN, "not installed", "no pictures, no video: run `make setup`")
+    if "cv2" in lacking("pictures"):
+        return Finding("video (OpenCV)", MISSING, "not installed", f"no pictures, no video; {remedy('pictures')}")
     import cv2
 
     with tempfile.TemporaryDirectory() as folder, quiet():
         works = [name for name, ending in CODECS.items() if _opens(name, Path(folder, f"video{ending}"))]
-    lacking = sorted(set(CODECS) - set(works))
+    closed = sorted(set(CODECS) - set(works))
     found = f"OpenCV {cv2.__version__}: {', '.join(works) or 'no codec'}"
-    return Finding("video (OpenCV)", MISSING if lacking else OK, found, f"no {', '.join(lacking)}" if lacking else "")
+    return Finding("video (OpenCV)", MISSING if closed else OK, found, f"no {', '.join(closed)}" if closed else "")
 
 
 def _opens(codec: str, path: Path) -> bool:
@@ -206,12 +203,8 @@ CHECKS: tuple[Callable[[], Finding], ...] = (
 )  # fmt: skip
 """All checks, in the order of the table."""
 
-Libraries = Annotated[
-    bool, typer.Option("--libraries", help="Only print the missing system packages of rendering, one a line.")
-]
 
-
-def doctor(libraries: Libraries = False, as_json: options.Json = False) -> None:
+def doctor(libraries: bool = False, as_json: bool = False) -> None:
     """Check libraries, codecs, disk and data, and print the consequence of each that is missing.
 
     The status is 1 only if Hearth can't work without it.
@@ -221,8 +214,8 @@ def doctor(libraries: Libraries = False, as_json: options.Json = False) -> None:
       python cli.py doctor
     """
     if libraries:
-        lacking = missing_libraries() if importlib.util.find_spec("open3d") else []
-        output.emit(lacking) if as_json else print("\n".join(lacking), end="\n" if lacking else "")
+        wanted = [] if "open3d" in lacking("pictures") else missing_libraries()
+        output.emit(wanted) if as_json else print("\n".join(wanted), end="\n" if wanted else "")
         return
     findings = [check() for check in CHECKS]
     broken = sum(finding.state == BROKEN for finding in findings)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import inputs, options, output
+from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
     from hearth.pipelines.engine.build_homes import Homes as AllHomes
@@ -18,11 +18,9 @@ app = typer.Typer(
     help="Preconditions of programs, sampled environments, and their distribution.",
 )
 
-Names = Annotated[list[str] | None, typer.Option("--home", metavar="NAME", help="Sample in this home; in all if none.")]
-
 
 @app.command()
-def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Json = False) -> None:
+def conditions(file: Path, kb: Path | None = None, as_json: bool = False) -> None:
     """Print the preconditions of a program, step by step, beside those of the release's rules.
 
     \b
@@ -63,7 +61,7 @@ def conditions(file: options.Program, kb: options.Kb = None, as_json: options.Js
 
 
 @app.command()
-def rules(source: options.Source, limit: options.Limit = None, as_json: options.Json = False) -> None:
+def rules(source: Path, limit: int | None = None, as_json: bool = False) -> None:
     """Compare the preconditions of all programs with those of the release's rules, by kind.
 
     `not needed`: every step runs without it. `refused`: a step fails with it. `missed`: only ours.
@@ -91,24 +89,15 @@ def rules(source: options.Source, limit: options.Limit = None, as_json: options.
 
 @app.command("sample")
 def sample_one(
-    file: Annotated[
-        Path | None, typer.Argument(metavar="[FILE]", help="A program that can run there; `-` reads standard input.")
-    ] = None,
-    goal: Annotated[
-        list[str] | None,
-        typer.Option("--goal", metavar="WHAT", help="A goal that is not met, as in `ON(plate, kitchen_table): 3`."),
-    ] = None,
-    home: options.HomeName = "maple",
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    nodes: Annotated[
-        int | None, typer.Option("--nodes", metavar="N", min=1, help="About N nodes; large homes are thinned.")
-    ] = None,
-    seed: options.Seed = 0,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="The file for the scene graph, .json.")
-    ] = None,
-    as_json: options.Json = False,
+    file: Path | None = None,
+    goal: list[str] | None = None,
+    home: str = "maple",
+    homes: Path | None = None,
+    kb: Path | None = None,
+    nodes: int | None = None,
+    seed: int = 0,
+    out: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Sample one environment: for a program, for a goal that can be reached and is not met, or for neither.
 
@@ -141,15 +130,13 @@ def sample_one(
 
 @app.command()
 def realism(
-    source: options.Source,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="The folder for two heat maps, as SVG.")
-    ] = None,
-    home: Names = None,
-    homes: options.Homes = None,
-    seed: options.Seed = 0,
-    limit: options.Limit = None,
-    as_json: options.Json = False,
+    source: Path,
+    out: Path | None = None,
+    home: list[str] | None = None,
+    homes: Path | None = None,
+    seed: int = 0,
+    limit: int | None = None,
+    as_json: bool = False,
 ) -> None:
     """Compare the places and states of sampled objects with those of a release's stored start graphs (figure B-4).
 
@@ -183,14 +170,12 @@ def realism(
 
 @app.command()
 def diversity(
-    file: options.Program,
-    home: options.HomeName = "maple",
-    homes: options.Homes = None,
-    samples: Annotated[
-        int, typer.Option("--samples", metavar="N", min=1, help="Number of environments to sample.")
-    ] = 1000,
-    seed: options.Seed = 0,
-    as_json: options.Json = False,
+    file: Path,
+    home: str = "maple",
+    homes: Path | None = None,
+    samples: int = 1000,
+    seed: int = 0,
+    as_json: bool = False,
 ) -> None:
     """Count the different environments among several samples for one program.
 
@@ -211,16 +196,12 @@ def diversity(
 
 @app.command()
 def preconditions(
-    source: options.Source,
-    classes: Annotated[
-        list[str] | None, typer.Option("--class", metavar="NAME", help="A class; cup and sauce_pan if none.")
-    ] = None,
-    dataset: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="A build's folder, to count its programs too.")
-    ] = None,
-    drawing: Annotated[Path | None, typer.Option("--drawing", metavar="FILE", help="Draw the bars, as .svg.")] = None,
-    limit: options.Limit = None,
-    as_json: options.Json = False,
+    source: Path,
+    classes: list[str] | None = None,
+    dataset: Path | None = None,
+    drawing: Path | None = None,
+    limit: int | None = None,
+    as_json: bool = False,
 ) -> None:
     """Print the distribution of the preconditions on some classes, before and after augmenting (figure 5-4).
 

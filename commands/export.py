@@ -1,27 +1,18 @@
 """`export`: a published dataset in another form."""
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from hearth.commands import options, output
-
-Format = Annotated[str, typer.Option("--format", "-f", metavar="FORM", help="release, nl, jsonl, code, networkx, ...")]
-Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new or empty folder.")]
-Programs = Annotated[
-    list[str] | None, typer.Option("--program", metavar="ID", help="Only this one; may be given several times.")
-]
-Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=0, help="At most N programs.")]
+from hearth.commands import output
 
 
 def export(
-    dataset: options.Dataset,
-    form: Format,
-    out: Out,
-    program: Programs = None,
-    limit: Limit = None,
-    as_json: options.Json = False,
+    dataset: Path,
+    form: str,
+    out: Path,
+    program: list[str] | None = None,
+    limit: int | None = None,
+    failures: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Write a published dataset in another form.
 
@@ -38,6 +29,6 @@ def export(
     from hearth.datasets.export.formats import COUNTED
     from hearth.datasets.export.formats import export as exported
 
-    number = exported(Dataset.open(dataset), form, out, Wanted(tuple(program or ()), limit))
+    number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
     output.say(text, {"format": form, "out": out, "count": number}, as_json)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import options, output
+from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
@@ -21,11 +21,9 @@ app = typer.Typer(
     no_args_is_help=True, add_completion=False, help="The homes: list, show, check, convert, edit and generate them."
 )
 
-Home = Annotated[str, typer.Argument(metavar="HOME", help="A home's name, a plan (.yaml) or a scene graph (.json).")]
-
 
 @app.command("list")
-def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> None:
+def list_homes(homes: Path | None = None, as_json: bool = False) -> None:
     """List the homes with their numbers of rooms, nodes and edges.
 
     \b
@@ -48,14 +46,7 @@ def list_homes(homes: options.Homes = None, as_json: options.Json = False) -> No
 
 
 @app.command()
-def show(
-    home: Home,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="Draw the floor plan: .svg or .png.")
-    ] = None,
-    homes: options.Homes = None,
-    as_json: options.Json = False,
-) -> None:
+def show(home: str, out: Path | None = None, homes: Path | None = None, as_json: bool = False) -> None:
     """Show the rooms of a home and their contents; with --out, draw its floor plan.
 
     \b
@@ -79,15 +70,7 @@ def show(
 
 
 @app.command()
-def lint(
-    home: Home,
-    layout: Annotated[
-        bool,
-        typer.Option("--layout", help="Lay a scene graph out, and report the relations that the layout can't show."),
-    ] = False,
-    homes: options.Homes = None,
-    as_json: options.Json = False,
-) -> None:
+def lint(home: str, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Report the faults of a home or of any scene graph; the status is 1 if there are any.
 
     With --layout, a graph without geometry is laid out, and every relation that the layout can't show is named; these
@@ -136,13 +119,7 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
 
 
 @app.command()
-def convert(
-    home: Home,
-    out: Annotated[Path, typer.Argument(metavar="FILE", help="`.json`: the release's layout; `.ids.csv`: node ids.")],
-    layout: Annotated[bool, typer.Option("--layout", help="Lay a scene graph out by its relations.")] = False,
-    homes: options.Homes = None,
-    as_json: options.Json = False,
-) -> None:
+def convert(home: str, out: Path, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
     A file `x.ids.csv` beside a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
@@ -164,15 +141,7 @@ def convert(
 
 
 @app.command()
-def generate(
-    rooms: Annotated[int, typer.Option("--rooms", help="Number of rooms, 3 to 9.")] = 5,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of everything else.")] = 0,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="FILE", help="A plan (.yaml), a scene graph (.json) or a drawing (.svg, .png)."),
-    ] = None,
-    as_json: options.Json = False,
-) -> None:
+def generate(rooms: int = 5, seed: int = 0, out: Path | None = None, as_json: bool = False) -> None:
     """Generate a home: rooms along a hall, furniture with clearances, objects placed by the knowledge.
 
     \b
@@ -195,16 +164,14 @@ def generate(
 
 @app.command()
 def edit(
-    home: Home,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Gets the scene graph, as .json.")],
-    add: Annotated[
-        list[str] | None, typer.Option("--add", metavar="CLASS:on:ID", help="Add a thing, on or inside another.")
-    ] = None,
-    remove: Annotated[list[int] | None, typer.Option("--remove", metavar="ID", help="Remove a thing.")] = None,
-    move: Annotated[list[str] | None, typer.Option("--move", metavar="ID:on:ID", help="Move a thing.")] = None,
-    states: Annotated[list[str] | None, typer.Option("--set", metavar="ID:STATE", help="Set a state.")] = None,
-    homes: options.Homes = None,
-    as_json: options.Json = False,
+    home: str,
+    out: Path,
+    add: list[str] | None = None,
+    remove: list[int] | None = None,
+    move: list[str] | None = None,
+    states: list[str] | None = None,
+    homes: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Add, remove and move things of a home and set states, if the knowledge allows it; options may be repeated.
 
@@ -225,46 +192,72 @@ def edit(
 
 @app.command()
 def stats(
-    generated: Annotated[
-        int, typer.Option("--generated", metavar="N", min=0, help="Number of homes to generate.")
-    ] = 28,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of the first generated home; the others follow.")] = 0,
-    homes: options.Homes = None,
-    as_json: options.Json = False,
+    generated: int = 28,
+    seed: int = 0,
+    homes: Path | None = None,
+    against: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Compare our homes, generated homes and those of a folder: room sizes, things, degrees and relations.
 
-    Generated homes have 3 to 9 rooms in turn; each is checked as by `home lint`.
+    Generated homes have 3 to 9 rooms in turn; each is checked as by `home lint`. With --against, placement_distance is
+    how differently the homes there place the same things on and in others, from 0 to 1: the total variation distance,
+    averaged over classes by their smaller counts. At the top of the JSON is that of our homes, in `against` the mean
+    of those of each home there to the others.
 
     \b
     Examples:
       python cli.py home stats --homes release_homes
+      python cli.py home stats --against release_homes
       python cli.py home stats --generated 1000
     """
     from hearth.homes import library
     from hearth.homes.procedural.generate import generate as generated_layout
     from hearth.homes.scene_graph import scene
-    from hearth.homes.statistics import beside, of_homes
+    from hearth.homes.statistics import beside, of_homes, placement_distance, places
 
     known, ours = read_knowledge(None), library.names()
-    theirs = [name for name in library.names(homes) if name not in ours] if homes else []
     groups = {
-        "ours": of_homes((_graph(name, None) for name in ours), known),
-        "generated": of_homes(
-            (scene(generated_layout(3 + k % 7, k, known), known) for k in range(seed, seed + generated)), known
-        ),
-        "theirs": of_homes((_graph(name, homes) for name in theirs), known),
+        "ours": [_graph(name, None) for name in ours],
+        "generated": [scene(generated_layout(3 + k % 7, k, known), known) for k in range(seed, seed + generated)],
+        "theirs": _homes_in(homes),
+        "against": _homes_in(against),
     }
-    found = {name: figures for name, figures in groups.items() if figures}
+    found: dict[str, Any] = {name: of_homes(graphs, known) for name, graphs in groups.items() if graphs}
     for figures in found.values():
         # Homes of different sizes are compared by edges a node.
         figures["density beside theirs, %"] = beside(figures, found.get("theirs"))
+    if reference := groups.pop("against"):
+        for name, graphs in groups.items():
+            if graphs:
+                found[name]["placement_distance"] = placement_distance(places(graphs, known), places(reference, known))
+        found["against"]["placement_distance"] = _among(reference)
     if as_json:
-        output.emit(found)
+        output.emit(found | ({"placement_distance": found["ours"]["placement_distance"]} if reference else {}))
         return
     output.table(("on average", *found), [
         (figure, *("" if figures[figure] is None else figures[figure] for figures in found.values()))
         for figure in found["ours"]])  # fmt: skip
+
+
+def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
+    from hearth.homes import library
+
+    return [_graph(name, folder) for name in library.names(folder, alone=True)] if folder else []
+
+
+def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
+    """The mean placement distance of each home to all others."""
+    from statistics import fmean
+
+    from hearth.homes.statistics import placement_distance, places
+
+    known = read_knowledge(None)
+    apart = [
+        placement_distance(places([home], known), places([other for other in homes if other is not home], known))
+        for home in homes
+    ]
+    return round(fmean(distance or 0.0 for distance in apart), 3) if len(homes) > 1 else None
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from hearth.kb.knowledge import Knowledge
+    from hearth.schemas.diagnostics import Diagnostic
+    from hearth.schemas.goals import Goal
     from hearth.schemas.program import Program
+    from hearth.schemas.row_types import IngestedRow, WrittenGroundingRow
     from hearth.simulation.world.home import Home
+    from hearth.storage.rejects import Reject
 
 
 def paths(sources: Sequence[Path] | None) -> list[str]:
@@ -31,26 +35,141 @@ def read_knowledge(overlay: Path | None) -> Knowledge:
     return overlaid(overlay)
 
 
+class Given(NamedTuple):
+    """One program of an input: names canonical, faulty steps left out, faults and warnings by line, its own home."""
+
+    program: Program
+    place: str
+    faults: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    grounding: WrittenGroundingRow | None = None
+
+    def at_home(
+        self, name: str, graph: Path | None, homes: Path | None, known: Knowledge
+    ) -> tuple[Program, Home, bool]:
+        """The program, where it takes place, and whether that is the graph that came with it, to which it is bound.
+
+        Raises:
+            HearthError: UNKNOWN_HOME, or a fault of a graph.
+        """
+        from hearth.datasets.format.codecs import graph_of
+        from hearth.grounding.binding import Binding, bind_stored
+        from hearth.simulation.world.home import Home
+        from hearth.simulation.world.world import World
+
+        if name or graph or not self.grounding or not self.grounding["start"]:
+            return self.program, read_home(name or DEFAULT_HOME, graph, homes, known), False
+        place = Home.from_graph(graph_of(self.grounding["start"]), self.grounding["home"], known)
+        found = bind_stored(self.program, World.start(place))
+        return found.apply(self.program) if isinstance(found, Binding) else self.program, place, True
+
+
+DEFAULT_HOME = "maple"
+
+
 def read_program(file: Path, known: Knowledge) -> Program:
-    """The first program of a file, names canonical.
+    """The first program of an input; see `read_given`."""
+    return read_given(file, known).program
+
+
+def read_given(file: Path, known: Knowledge, number: int = 1, strict: bool = False, columns: str = "") -> Given:
+    """A program of an input of any form that `build` reads; a faulty step is left out, with a warning on stderr.
+
+    Args:
+        file: a file or folder; `-` is standard input.
+        known: the grammar.
+        number: which of its programs, from 1.
+        strict: refuse a program with a faulty step.
+        columns: of a table, or keys of JSON, as in `title=Task,program=Plan`.
 
     Raises:
-        HearthError: every fault of the file.
+        HearthError: every fault of a program without a step that can be used, or of an input without a program.
     """
-    from hearth.kb import grammar
-    from hearth.schemas.decoding import decode
-    from hearth.schemas.diagnostics import Diagnostic, HearthError
-    from hearth.schemas.syntax import parse_program
-    from hearth.storage.inputs import read_input
+    from hearth.commands import output
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
+    from hearth.storage.input_files import placed
+    from hearth.storage.rejects import Reject
 
-    text = decode(read_input(file), str(file))
-    if isinstance(text, Diagnostic):
-        raise HearthError(text)
-    written, faults = parse_program(text, str(file))
-    program, wrong = grammar.check(written, known, str(file), text.split("\n"))
-    if faults or wrong:
-        raise HearthError((*faults, *wrong))
-    return program
+    refused: list[Diagnostic] = []
+    programs: list[Given] = []
+    with placed(file) as path:
+        for found in read_programs(path, known, name_of(file), columns):
+            if isinstance(found, Reject):
+                refused += found.diagnostics
+            else:
+                programs.append(found)
+            if len(programs) > number:
+                output.note(f"{file} holds further programs; this is number {number}, `--program N` takes another")
+                break
+    if len(programs) < number:
+        message = f"it holds {output.counted(len(programs), 'program')}" if programs else "no program in it"
+        raise HearthError(refused or HearthError.of(Code.EMPTY, message, file=str(file)).diagnostics)
+    given = programs[number - 1]
+    if given.faults and (strict or not given.program.steps):
+        raise HearthError(given.faults)
+    output.report((*given.faults, *given.warnings), kind="warning")
+    if given.faults:
+        lines = output.counted(len({fault.line for fault in given.faults}), "line")
+        output.note(f"Left out: {lines}; with `--strict` such a program is refused.")
+    return given
+
+
+def read_programs(path: Path, known: Knowledge, name: str, columns: str = "") -> Iterator[Given | Reject]:
+    """The programs of a file or folder that is called `name` in diagnostics, and rejects for what is none.
+
+    Raises:
+        HearthError: nothing in it can be read.
+    """
+    from hearth.commands import output
+    from hearth.pipelines import ingest
+    from hearth.pipelines.readers.columns import FieldColumns, read_columns, shown
+    from hearth.pipelines.readers.item import Source
+    from hearth.storage.rejects import Reject
+
+    tables: dict[str, FieldColumns] = {}
+    for _, item in ingest.items([Source(name, path)], read_columns(columns), tables):
+        while tables:
+            output.note(shown(*tables.popitem()))
+        for row in ingest.read(item):
+            if isinstance(row, Reject):
+                yield row
+            elif row["kind"] == "program":
+                yield _given(row, known)
+
+
+def name_of(file: Path) -> str:
+    """What a file is called in diagnostics."""
+    return "standard input" if str(file) == "-" else str(file)
+
+
+def _given(row: IngestedRow, known: Knowledge) -> Given:
+    from dataclasses import replace
+
+    from hearth.kb import grammar
+    from hearth.kb.language.numbered_steps import parse_steps
+    from hearth.pipelines.readers import plans
+    from hearth.schemas.syntax import parse_program
+
+    text, before, place = row["text"] or "", row["line"] or 0, row["place"]
+    own = next(iter(row["groundings"] or ()), None)
+    if row["origin"] == plans.NAME:
+        steps = parse_steps(text, before, place, known)
+        return Given(_titled(steps.program, row), place, steps.faults, steps.warnings, own)
+    written, faults = parse_program(text, place)
+    program, wrong = grammar.check(written, known, place, text.split("\n"))
+    bad = {fault.line for fault in wrong}
+    kept = [number for number, line in enumerate(program.lines) if line not in bad]
+    steps_kept, lines = tuple(program.steps[n] for n in kept), tuple(program.lines[n] + before for n in kept)
+    moved = sorted((replace(fault, line=fault.line + before) for fault in (*faults, *wrong)), key=lambda f: f.line)
+    return Given(_titled(replace(program, steps=steps_kept, lines=lines), row), place, tuple(moved), (), own)
+
+
+def _titled(program: Program, row: IngestedRow) -> Program:
+    from dataclasses import replace
+
+    title, description = row["title"] or program.title, row["description"] or program.description
+    return replace(program, title=title, description=description)
 
 
 def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledge) -> Home:
@@ -65,3 +184,35 @@ def read_home(name: str, graph: Path | None, homes: Path | None, known: Knowledg
     if graph is not None:
         return Home.from_graph(library.graph_of(graph, known), graph.stem, known)
     return Home.from_graph(library.load_graph(name, known, homes), name, known)
+
+
+def read_goals(goals: Sequence[str], home: Home) -> Goal:
+    """All that some goals ask for; `@FILE` is a goal in a file, as text or as JSON.
+
+    Raises:
+        HearthError: the first fault, with its place.
+    """
+    from hearth.schemas.goals import Goal
+    from hearth.simulation.goal_text import read_goal
+
+    found = Goal()
+    for text in goals:
+        inside = text.startswith("@")
+        found &= read_goal(_goal_file(text[1:]) if inside else text, home, text[1:] if inside else "--goal")
+    return found
+
+
+def _goal_file(file: str) -> Any:
+    from pathlib import Path
+
+    from hearth.pipelines.readers.document import parsed
+    from hearth.schemas.decoding import decode
+    from hearth.schemas.diagnostics import Diagnostic, HearthError
+    from hearth.storage.input_files import read_input
+    from hearth.storage.rejects import Reject
+
+    text = decode(read_input(Path(file)), file)
+    found = parsed(text, file, 1) if isinstance(text, str) and text.lstrip().startswith("{") else text
+    if isinstance(found, Diagnostic | Reject):
+        raise HearthError(found if isinstance(found, Diagnostic) else found.diagnostics)
+    return found

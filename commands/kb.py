@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import options, output
+from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
 from hearth.schemas.diagnostics import HearthError
 
@@ -21,13 +21,11 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-Name = Annotated[str, typer.Argument(metavar="NAME", help="A name or synonym, in any case.")]
-Many = Annotated[bool, typer.Option("--all", help="Show every row instead of the first ones.")]
 _SHOWN = 20
 
 
 @app.command()
-def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: options.Json = False) -> None:
+def show(name: str, every: bool = False, kb: Path | None = None, as_json: bool = False) -> None:
     """Show everything known about an object, or about an action if no object has the name.
 
     \b
@@ -48,7 +46,7 @@ def show(name: Name, every: Many = False, kb: options.Kb = None, as_json: option
 
 
 @app.command()
-def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> None:
+def action(name: str, kb: Path | None = None, as_json: bool = False) -> None:
     """Show an action: objects, preconditions, effects, phrases and repairs.
 
     \b
@@ -67,20 +65,16 @@ def action(name: Name, kb: options.Kb = None, as_json: options.Json = False) -> 
 
 @app.command()
 def find(
-    can: Annotated[
-        list[str] | None, typer.Option("--can", metavar="ACTION", help="An action can be done to it.")
-    ] = None,
-    on: Annotated[str, typer.Option("--on", metavar="PLACE", help="It may be on this.")] = "",
-    inside: Annotated[str, typer.Option("--in", metavar="PLACE", help="It may be in this.")] = "",
-    near: Annotated[str, typer.Option("--near", metavar="PLACE", help="It may be near this.")] = "",
-    room: Annotated[str, typer.Option("--room", metavar="ROOM", help="It is found in this room.")] = "",
-    has: Annotated[list[str] | None, typer.Option("--has", metavar="PROPERTY", help="It has this property.")] = None,
-    may_be: Annotated[
-        list[str] | None, typer.Option("--state", metavar="STATE", help="It may be in this state.")
-    ] = None,
-    kind: Annotated[str, typer.Option("--kind", metavar="KIND", help="It is one of this kind.")] = "",
-    kb: options.Kb = None,
-    as_json: options.Json = False,
+    can: list[str] | None = None,
+    on: str = "",
+    inside: str = "",
+    near: str = "",
+    room: str = "",
+    has: list[str] | None = None,
+    may_be: list[str] | None = None,
+    kind: str = "",
+    kb: Path | None = None,
+    as_json: bool = False,
 ) -> None:
     """Find the objects that meet all conditions, ordered by frequency if a place is given.
 
@@ -103,12 +97,7 @@ def find(
 
 
 @app.command()
-def path(
-    first: Annotated[str, typer.Argument(metavar="FROM")],
-    second: Annotated[str, typer.Argument(metavar="TO")],
-    kb: options.Kb = None,
-    as_json: options.Json = False,
-) -> None:
+def path(first: str, second: str, kb: Path | None = None, as_json: bool = False) -> None:
     """Show the most specific chain of facts that relates two things, actions or kinds.
 
     \b
@@ -133,7 +122,7 @@ def path(
 
 
 @app.command()
-def lint(kb: options.Kb = None, as_json: options.Json = False) -> None:
+def lint(kb: Path | None = None, as_json: bool = False) -> None:
     """Check the knowledge for contradictions; the status is 1 if there are any.
 
     \b
@@ -154,14 +143,7 @@ def lint(kb: options.Kb = None, as_json: options.Json = False) -> None:
 
 
 @app.command()
-def diff(
-    other: Annotated[
-        Path, typer.Argument(metavar="OTHER", help="The release's five JSON files, or a folder like ours.")
-    ],
-    every: Annotated[bool, typer.Option("--all", help="List explained differences as well.")] = False,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
-) -> None:
+def diff(other: Path, every: bool = False, kb: Path | None = None, as_json: bool = False) -> None:
     """Compare with other knowledge fact by fact, with the reason of each deliberate difference.
 
     The status is 1 if a fact of the other is missing here without a reason.
@@ -185,17 +167,7 @@ def diff(
 
 
 @app.command()
-def mine(
-    dataset: Annotated[
-        Path, typer.Argument(metavar="DATASET", help="A published dataset folder, or its programs table.")
-    ],
-    least: Annotated[int, typer.Option("--least", min=1, help="Programs in which a fact must hold.")] = 3,
-    confidence: Annotated[
-        float, typer.Option("--confidence", min=0, max=1, help="Share of programs in which it must hold.")
-    ] = 0.3,
-    kb: options.Kb = None,
-    as_json: options.Json = False,
-) -> None:
+def mine(dataset: Path, least: int = 3, confidence: float = 0.3, kb: Path | None = None, as_json: bool = False) -> None:
     """Propose new facts from a dataset's programs, as lines to review and add.
 
     \b
@@ -220,13 +192,7 @@ def mine(
 
 
 @app.command()
-def export(
-    form: Annotated[str, typer.Argument(metavar="FORM", help="table (Markdown), pddl, graphml or duckdb.")],
-    to: Annotated[
-        Path | None, typer.Option("--to", metavar="FILE", help="The file to write; standard output if omitted.")
-    ] = None,
-    kb: options.Kb = None,
-) -> None:
+def export(form: str, to: Path | None = None, kb: Path | None = None) -> None:
     """Write the knowledge in another form: the table of actions, the PDDL domain, the graph, a database.
 
     \b

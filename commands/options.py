@@ -1,30 +1,52 @@
-"""Options and arguments of several commands, each declared once; those of one command are in its file."""
+"""Flags, names of values and help of the commands' options and arguments, from `options.yaml`.
+
+A command is a function with plain types and defaults; `described` adds the rest by the names of its parameters.
+"""
 
 import os
-from pathlib import Path
-from typing import Annotated
+from collections.abc import Callable
+from functools import cache
+from inspect import Parameter, signature
+from typing import Annotated, Any, get_origin
 
 import typer
 
-_HOMES = "A folder of homes laid over ours."
+from hearth.schemas.yaml_extent import packaged
+
+_Entries = dict[str, dict[str, Any]]
 
 
-def processes(count: int) -> int:
+@cache
+def _table() -> dict[str, _Entries]:
+    """Entries by file of commands, and those for all files as `shared`."""
+    table: dict[str, _Entries] = packaged("hearth.commands", "options.yaml")
+    return table
+
+
+def described(command: Callable[..., Any]) -> None:
+    """Give the parameters of a command their entries; a parameter without one stays as it is."""
+    own, shared = _table().get(command.__module__.rpartition(".")[2], {}), _table()["shared"]
+
+    def entered(parameter: Parameter) -> Parameter:
+        name = parameter.name
+        entry = own.get(f"{command.__name__}.{name}") or own.get(name) or shared.get(name)
+        if entry is None or get_origin(parameter.annotation) is Annotated:
+            return parameter
+        return parameter.replace(annotation=Annotated[parameter.annotation, _parameter(**entry)])
+
+    given = signature(command, eval_str=True)
+    command.__signature__ = given.replace(  # type: ignore[attr-defined]
+        parameters=[entered(parameter) for parameter in given.parameters.values()]
+    )
+
+
+def _parameter(*, flags: list[str] | None = None, processes: bool = False, **fields: Any) -> Any:
+    """An option with these flags, or an argument if there are none."""
+    if processes:
+        fields["callback"] = _processes
+    return typer.Option(*flags, **fields) if flags else typer.Argument(**fields)
+
+
+def _processes(count: int) -> int:
     """The number of processes: 0 means one for each core."""
     return count or os.cpu_count() or 1
-
-
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document for machines instead of text.")]
-Strict = Annotated[bool, typer.Option("--strict", help="Exit with status 1 if anything was rejected.")]
-Kb = Annotated[Path | None, typer.Option("--kb", metavar="DIR", help="A folder of knowledge laid over ours.")]
-Homes = Annotated[Path | None, typer.Option("--homes", metavar="DIR", help=_HOMES)]
-HomeName = Annotated[str, typer.Option("--home", metavar="NAME", help="A home of ours, or of --homes.")]
-Graph = Annotated[Path | None, typer.Option("--graph", metavar="FILE", help="A scene graph as the release writes it.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all random choices.")]
-Limit = Annotated[int | None, typer.Option("--limit", metavar="N", min=1, help="Read at most N programs.")]
-Workers = Annotated[
-    int, typer.Option("--workers", "-j", metavar="N", min=0, callback=processes, help="Processes; 0: one a core.")
-]
-Program = Annotated[Path, typer.Argument(metavar="FILE", help="A program file; `-` reads standard input.")]
-Source = Annotated[Path, typer.Argument(metavar="SOURCE", help="Programs: a release, a folder or a file.")]
-Dataset = Annotated[Path, typer.Argument(metavar="DATASET", help="A build's folder, or the dataset inside it.")]

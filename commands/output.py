@@ -67,6 +67,11 @@ def say(text: str, document: Any, as_json: bool) -> None:
     emit(document) if as_json else print(text)
 
 
+def note(text: str) -> None:
+    """Print information about the work itself, beside its result."""
+    print(shown(text), file=sys.stderr)
+
+
 def records(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     """Print rows as a table with their keys as columns."""
     if rows:

@@ -1,17 +1,11 @@
 """`plan`: solves a dataset's problems with a planner and runs the plans in the engine."""
 
-from typing import Annotated
+from pathlib import Path
 
-import typer
-
-from hearth.commands import options, output
-
-Problems = Annotated[int, typer.Option("--problems", "-n", metavar="N", min=1, help="Number of executions.")]
+from hearth.commands import output
 
 
-def plan(
-    dataset: options.Dataset, problems: Problems = 200, workers: options.Workers = 0, as_json: options.Json = False
-) -> None:
+def plan(dataset: Path, problems: int = 200, workers: int = 0, as_json: bool = False) -> None:
     """Solve planning problems of a dataset with Fast Downward, and run the plans in the engine.
 
     Problems are those of `export --format pddl`, spread over the executions of the dataset. Each is read by

@@ -2,23 +2,20 @@
 
 from datetime import date, datetime, time
 from decimal import Decimal
-from typing import Annotated, Any
+from pathlib import Path
+from typing import Any
 
-import typer
-
-from hearth.commands import options, output
-
-Sql = Annotated[str, typer.Argument(metavar="SQL", help="One query; `-` reads it from standard input.")]
-Rows = Annotated[int, typer.Option("--rows", metavar="N", min=0, help="Print at most N rows; 0 for all.")]
+from hearth.commands import output
 
 
-def query(dataset: options.Dataset, sql: Sql, rows: Rows = 100, as_json: options.Json = False) -> None:
+def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> None:
     """Query a published dataset in SQL.
 
     Tables: activities, descriptions, programs, steps, homes, home_nodes, home_edges, environments, executions, ticks,
-    repairs, splits, sketches, frames, vocabulary, rejects, ledger. Macros: program_text(program_id),
-    graph_nodes(execution_id, tick), graph_edges(execution_id, tick), final_state(execution_id). View start_relations:
-    edges per relation at the start of all executions. The dataset is opened read-only.
+    perturbations, repairs, splits, sketches, frames, videos, vocabulary, rejects, ledger. Macros:
+    program_text(program_id), graph_nodes(execution_id, tick), graph_edges(execution_id, tick),
+    final_state(execution_id). View start_relations: edges per relation at the start of all executions. The dataset is
+    opened read-only.
 
     \b
     Examples:

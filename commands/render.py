@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-import typer
-
-from hearth.commands import inputs, options, output
+from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,59 +14,28 @@ if TYPE_CHECKING:
     from hearth.rendering.cameras.visibility import TickVisibility
     from hearth.rendering.film.snapshots import Snapshot
     from hearth.schemas.graph import EnvironmentGraph
+    from hearth.schemas.program import Program
     from hearth.simulation.engine import Execution
-
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A program file.")]
-HomeName = Annotated[
-    str, typer.Option("--home", metavar="NAME", help="A home; without geometry it is laid out by its relations.")
-]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="The folder for the pictures.")]
-OutFile = Annotated[Path, typer.Option("--out", metavar="FILE", help="A PNG file.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of bodies, colours and added objects.")]
-Hour = Annotated[float, typer.Option("--hour", metavar="H", help="Time of day, 0 to 24.")]
-Fine = Annotated[bool, typer.Option("--fine", help="Smooth edges and soft shadows; four times slower.")]
-Width = Annotated[
-    int, typer.Option("--width", metavar="PX", min=32, max=1920, help="Width of a picture; the height is 3/4 of it.")
-]
-
-
-Mode = Annotated[Literal["snapshots", "video"], typer.Option("--mode", help="One picture a step, or a film.")]
-Cameras = Annotated[
-    str,
-    typer.Option("--cameras", metavar="NAMES", help="Cameras of the video: auto, top, first, third, kitchen.54.1, ..."),
-]
-Fps = Annotated[float, typer.Option("--fps", metavar="N", min=5, max=30, help="Pictures a second of the video.")]
-
-
-Vary = Annotated[
-    bool,
-    typer.Option("--vary", help="Vary light, positions, speed and cameras of the video by the seed, and report them."),
-]
-Names = Annotated[
-    str,
-    typer.Option(
-        "--modalities",
-        metavar="NAMES",
-        help="Of snapshots: rgb, depth, instance_ids, class_ids, normals, flow, camera, boxes, poses, graph.",
-    ),
-]
 
 
 def program(
-    file: File,
-    out: Out,
-    home: HomeName = "maple",
-    homes: options.Homes = None,
-    mode: Mode = "snapshots",
-    cameras: Cameras = "auto",
-    seed: Seed = 0,
-    hour: Hour = 10.0,
-    width: Width = 320,
-    fps: Fps = 15.0,
-    fine: Fine = False,
-    vary: Vary = False,
-    modalities: Names = "rgb,instance_ids",
-    as_json: options.Json = False,
+    file: Path,
+    out: Path,
+    home: str = "maple",
+    homes: Path | None = None,
+    mode: Literal["snapshots", "video"] = "snapshots",
+    cameras: str = "auto",
+    seed: int = 0,
+    hour: float = 10.0,
+    width: int = 320,
+    fps: float = 15.0,
+    fine: bool = False,
+    vary: bool = False,
+    modalities: str = "rgb,instance_ids",
+    which: int = 1,
+    columns: str = "",
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
@@ -82,7 +49,7 @@ def program(
     from hearth.rendering.scene.with_geometry import with_geometry
 
     known = default()
-    execution = _execution(file, home, homes, seed, known)
+    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, homes, seed, known)
     place = with_geometry(library.load_graph(home, known, homes), home, known)
     out.mkdir(parents=True, exist_ok=True)
     title, size = f"{execution.program.title}, in {home}", (width, width * 3 // 4)
@@ -178,7 +145,7 @@ def _sheet(shooting: Shooting, frames: list[Any]) -> str:
     return str(path)
 
 
-def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> None:
+def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
     """Draw every model, variant and state at 128 pixels.
 
     \b
@@ -195,14 +162,7 @@ def sheet(out: OutFile, fine: Fine = False, as_json: options.Json = False) -> No
     output.say(f"Every model ({len(labels)}) is in {out}.", {"file": out, "models": labels}, as_json)
 
 
-def visible(
-    sources: Annotated[
-        list[Path] | None, typer.Argument(metavar="SOURCE...", help="Sources; our corpus if none.")
-    ] = None,
-    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Number of executable programs.")] = 30,
-    seed: Seed = 0,
-    as_json: options.Json = False,
-) -> None:
+def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, as_json: bool = False) -> None:
     """Count the steps with all named objects visible in the chosen picture, over programs drawn from a corpus.
 
     \b
@@ -261,14 +221,14 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
             return
 
 
-def _execution(file: Path, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
+def _execution(program: Program, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:
     from hearth.grounding.trial import attempt
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Failure
 
-    trial = attempt(inputs.read_program(file, known), inputs.read_home(home, None, homes, known), seed)
+    trial = attempt(program, inputs.read_home(home, None, homes, known), seed)
     if isinstance(trial, Failure):
-        raise HearthError.of(trial.code, trial.message(), file=str(file))
+        raise HearthError.of(trial.code, trial.message())
     return trial.execution
 
 

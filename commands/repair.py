@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from difflib import ndiff
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
-from hearth.commands import options, output
-from hearth.commands.inputs import read_home, read_knowledge, read_program
+from hearth.commands import output
+from hearth.commands.inputs import read_given, read_knowledge
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -18,24 +19,20 @@ if TYPE_CHECKING:
     from hearth.repair.variants import Augmented, Pair
     from hearth.schemas.program import Program, Step
 
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of perturbations and environments.")]
-Variants = Annotated[int, typer.Option("--variants", metavar="N", min=1, help="Perturbed environments to try.")]
-Kinds = Annotated[
-    list[str] | None,
-    typer.Option("--perturb", metavar="KIND", help="Only this kind, wherever it applies; may be given several times."),
-]
-
 
 def repair(
-    file: options.Program,
-    home: options.HomeName = "maple",
-    graph: options.Graph = None,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    seed: Seed = 0,
-    variants: Variants = 1,
-    perturb: Kinds = None,
-    as_json: options.Json = False,
+    file: Path,
+    home: str = "",
+    graph: Path | None = None,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    seed: int = 0,
+    variants: int = 1,
+    perturb: list[str] | None = None,
+    which: int = 1,
+    columns: str = "",
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Perturb the preconditions of a program, and show its repairs.
 
@@ -50,8 +47,8 @@ def repair(
     from hearth.schemas.failures import Failure
 
     known = read_knowledge(kb)
-    program = read_program(file, known)
-    place = read_home(home, graph, homes, known)
+    given = read_given(file, known, which, strict, columns)
+    program, place, _ = given.at_home(home, graph, homes, known)
     found = augment(program, place, seed, program.title, Options(variants, chances=_chances(perturb)))
     if isinstance(found, Failure):
         _refuse(found, place.name, as_json)

@@ -1,18 +1,11 @@
 """`report`: a dataset as static HTML."""
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from hearth.commands import options, output
-
-Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="A new folder, or an earlier report.")]
+from hearth.commands import output
 
 
-def report(
-    dataset: options.Dataset, out: Out = Path("report_out"), workers: options.Workers = 0, as_json: options.Json = False
-) -> None:
+def report(dataset: Path, out: Path = Path("report_out"), workers: int = 0, as_json: bool = False) -> None:
     """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 
     It has the counts of records by stage, statistics with their queries, homes as floor plans, and every program with

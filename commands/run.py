@@ -3,73 +3,84 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from hearth.commands import options, output
-from hearth.commands.inputs import read_home, read_knowledge, read_program
+from hearth.commands import output
+from hearth.commands.inputs import read_given, read_goals, read_knowledge
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from hearth.grounding.trial import Trial
     from hearth.schemas.change import Change
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
+    from hearth.simulation.goals import Progress
     from hearth.simulation.motion.base_pose import HandAndBasePose
     from hearth.simulation.rules import Rules
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
-Seed = Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the objects added to the home.")]
-AsIs = Annotated[bool, typer.Option("--as-is", help="Add nothing to the home and keep its states.")]
-Explain = Annotated[
-    bool, typer.Option("--explain", help="Print the checks of each step and the facts by which they hold.")
-]
 
 _SHOWN = 6
 
 
 def run(
-    file: options.Program,
-    home: options.HomeName = "maple",
-    graph: options.Graph = None,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    seed: Seed = 0,
-    as_is: AsIs = False,
-    explain: Explain = False,
-    as_json: options.Json = False,
+    file: Path,
+    home: str = "",
+    graph: Path | None = None,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    seed: int = 0,
+    as_is: bool = False,
+    explain: bool = False,
+    goal: list[str] | None = None,
+    which: int = 1,
+    columns: str = "",
+    strict: bool = False,
+    as_json: bool = False,
 ) -> None:
     """Run a program in a home and print the changes of each step.
 
     Its objects are bound to nodes of the home if all steps can then run; else an environment is sampled, with missing
-    objects added. Prints the binding and the changes of each step. The status is 1 if a step fails.
+    objects added. Prints the binding and the changes of each step. The status is 1 if a step fails, or if a goal is
+    not reached: what holds at the end, what was done (`WATCH(television)`), in which order (`then`), or alternatives.
 
     \b
-    Example:
+    Examples:
       python cli.py run watch_tv.txt --home maple --explain
+      python cli.py run watch_tv.txt --goal "SITTING(agent) and (LOOKAT or WATCH)"
     """
     from hearth.grounding.trial import attempt
     from hearth.schemas.failures import Failure
     from hearth.simulation.rules import DEFAULT
 
     known = read_knowledge(kb)
-    program = read_program(file, known)
-    place = read_home(home, graph, homes, known)
-    trial = attempt(program, place, seed, DEFAULT, default_state=not as_is, add=not as_is)
+    given = read_given(file, known, which, strict, columns)
+    program, place, is_own = given.at_home(home, graph, homes, known)
+    trial = attempt(program, place, seed, DEFAULT, default_state=not (as_is or is_own), add=not (as_is or is_own))
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
+    progress = None if isinstance(trial, Failure) or not goal else _progress(goal, trial)
     if as_json:
-        output.emit(_json(trial, place, homes))
+        output.emit(_json(trial, place, homes) | ({"goal": _goal_json(progress)} if progress else {}))
     else:
         _print(program, trial, place, explain, homes)
-    output.status(failure is not None, strict=True)
+        if progress:
+            print("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
+    output.status(failure is not None or (progress is not None and not progress.satisfied), strict=True)
+
+
+def _progress(goal: list[str], trial: Trial) -> Progress:
+    from hearth.simulation.goals import Progress
+
+    return Progress.of(read_goals(goal, trial.execution.worlds[0].home), trial.execution)
+
+
+def _goal_json(progress: Progress) -> dict[str, Any]:
+    return {"reached": progress.satisfied, "fraction": progress.fraction, "unmet": str(progress.unmet())}
 
 
 def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, homes: Path | None) -> None:
     from hearth.schemas.failures import Failure
-    from hearth.simulation.rules import DEFAULT
 
     print(f"{program.title or 'A program'}, in {place.name}")
     if isinstance(trial, Failure):
@@ -89,7 +100,7 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
         for pose in poses[number] if poses else ():
             print(f"       {_pose(pose)}")
         if explain:
-            _print_checks(before, tick, DEFAULT)
+            _print_checks(before, tick, execution.rules)
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
 
 

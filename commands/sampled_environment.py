@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hearth.commands.inputs import read_goals
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.literals import Literal, Name
-from hearth.schemas.numbers import number_of
 
 if TYPE_CHECKING:
     from hearth.grounding.environments.sampling import Size
@@ -17,9 +15,6 @@ if TYPE_CHECKING:
     from hearth.schemas.program import Program
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
-
-_FORM = "write RELATION(class, class) or STATE(class), with a count if more than one is wanted: ON(plate, table): 3"
-_GOAL = re.compile(r"\s*(\w+)\s*\(\s*([\w:]+)\s*(?:,\s*([\w:]+)\s*)?\)\s*(?::\s*(\d+)\s*)?")
 
 
 class Drawn(NamedTuple):
@@ -38,9 +33,11 @@ def draw(program: Program | None, goals: Sequence[str], home: Home, seed: int, n
     from hearth.grounding.environments.sampling import Size
 
     if program is not None and goals:
-        _refuse("both a program and a goal are given", "give one of them")
+        raise HearthError.of(Code.SYNTAX, "both a program and a goal are given", suggestion="give one of them")
     size = Size() if nodes is None else Size.about(nodes)
-    return _for_goal(read(goals), home, seed, size) if program is None else _for_program(program, home, seed, size)
+    if program is not None:
+        return _for_program(program, home, seed, size)
+    return _for_goal(read_goals(goals, home), home, seed, size)
 
 
 def _for_program(program: Program, home: Home, seed: int, size: Size) -> Drawn:
@@ -66,35 +63,9 @@ def _for_goal(goal: Goal, home: Home, seed: int, size: Size) -> Drawn:
     environment, progress = found
     rows = [{"predicate": str(predicate), "wanted": wanted, "met": met}
             for (predicate, wanted), met in zip(goal, progress.counts, strict=True)]  # fmt: skip
+    rows += [{"predicate": str(part), "wanted": 1, "met": int(has)}
+             for part, has in zip(goal.parts, progress.has, strict=True)]  # fmt: skip
     return Drawn(environment.world, {"goal": rows})
-
-
-def read(goals: Sequence[str]) -> Goal:
-    """A goal from text: `ON(plate, kitchen_table): 3`, `CLEAN(stove)`, `HOLDS(agent, book)`.
-
-    Raises:
-        HearthError: SYNTAX.
-    """
-    from hearth.schemas.goals import Goal
-
-    return Goal(tuple(_counted(text) for text in goals))
-
-
-def _counted(text: str) -> tuple[Literal[Name], int]:
-    found = _GOAL.fullmatch(text)
-    if found is None:
-        _refuse(f"`{text}` is not a goal", _FORM)
-    name, subject, target, count = found.groups()
-    number = number_of(count or "1")
-    if number is None:
-        _refuse(f"`{count[:20]}` is not a count", _FORM)
-    terms = (subject,) if target is None else (subject, target)
-    return Literal(name.upper(), tuple(map(_word, terms))), number
-
-
-def _word(text: str) -> str | int:
-    number = number_of(text)
-    return text if number is None else number
 
 
 def _failed(failure: Failure) -> HearthError:
@@ -103,7 +74,3 @@ def _failed(failure: Failure) -> HearthError:
     if not failure.action:
         message = f"{', '.join(failure.names)}: expected {failure.expected}, found {failure.actual}"
     return HearthError(Diagnostic(failure.code, message, suggestion=hint))
-
-
-def _refuse(message: str, hint: str) -> NoReturn:
-    raise HearthError.of(Code.SYNTAX, message, suggestion=hint)

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 
-from hearth.commands import inputs, options, output
+from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
-    from hearth.scoring.bootstrap import Interval
     from hearth.scoring.evaluate import Options, Scored, Summary
-    from hearth.scoring.metrics.lcs import LcsScore
     from hearth.scoring.predictions import Pair
 
 app = typer.Typer(
@@ -24,108 +22,86 @@ app = typer.Typer(
 )
 
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="Predictions: JSON Lines or Parquet, one row for each id.")]
-References = Annotated[
-    Path | None, typer.Option("--references", metavar="FILE", help="Rows of id and reference, if FILE has none.")
-]
-Instances = Annotated[bool, typer.Option("--instances", help="Distinguish the instances of a class.")]
-Seed = Annotated[int, typer.Option("--seed", help="Seed of the 95% confidence intervals.")]
-By = Annotated[str | None, typer.Option("--by", metavar="FIELD", help="Also the means by a field of the rows.")]
-Rules = Annotated[
-    Literal["default", "replay"], typer.Option("--rules", help="`replay` reads actions as the release did.")
-]
-Match = Annotated[
-    Literal["none", "swap1", "best"], typer.Option("--match", help="How instances of a class may stand for each other.")
-]
-Scope = Annotated[
-    Literal["either", "own"], typer.Option("--scope", help="Tuples about the objects of either program, or its own.")
-]
-
-
 @app.command("lcs")
 def lcs(
-    file: File,
+    file: Path,
     *,
-    references: References = None,
-    instances: Instances = False,
-    seed: Seed = 0,
-    as_json: options.Json = False,
+    references: Path | None = None,
+    instances: bool = False,
+    seed: int = 0,
+    as_json: bool = False,
 ) -> None:
     """Longest common subsequence over the longer program's length, by step, by action and by object, and their mean.
 
-    Each row of FILE is {"id": ..., "predicted": PROGRAM, "reference": PROGRAM}; a program is a text or a list of steps.
-    A prediction is missing and scores 0 if it is null or if only the references have its id.
+    Objects are compared by class, in the columns `instances` by node, `(1.41)`; by number if a program names no node.
+    Each row of FILE is {"id": ..., "predicted": PROGRAM, "reference": PROGRAM}; a program is a text or a list of steps,
+    which may be natural language. A prediction is missing and scores 0 if it is null or if only the references have its
+    id; lines that are not steps are counted.
 
     \b
     Example:
       echo '{"id": "tv", "predicted": ["[Walk] <sofa> (1)"], "reference": ["[Sit] <sofa> (1)"]}' > mine.jsonl
       python cli.py score lcs mine.jsonl
     """
+    from functools import partial
+
     from hearth.scoring.bootstrap import intervals
-    from hearth.scoring.evaluate import lcs_of
+    from hearth.scoring.dataset_scores import read_line
+    from hearth.scoring.evaluate import METRICS, Scored, lcs_of
     from hearth.scoring.metrics.lcs import LEVELS, lcs_signature
     from hearth.scoring.predictions import read_pairs
 
-    pairs = read_pairs(file, references)
-    scores = lcs_of(pairs, instances)
-    columns = {name: [getattr(score, name) for score in scores] for name in (*LEVELS, "mean")}
+    pairs = read_pairs(file, references, partial(read_line, inputs.read_knowledge(None)))
+    scored = [Scored(pair, *both) for pair, both in zip(pairs, lcs_of(pairs, instances), strict=True)]
+    shown = {name.removeprefix("lcs_"): metric for name, metric in METRICS.items() if name.startswith("lcs_")}
+    columns = {name: [metric(each) for each in scored] for name, metric in shown.items()}
     means = intervals(columns, seed)
-    signature = lcs_signature("+".join(LEVELS), instances)
+    rows = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+    signatures = [lcs_signature("+".join(LEVELS), instances), lcs_signature("step+object", instances=True)]
+    counts = {"count": len(pairs), **{name: sum(_note(pair) == name for pair in pairs) for name in NOTES}}
     if as_json:
-        output.emit(_lcs_json(pairs, scores, means, signature))
-    else:
-        _print_lcs(pairs, scores, means, signature)
+        named = [{"id": pair.id, **row, "missing": pair.predicted is None, "unread": _unread(pair)}
+                 for pair, row in zip(pairs, rows, strict=True)]  # fmt: skip
+        output.emit({"signature": signatures[0], "signature_instances": signatures[1], **counts,
+                     "mean": means, "scores": named})  # fmt: skip
+        return
+    table = [[pair.id, *row.values(), _note(pair)] for pair, row in zip(pairs, rows, strict=True)]
+    for place, name in enumerate(("mean", "95% from", "to")):
+        table.append([name, *(found[place] for found in means.values()), ""])
+    output.table(["id", *(name.replace("_", " ") for name in means), ""], table)
+    noted = ", ".join(f"{counts[name]} {words}" for name, words in NOTES.items())
+    print(f"\n{output.counted(len(pairs), 'prediction')}, {noted}")
+    print("\n".join(signatures))
 
 
-def _lcs_json(
-    pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str
-) -> dict[str, Any]:
-    rows = [
-        {"id": pair.id, **score._asdict(), "mean": score.mean, "missing": pair.predicted is None}
-        for pair, score in zip(pairs, scores, strict=True)
-    ]
-    return {"signature": signature, **_counts(pairs), "mean": means, "scores": rows}
-
-
-def _print_lcs(pairs: Sequence[Pair], scores: Sequence[LcsScore], means: dict[str, Interval], signature: str) -> None:
-    named = zip(pairs, scores, strict=True)
-    rows: list[list[Any]] = [[pair.id, *score, score.mean, _note(pair)] for pair, score in named]
-    rows.append(["mean", *(found.mean for found in means.values()), ""])
-    rows.append(["95% from", *(found.low for found in means.values()), ""])
-    rows.append(["to", *(found.high for found in means.values()), ""])
-    output.table(["id", *means, ""], rows)
-    counts = _counts(pairs)
-    found = f"{output.counted(counts['count'], 'prediction')}, {counts['missing']} missing, {counts['empty']} empty"
-    print(f"\n{found}; {signature}")
+NOTES = {"missing": "missing", "empty": "empty", "unread": "with lines that are not steps"}
 
 
 def _note(pair: Pair) -> str:
     if pair.predicted is None:
         return "missing"
-    return "" if pair.predicted else "empty"
+    return "unread" if _unread(pair) else "" if pair.predicted else "empty"
 
 
-def _counts(pairs: Sequence[Pair]) -> dict[str, int]:
-    missing = sum(pair.predicted is None for pair in pairs)
-    return {"count": len(pairs), "missing": missing, "empty": sum(pair.predicted == () for pair in pairs)}
+def _unread(pair: Pair) -> int:
+    """The number of predicted lines that are not steps."""
+    return sum(isinstance(line, str) for line in pair.predicted or ())
 
 
 @app.command("program")
 def program(
-    file: File,
+    file: Path,
     *,
-    references: References = None,
-    graph: Annotated[
-        Path | None, typer.Option("--graph", metavar="FILE", help="The environment of rows without one.")
-    ] = None,
-    homes: options.Homes = None,
-    rules: Rules = "default",
-    match: Match = "best",
-    scope: Scope = "either",
-    instances: Instances = False,
-    seed: Seed = 0,
-    by: By = None,
-    as_json: options.Json = False,
+    references: Path | None = None,
+    graph: Path | None = None,
+    homes: Path | None = None,
+    rules: Literal["default", "replay"] = "default",
+    match: Literal["none", "swap1", "best"] = "swap1",
+    scope: Literal["either", "own"] = "own",
+    instances: bool = False,
+    seed: int = 0,
+    by: str | None = None,
+    as_json: bool = False,
 ) -> None:
     """All scores: LCS and parsability; for rows with an environment also executability, final-graph F1 and goal.
 
@@ -218,20 +194,19 @@ def _sentence(summary: Summary) -> str:
 
 @app.command("dataset")
 def dataset(
-    folder: options.Dataset,
-    file: File,
+    folder: Path,
+    file: Path,
     *,
-    split: Annotated[str, typer.Option("--split", metavar="NAME", help="A split of the dataset; all if none.")] = "",
-    part: Annotated[
-        str, typer.Option("--part", metavar="NAME", help="A part of the split; `test` takes all tests.")
-    ] = "test",
-    match: Match = "best",
-    scope: Scope = "either",
-    instances: Instances = False,
-    seed: Seed = 0,
-    by: By = None,
-    workers: options.Workers = 0,
-    as_json: options.Json = False,
+    split: str = "",
+    part: str = "test",
+    match: Literal["none", "swap1", "best"] = "swap1",
+    scope: Literal["either", "own"] = "own",
+    instances: bool = False,
+    seed: int = 0,
+    by: str | None = None,
+    failures: bool = False,
+    workers: int = 0,
+    as_json: bool = False,
 ) -> None:
     """All scores against a dataset, whose programs are the references, in its environments.
 
@@ -249,20 +224,13 @@ def dataset(
 
     how = Options(match=match, scope=scope, instances=instances, seed=seed)
     with bar("shares scored") as seen:
-        scored = score_dataset(Dataset.open(folder), file, split, part if split else "", how, workers, seen)
+        opened = Dataset.open(folder, failures)
+        scored = score_dataset(opened, file, split, part if split else "", how, workers, seen)
     _show(scored, how, by, as_json)
 
 
 @app.command("baselines")
-def baselines(
-    folder: options.Dataset,
-    *,
-    split: Annotated[str, typer.Option("--split", metavar="NAME", help="The split for training and test.")] = (
-        "activities"
-    ),
-    seed: Seed = 0,
-    as_json: options.Json = False,
-) -> None:
+def baselines(folder: Path, *, split: str = ("activities"), seed: int = 0, as_json: bool = False) -> None:
     """All scores of simple baselines on a dataset's split, beside the thesis's tables 4.4, 4.5 and 5.2.
 
     Needs scikit-learn.
@@ -286,15 +254,13 @@ def baselines(
 
 @app.command("graphs")
 def graphs(
-    predicted: Annotated[Path, typer.Argument(metavar="PREDICTED", help="The final graph after the prediction.")],
-    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="The final graph after the reference.")],
+    predicted: Path,
+    reference: Path,
     *,
-    nodes: Annotated[
-        str, typer.Option("--nodes", metavar="IDS", help="The nodes that the programs name: 41,65 or 41,65/41.")
-    ],
-    match: Match = "best",
-    scope: Scope = "either",
-    as_json: options.Json = False,
+    nodes: str,
+    match: Literal["none", "swap1", "best"] = "swap1",
+    scope: Literal["either", "own"] = "own",
+    as_json: bool = False,
 ) -> None:
     """Compare two final graphs of any origin: precision, recall and F1 over states, relations and both.
 

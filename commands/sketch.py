@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from hearth.commands import options, output
+from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
@@ -16,22 +14,15 @@ if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
     from hearth.simulation.world.home import Home
 
-Sources = Annotated[list[Path], typer.Argument(metavar="SOURCE...", help="Programs, in any known form.")]
-Judge = Annotated[
-    Path | None, typer.Option("--judge", metavar="FILE", help="Compare with these sketches, drawn by people.")
-]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of the environments.")]
-Every = Annotated[bool, typer.Option("--disagreements", help="With --judge: list the programs that differ.")]
-
 
 def sketch(
-    sources: Sources,
-    judge: Judge = None,
-    disagreements: Every = False,
-    homes: options.Homes = None,
-    kb: options.Kb = None,
-    seed: Seed = 0,
-    as_json: options.Json = False,
+    sources: list[Path],
+    judge: Path | None = None,
+    disagreements: bool = False,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    seed: int = 0,
+    as_json: bool = False,
 ) -> None:
     """Print the sketches of programs: the steps that do not depend on the environment.
 

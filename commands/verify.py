@@ -1,18 +1,12 @@
 """`verify`: checks a dataset against its manifest, and runs its executions again."""
 
 import sys
-from typing import Annotated
+from pathlib import Path
 
-import typer
-
-from hearth.commands import options, output
-
-Strict = Annotated[bool, typer.Option("--strict", help="Files and fields that no build writes are faults, too.")]
+from hearth.commands import output
 
 
-def verify(
-    dataset: options.Dataset, workers: options.Workers = 0, strict: Strict = False, as_json: options.Json = False
-) -> None:
+def verify(dataset: Path, workers: int = 0, strict: bool = False, as_json: bool = False) -> None:
     """Check a dataset: hashes, columns, counts, references, and a replay of every execution.
 
     The status is 1 if there is a fault; each is printed with its file. The catalog is made again and compared. Files

@@ -9,16 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.damage import reading
-from hearth.datasets.format.catalog import absent_tables, attach, without_zones
+from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
+from hearth.datasets.format.ids import names_of
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
+from hearth.schemas.arguments import explained
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED
 from hearth.schemas.program import Program
-from hearth.schemas.rows import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.row_types import ConditionRow, ProgramRow, RepairedRow, SketchRow, StoredRunRow
+from hearth.schemas.tables import TABLES
 from hearth.storage.files import read_json
 from hearth.storage.manifest import FORMAT, NAME
 
@@ -27,6 +30,11 @@ if TYPE_CHECKING:
 
     from hearth.datasets.tensors import Tensors
     from hearth.kb.knowledge import Knowledge
+
+
+OWN = """NOT EXISTS (SELECT 1 FROM perturbations x
+    WHERE x.environment_id = e.environment_id AND x.parent_id = e.program_id)"""
+"""The condition in SQL on rows `e` of `executions` for those that are not of originals in perturbed environments."""
 
 
 class Dataset:
@@ -44,14 +52,21 @@ class Dataset:
         [True]
     """
 
-    def __init__(self, folder: Path, manifest: dict[str, Any]) -> None:
+    def __init__(self, folder: Path, manifest: dict[str, Any], failures: bool = False) -> None:
         self.folder = folder
         self.manifest = manifest
+        self.failures = failures
         self._version = version(folder)
 
     @classmethod
-    def open(cls, path: str | Path) -> Dataset:
+    @explained
+    def open(cls, path: str | Path, failures: bool = False) -> Dataset:
         """Open a dataset, or the dataset of a build's folder; of a URL that fsspec knows, a local copy of it.
+
+        Args:
+            path: of the folder.
+            failures: whether runs, exports and scores have the executions in which the program fails, too. Queries
+                always have them.
 
         Raises:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
@@ -73,7 +88,7 @@ class Dataset:
         if content["format"] > FORMAT:
             message = f"a dataset of format {content['format']}; this version of Hearth reads {FORMAT}"
             raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion="install a newer Hearth")
-        dataset = cls(folder, content)
+        dataset = cls(folder, content, failures)
         dataset._version = opened
         return dataset
 
@@ -108,14 +123,19 @@ class Dataset:
     @cached_property
     def _attached(self) -> Any:
         with reading(self.folder):
-            return attach(self.folder, absent_tables(self.folder, self.manifest))
+            return attach(self.folder, absent_tables(self.folder, self.manifest), self.manifest["format"])
+
+    @cached_property
+    def _described(self) -> None:
+        describe(self.connection)
 
     def _reopen(self, now: tuple[int, int]) -> None:
         """Read the dataset that replaced the opened one."""
         self.manifest, self._version = read_json(self.folder / NAME) or self.manifest, now
-        for name in ("_attached", "_homes", "knowledge"):
+        for name in ("_attached", "_described", "_homes", "knowledge", "vocabulary_ids"):
             self.__dict__.pop(name, None)
 
+    @explained
     def sql(self, query: str, **parameters: Any) -> Any:
         """A query as a DuckDB relation; `$name` in it is the parameter of that name.
 
@@ -131,10 +151,13 @@ class Dataset:
 
         try:
             check_question(self.connection, query, parameters)
+            if "duckdb_" in query.lower():
+                _ = self._described
             return self.connection.sql(query, params=parameters or None)
         except duckdb.Error as error:
             raise _refused(error) from error
 
+    @explained
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
         """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too."""
         import duckdb
@@ -153,8 +176,6 @@ class Dataset:
         return bool(self.connection.extract_statements(query)[0].type.name == "EXPLAIN")
 
     def __getattr__(self, name: str) -> Any:
-        from hearth.schemas.tables import TABLES
-
         if name not in (*TABLES, "steps", "ticks"):
             raise AttributeError(f"no table `{name}`; tables are {', '.join(TABLES)}, steps and ticks")
         return steady(self.folder, lambda: self.connection.table(name))
@@ -167,10 +188,10 @@ class Dataset:
         yield from (row["program_id"] for row in self.read("SELECT program_id FROM programs ORDER BY program_id"))
 
     def __contains__(self, program_id: str) -> bool:
-        return bool(self._rows("SELECT 1 FROM programs WHERE program_id = $id", program_id))
+        return any(self._rows("SELECT 1 FROM programs WHERE program_id = $id", name) for name in names_of(program_id))
 
     def __getitem__(self, program_id: str) -> Entry:
-        """A program with its runs, repairs and sketches.
+        """A program with its runs, repairs and sketches; ids of the embedded corpus may be those of another version.
 
         Raises:
             KeyError: the id is unknown.
@@ -178,10 +199,13 @@ class Dataset:
         return steady(self.folder, lambda: self._entry(program_id))
 
     def _entry(self, program_id: str) -> Entry:
-        found = self._rows("SELECT * FROM programs WHERE program_id = $id", program_id)
-        if not found:
+        query = "SELECT * FROM programs WHERE program_id = $id"
+        found = next(filter(None, (self._rows(query, name) for name in names_of(program_id))), None)
+        if found is None:
             raise KeyError(program_id)
-        rows = self._rows("SELECT * FROM executions WHERE program_id = $id ORDER BY execution_id", program_id)
+        program_id = found[0]["program_id"]
+        query = f"SELECT * FROM executions WHERE program_id = $id AND {self.included} ORDER BY execution_id"
+        rows = self._rows(query, program_id)
         repairs = self._rows("SELECT * FROM repairs WHERE program_id = $id ORDER BY attempt", program_id)
         sketches = self._rows("SELECT * FROM sketches WHERE program_id = $id", program_id)
         with reading(self.folder):
@@ -189,6 +213,11 @@ class Dataset:
             wanted = self._named("environments", "environment_id", sorted({row["environment_id"] for row in rows}))
             runs: list[Any] = [{**row, "environment": wanted[row["environment_id"]]} for row in rows]
         return Entry(found[0], tuple(Run(self, row) for row in runs), tuple(repairs), tuple(sketches))
+
+    @property
+    def included(self) -> str:
+        """The condition in SQL on rows of `executions` that runs, exports and scores are of."""
+        return "true" if self.failures else "executable"
 
     def home(self, name: str) -> EnvironmentGraph:
         """The graph of a home, the base of its environments.
@@ -202,6 +231,7 @@ class Dataset:
     def _homes(self) -> Callable[[str], _Home]:
         return cache(partial(_Home.read, self))
 
+    @explained
     def to_tensors(self, program_ids: Iterable[str], tick: int = 0) -> Tensors:
         """Programs with all their executions as arrays for graph networks, graphs after `tick` ticks (thesis 5.4.1).
 
@@ -213,7 +243,7 @@ class Dataset:
         Examples:
             >>> tensors = hearth.load(folder).to_tensors(["text:milk.txt"])
             >>> tensors.node_class.shape, tensors.edge_index.shape[0], tensors.actions.shape
-            ((376,), 2, (1, 3))
+            ((378,), 2, (1, 3))
         """
         from hearth.datasets.tensors import GraphSample, to_tensors
 
@@ -223,7 +253,12 @@ class Dataset:
             for entry in entries
             for run in entry.runs
         )
-        return to_tensors(samples, self.rows("SELECT kind, name, id FROM vocabulary")[1])
+        return to_tensors(samples, self.vocabulary_ids)
+
+    @cached_property
+    def vocabulary_ids(self) -> list[Any]:
+        """Kind, name and id of every name that `to_tensors` writes as a number."""
+        return self.rows("SELECT kind, name, id FROM vocabulary")[1]
 
     def _named(self, table: str, key: str, ids: list[str]) -> dict[str, Any]:
         if not ids:
@@ -256,7 +291,7 @@ class Entry:
 
     Attributes:
         row: as in the table `programs`.
-        runs: its executions.
+        runs: its executions; those in which it fails only if the dataset was opened with `failures`.
         repairs: the repairs that made it from its parent, in order; empty for originals.
         sketches: the steps that people kept as its gist.
     """
@@ -346,8 +381,6 @@ class Run:
 
     def release_json(self, tick: int = 0) -> dict[str, Any]:
         """The graph as the release writes it."""
-        from hearth.schemas.graph import to_release
-
         return to_release(self.graph(tick))
 
     def networkx(self, tick: int = 0) -> networkx.MultiDiGraph:
@@ -384,9 +417,9 @@ class _Home(NamedTuple):
         nodes = tuple(map(node_of, dataset._rows("SELECT * FROM home_nodes WHERE home = $id ORDER BY id", name)))
         if not nodes:
             raise KeyError(name)
-        edges = set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name)))
+        edges = sorted(set(edges_of(dataset._rows("SELECT * FROM home_edges WHERE home = $id", name))))
         working = WorkingGraph((in_states(node, node.states) for node in nodes), edges)
-        return cls(EnvironmentGraph(nodes, tuple(sorted(edges))), working)
+        return cls(EnvironmentGraph(nodes, tuple(edges)), working)
 
 
 def _refused(error: Exception) -> HearthError:

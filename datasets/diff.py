@@ -5,28 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
-from hearth.schemas.tables import TABLES
+from hearth.datasets.format.catalog import earlier, reading
+from hearth.datasets.format.ids import OURS
+from hearth.schemas.tables import KEYS, TABLES
 
-KEYS = {
-    "activities": ("activity_id",),
-    "descriptions": ("description_id",),
-    "programs": ("program_id",),
-    "homes": ("home",),
-    "home_nodes": ("home", "id"),
-    "home_edges": ("home", "source", "relation", "target"),
-    "environments": ("environment_id",),
-    "executions": ("execution_id",),
-    # Repairs that led to no program of their own have none: those of a parent differ in what was perturbed.
-    "repairs": ("program_id", "parent_id", "environment_id", "home", "perturbations", "attempt"),
-    "splits": ("split", "execution_id"),
-    "sketches": ("program_id", "keep"),
-    "frames": ("execution_id", "tick", "camera", "modality"),
-    "videos": ("execution_id", "camera"),
-    "vocabulary": ("kind", "id"),
-    "rejects": ("stage", "record_id", "code", "fault", "line", "column", "file"),
-    "ledger": ("stage",),
-}
-"""Key columns of each table."""
+MORE = {"repairs": ("parent_id", "home", "perturbations")}
+"""Further key columns in format 1, where repairs that led to no program have no environment."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,20 +74,26 @@ def compare(first: str | Path, second: str | Path, limit: int | None = None) -> 
 def _table(connection: Any, table: str, both: tuple[Dataset, Dataset], limit: int | None) -> TableDifference:
     columns = []
     for name, dataset in zip("ab", both, strict=True):
-        connection.execute(f"DROP VIEW IF EXISTS {name}")
-        if any((dataset.folder / table).glob("*.parquet")):
-            files = str(dataset.folder / table / "*.parquet").replace("'", "''")
-            connection.execute(f"CREATE TEMP VIEW {name} AS SELECT * FROM read_parquet('{files}')")
-        else:  # a dataset of a version without the table
-            connection.from_arrow(TABLES[table].empty_table()).create_view(name)
-        columns.append([row[0] for row in connection.execute(f"DESCRIBE {name}").fetchall()])
-    keys = KEYS[table]
+        there = any((dataset.folder / table).glob("*.parquet"))  # else it is of a version without the table
+        format = dataset.manifest["format"]
+        files = reading(table, format, f"{dataset.folder}/")
+        there = there or "query" in earlier(format).get(table, {})
+        rows = connection.sql(f"FROM {files}") if there else connection.from_arrow(TABLES[table].empty_table())
+        rows.project(", ".join(map(_current, rows.columns))).create_view(name)
+        columns.append(rows.columns)
+    keys = tuple(key for key in (*KEYS[table], *MORE.get(table, ())) if all(key in names for names in columns))
     odd = sorted({*columns[0]} ^ {*columns[1]})
     common = [name for name in columns[0] if name in columns[1] and name not in keys]
     only_first, only_second = (_only(connection, one, other, keys) for one, other in ("ab", "ba"))
     changed = _changed(connection, keys, common, odd)
     counts = (len(only_first), len(only_second), len(changed))
     return TableDifference(table, only_first[:limit], only_second[:limit], changed[:limit], counts)
+
+
+def _current(column: str) -> str:
+    """A column, ids as this version has them."""
+    is_id = column == "found" or (column.endswith("_id") and column != "activity_id")
+    return f"""regexp_replace("{column}", '{OURS}', 'written\\1') AS "{column}" """ if is_id else f'"{column}"'
 
 
 def _same_key(keys: tuple[str, ...]) -> str:

@@ -6,9 +6,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import pyarrow.parquet as pq
+
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_knowledge import FIELD
-from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, statements
+from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json, value_digest
@@ -20,7 +22,10 @@ AGAIN = "fetch or publish the dataset again"
 _ASKED = ("stage", "code", "settings", "plan")
 """Fields of the manifest that its key is the digest of, with the inputs."""
 
-EARLIER = {"181edd5cc9f6d9041001864f3d8da78cf4614790e5cfff2fb5a83af64476b645": "0.1.0"}
+EARLIER = {
+    "181edd5cc9f6d9041001864f3d8da78cf4614790e5cfff2fb5a83af64476b645": "0.1.0",
+    "53934e3b35899a28d8c5d0373a45c1863d1c252897e118800f4b15348f7c1d21": "0.2.0, format 1",
+}
 """SHA-256 of the catalog's SQL in earlier versions; add that of the last one when the SQL of the next differs."""
 
 _FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", FIELD, "counts", "parts", "files"}
@@ -64,20 +69,14 @@ def _contradictions(dataset: Dataset) -> Iterator[str]:
     expected = (counts.records_in, counts.through, counts.rejected, counts.partial, dict(counts.codes))
     for row in ledger:
         codes = {one["code"]: one["count"] for one in row["codes"]}
-        if expected != (
-            row["records_in"],
-            row["records_through"],
-            row["records_rejected"],
-            row["partial_rejects"],
-            codes,
-        ):
+        found = [row[f"records_{name}"] for name in ("in", "through", "rejected")]
+        differs = content["format"] > 1 and row["rows"] != counts.rows.total()
+        if differs or expected != (*found, row["partial_rejects"], codes):
             yield "its counts differ from those of the ledger"
     yield from _other_parts(dataset.folder, content)
 
 
 def _other_parts(folder: Path, content: dict[str, Any]) -> Iterator[str]:
-    import pyarrow.parquet as pq
-
     for part in content["parts"]:
         if not {*part["files"]} <= content["files"].keys():
             yield "its parts name files that are not listed"
@@ -107,20 +106,21 @@ def _known_sql(folder: Path) -> str | None:
         text = (folder / SQL).read_text("utf-8")
     except (OSError, UnicodeDecodeError):
         return None
-    return text if text == statements() or sha256(text.encode()).hexdigest() in EARLIER else None
+    return text if text == published() or sha256(text.encode()).hexdigest() in EARLIER else None
 
 
 def _expected(folder: Path, sql: str) -> list[Any]:
     with TemporaryDirectory() as aside:
-        path = Path(aside) / CATALOG
+        path = Path(aside) / "again.duckdb"  # by the name of a catalog it would look for the tables beside itself
         make_catalog(path, folder, sql)
         return _holds(path)
 
 
 _HOLDS = (
-    "SELECT view_name, sql FROM duckdb_views() WHERE NOT internal ORDER BY ALL",
+    "SELECT view_name, sql, comment FROM duckdb_views() WHERE NOT internal ORDER BY ALL",
+    "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal ORDER BY ALL",
     "SELECT table_name, sql FROM duckdb_tables() WHERE NOT internal ORDER BY ALL",
-    "SELECT function_name, parameters, macro_definition FROM duckdb_functions() WHERE NOT internal ORDER BY ALL",
+    "SELECT function_name, parameters, macro_definition, comment FROM duckdb_functions() WHERE NOT internal ORDER BY 1",
     "SELECT sequence_name FROM duckdb_sequences() ORDER BY ALL",
     "SELECT type_name FROM duckdb_types() WHERE NOT internal ORDER BY ALL",
     "SELECT schema_name, sql FROM duckdb_schemas() WHERE NOT internal ORDER BY ALL",

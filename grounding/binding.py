@@ -38,7 +38,8 @@ class Binding:
 def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
     """Find nodes with which every step runs (thesis 2.4.1).
 
-    Objects that are bound already keep their node. Distinct instances get distinct nodes.
+    Objects that are bound already keep their node. Distinct instances get distinct nodes;
+    only a room that serves as another (`kitchen`, where it is part of the dining room) stands for both.
 
     Returns:
         The binding, or the failure that pruned the last candidate of the furthest step reached.
@@ -61,6 +62,33 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
         else:
             stack.append(search.options(len(stack), option[1], option[0]))
     return search.furthest
+
+
+def bind_stored(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Failure:
+    """`bind`; but where every instance is the id of a node of its class, as simulators print them, these are meant."""
+    home, free = world.home, [ref for ref in program.objects() if ref.node is None]
+    are_ids = (
+        home.classes[home.index[ref.instance]] in home.knowledge.same_class(ref.name)
+        for ref in free
+        if ref.instance in home.index
+    )
+    if sum(are_ids) < len(free):
+        return bind(program, world, rules)
+    return Binding({ref.key: ref.instance if ref.node is None else ref.node for ref in program.objects()}, 0)
+
+
+def nearest(program: Program, world: World) -> Binding:
+    """Give each object the nearest of its candidates at the start, whether or not the steps then run.
+
+    Objects that are bound already keep their node; one without a candidate gets none.
+    """
+    search = _Search(program, DEFAULT)
+    nodes = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
+    for step in program.steps:
+        for ref in step.objects:
+            if ref.key not in nodes and (found := search._ordered(ref.key, world, step.agent, nodes)):
+                nodes[ref.key] = found[0]
+    return Binding(nodes, 0)
 
 
 class _Search:
@@ -91,7 +119,7 @@ class _Search:
             if not found:
                 self._fail(number, self._nothing(step, key, world))
         for chosen in product(*choices):
-            if len(set(chosen)) < len(chosen):
+            if len({(node, _room(key, world)) for key, node in zip(new, chosen, strict=True)}) < len(chosen):
                 continue
             bound = {**nodes, **dict(zip(new, chosen, strict=True))}
             self.tried += 1
@@ -118,7 +146,9 @@ class _Search:
         if mask is None:
             mask = self.candidates[key] = self._candidates(key, world)
         agent = world.agents[min(agent_number, len(world.agents) - 1)]
-        taken = {home.index[node] for node in nodes.values() if node in home.index}
+        room_name = _room(key, world)
+        others = (node for other, node in nodes.items() if not room_name or other[0] == room_name)
+        taken = {home.index[node] for node in others if node in home.index}
         room = rows.agent_room(world, agent)
         rank = {
             i: (not rows.is_close(world, agent, i), rows.room_of(world, i) != room, i)
@@ -129,16 +159,8 @@ class _Search:
 
     def _candidates(self, key: Key, world: World) -> int:
         home = world.home
-        knowledge = home.knowledge
         able = reduce(and_, (_able(world, action, position) for action, position in self.uses[key]))
-        names = knowledge.same_class(key[0])
-        if knowledge.is_room(key[0]):
-            room: str | None = key[0]
-            seen: list[str] = []
-            while room and room not in seen:
-                seen.append(room)
-                room = knowledge.room_standins.get(room)
-            names = (*names, *seen)
+        names = home.knowledge.same_class(key[0])
         return next((mask for mask in (home.by_class.get(name, 0) & able for name in names) if mask), 0)
 
     def _nothing(self, step: Step, key: Key, world: World) -> Failure:
@@ -160,6 +182,11 @@ def _able(world: World, action: str, position: int) -> int:
     if known is None or not known.executed:
         return world.home.everything
     return world.home.able(action, position)
+
+
+def _room(key: Key, world: World) -> str:
+    """The name of a room, "" of a thing: a room that serves as another may stand for both of their names."""
+    return key[0] if world.home.knowledge.is_room(key[0]) else ""
 
 
 def _bound(step: Step, nodes: dict[Key, int]) -> Step:

@@ -11,7 +11,7 @@ from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.env import with_agents
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -49,6 +49,7 @@ def attempt(
         the home, the others stand in random rooms.
     """
     wanted = _characters(program)
+    rules = suited(program, home.knowledge, rules)
     world = with_agents(World.start(prepared(home).home if default_state else home), wanted, seed)
     found = bind(program, world, rules)
     if isinstance(found, Binding):

@@ -10,6 +10,7 @@ from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.shell import Thing, before
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 
 SCALE = 90
 """Pixels a metre."""
@@ -134,12 +135,10 @@ def write(layout: Layout, path: Path | str) -> None:
 
 
 def _write_png(layout: Layout, path: Path) -> None:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Rectangle
-
+    canvas = library("matplotlib.backends.backend_agg").FigureCanvasAgg
+    rectangle = library("matplotlib.patches").Rectangle
     area = bounds(layout)
-    figure = Figure(figsize=(area.width, area.depth), dpi=SCALE)
+    figure = library("matplotlib.figure").Figure(figsize=(area.width, area.depth), dpi=SCALE)
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_xlim(area.x0, area.x1)
     axes.set_ylim(area.z0, area.z1)
@@ -150,6 +149,6 @@ def _write_png(layout: Layout, path: Path) -> None:
             axes.text(*rect.center, shape.text, size=shape.size * 72 * 0.95, ha="center", va="center",
                       color=shape.fill, zorder=number)  # fmt: skip
         else:
-            axes.add_patch(Rectangle((rect.x0, rect.z0), rect.width, rect.depth, facecolor=shape.fill,
+            axes.add_patch(rectangle((rect.x0, rect.z0), rect.width, rect.depth, facecolor=shape.fill,
                                      edgecolor=shape.edge or "none", linewidth=0.5, zorder=number))  # fmt: skip
-    FigureCanvasAgg(figure).print_png(str(path), metadata={"Software": None})
+    canvas(figure).print_png(str(path), metadata={"Software": None})

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import lru_cache
 from importlib.resources import as_file, files
@@ -17,19 +18,19 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, from_release
 from hearth.schemas.numbers import number_of
-from hearth.storage.inputs import read_input
+from hearth.storage.input_files import read_input
 
 IDS = ".ids.csv"
 """A plan `maple.yaml` may have its node ids fixed in `maple.ids.csv`, with columns id and name."""
 
 
-def names(directory: Path | str | None = None) -> tuple[str, ...]:
-    """The homes' names, sorted: ours, and those of the user's directory.
+def names(directory: Path | str | None = None, *, alone: bool = False) -> tuple[str, ...]:
+    """The homes' names, sorted: ours (unless `alone`), and those of the user's directory.
 
     Raises:
         HearthError: MISSING_FILE: there is no such directory.
     """
-    return tuple(sorted(_files(directory)))
+    return tuple(sorted(_files(directory, {} if alone else _own())))
 
 
 def load_graph(name: str, knowledge: Knowledge, directory: Path | str | None = None) -> EnvironmentGraph:
@@ -84,7 +85,7 @@ def graph_of(path: Path | str, knowledge: Knowledge) -> EnvironmentGraph:
 
 
 def _file(name: str, directory: Path | str | None) -> Path:
-    known = _files(directory)
+    known = _files(directory, _own())
     if name not in known:
         near = get_close_matches(name, known, 1)
         hint = f"did you mean `{near[0]}`?" if near else f"homes are {', '.join(sorted(known))}"
@@ -92,8 +93,8 @@ def _file(name: str, directory: Path | str | None) -> Path:
     return known[name]
 
 
-def _files(directory: Path | str | None) -> dict[str, Path]:
-    found = dict(_own())
+def _files(directory: Path | str | None, own: Mapping[str, Path]) -> dict[str, Path]:
+    found = dict(own)
     if directory is not None:
         folder = Path(directory)
         if not folder.is_dir():
@@ -144,8 +145,6 @@ def read_graph(path: Path, which: str) -> EnvironmentGraph:
 
 @lru_cache(maxsize=64)
 def _layout(path: Path, knowledge: Knowledge) -> Layout:
-    from dataclasses import replace
-
     text = decode(read_input(path), str(path))
     if not isinstance(text, str):
         raise HearthError(text)

@@ -6,7 +6,7 @@ from math import cos, radians, sin
 import numpy as np
 
 from hearth.homes.plans.shell import Thing
-from hearth.schemas.graph import Edge
+from hearth.schemas.graph import Box, Edge
 from hearth.schemas.vocabulary import RELATION_ID, RELATIONS
 
 CLOSE_WITHIN = 0.8
@@ -35,7 +35,7 @@ def edges(things: Sequence[Thing], ids: Mapping[str, int], lookable: frozenset[s
     """
     own = np.array([ids[thing.name] for thing in things], np.int64)
     tables = [np.array([(e.source, RELATION_ID[e.relation], e.target) for e in _given(things, ids)]).reshape(-1, 3)]
-    for relation, pairs in (("CLOSE", _close_pairs(things)), ("FACING", np.array([*facing(things, lookable)], int))):
+    for relation, pairs in (("CLOSE", close(things)), ("FACING", np.array([*facing(things, lookable)], int))):
         i, j = pairs.reshape(-1, 2).T
         tables.append(np.column_stack((own[i], np.full(len(i), RELATION_ID[relation]), own[j])))
     table = np.concatenate(tables).astype(np.int64)
@@ -59,23 +59,17 @@ def _given(things: Sequence[Thing], ids: Mapping[str, int]) -> Iterator[Edge]:
             yield Edge(me, "BETWEEN", ids[room])
 
 
-def close(things: Sequence[Thing]) -> Iterator[tuple[int, int]]:
-    """Pairs with at most `CLOSE_WITHIN` of free space between their boxes, both ways round.
+def close(things: Sequence[Thing]) -> np.ndarray:
+    """Pairs (pairs, 2) with at most `CLOSE_WITHIN` of free space between their boxes, both ways round.
 
     Walls part things of different rooms; doors and their jambs are near things of both. A container's sides part
     nothing: as in the release, what is in a dresser is near what stands beside it.
     """
-    yield from map(tuple, _close_pairs(things).tolist())
-
-
-def _close_pairs(things: Sequence[Thing]) -> np.ndarray:
-    """The same as an int array of shape (pairs, 2)."""
     found = [np.zeros((0, 2), np.int64)]
     doorway = np.array([bool(thing.between) for thing in things])
     for members in _rooms(things).values():
-        centers, halves = _arrays([things[i] for i in members])
-        gaps = np.abs(centers[:, None] - centers[None]) - (halves[:, None] + halves[None])
-        near = (np.maximum(gaps, 0.0) ** 2).sum(axis=2) <= CLOSE_WITHIN**2 + 1e-9
+        boxes = [things[i].box for i in members]
+        near = gaps(boxes, boxes) <= CLOSE_WITHIN + 1e-9
         np.fill_diagonal(near, False)
         found.append(np.array(members)[np.argwhere(near)])
     pairs = np.concatenate(found)
@@ -94,11 +88,18 @@ def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:
     return found
 
 
-def _arrays(things: Sequence[Thing]) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and half sizes, both of shape (things, 3)."""
-    centers = np.array([thing.box.center for thing in things], float).reshape(-1, 3)
-    halves = np.array([thing.box.size for thing in things], float).reshape(-1, 3) / 2
-    return centers, halves
+def gaps(ones: Sequence[Box], others: Sequence[Box]) -> np.ndarray:
+    """Metres of free space (ones, others) between each of some boxes and each of others."""
+    (centers, halves), (aims, sizes) = arrays(ones), arrays(others)
+    apart = np.abs(centers[:, None] - aims[None]) - (halves[:, None] + sizes[None])
+    found: np.ndarray = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=2))
+    return found
+
+
+def arrays(boxes: Sequence[Box]) -> tuple[np.ndarray, np.ndarray]:
+    """Centres and half sizes, both of shape (boxes, 3)."""
+    centers = np.array([box.center for box in boxes], float).reshape(-1, 3)
+    return centers, np.array([box.size for box in boxes], float).reshape(-1, 3) / 2
 
 
 def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[int, int]]:
@@ -119,10 +120,10 @@ def facing(things: Sequence[Thing], lookable: frozenset[str]) -> Iterator[tuple[
 
 def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int, int]]:
     """Which things of one room face which of its targets."""
-    centers, _ = _arrays(things)
+    centers, _ = arrays([thing.box for thing in things])
     towards = centers[targets][None] - centers[:, None]
     distance = np.maximum(np.hypot(towards[..., 0], towards[..., 2]), 1e-9)
-    fronts = np.array([_direction(thing.yaw or 0.0) for thing in things])
+    fronts = np.array([direction(thing.yaw or 0.0) for thing in things])
     ahead = (towards[..., 0] * fronts[:, None, 0] + towards[..., 2] * fronts[:, None, 1]) / distance
     shows = fronts[targets]
     shown = -(towards[..., 0] * shows[None, :, 0] + towards[..., 2] * shows[None, :, 1]) / distance
@@ -136,7 +137,7 @@ def _seen(things: Sequence[Thing], targets: Sequence[int]) -> Iterator[tuple[int
         yield from zip(sources[free].tolist(), aims[free].tolist(), strict=True)
 
 
-def _direction(yaw: float) -> tuple[float, float]:
+def direction(yaw: float) -> tuple[float, float]:
     """A yaw as a unit vector (x, z); exact for the four winds."""
     exact = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}
     return exact.get(yaw % 360) or (sin(radians(yaw)), cos(radians(yaw)))
@@ -144,7 +145,7 @@ def _direction(yaw: float) -> tuple[float, float]:
 
 def _blocked(things: Sequence[Thing], sources: np.ndarray, aims: np.ndarray) -> np.ndarray:
     """Bool (pairs): the line of sight cuts through something of size other than the two and what they are on."""
-    centers, halves = _arrays(things)
+    centers, halves = arrays([thing.box for thing in things])
     walls = np.array([k for k, thing in enumerate(things) if thing.mount in TALL], int)
     start = centers[sources].copy()
     start[:, 1] = np.clip(start[:, 1], *EYES)

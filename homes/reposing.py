@@ -6,11 +6,11 @@ from dataclasses import replace
 from hearth.homes.forms import form
 from hearth.homes.from_graph.arranging import FRONT, passable, spots
 from hearth.homes.from_graph.measured import measured
-from hearth.homes.from_graph.obstacles import Obstacles
 from hearth.homes.geometry import bottom, box_over, footprint
 from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.furniture import NoPlaceError
 from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.obstacles import Obstacles
 from hearth.homes.plans.packing import FAR, local_of, stand, support_of
 from hearth.homes.plans.plan import Piece
 from hearth.homes.plans.shell import Thing, interior, strip

@@ -1,6 +1,6 @@
-"""Figures of homes beside each other: room sizes, things, degrees, relations (thesis table 5.1)."""
+"""Figures of homes beside each other: room sizes, things, degrees, relations (thesis table 5.1), places."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable
 from statistics import fmean, median
 from typing import Any
@@ -13,6 +13,11 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 SHOWN = ("ON", "INSIDE", "CLOSE", "FACING", "BETWEEN")
 PLAIN = frozenset({"Rooms", "Walls", "Floor", "Floors", "Ceiling", "Characters"})
 """Categories that are no objects in a room."""
+PART_OF_HOME = PLAIN | {"Doors", "Windows"}
+"""Categories without a place that could be another, and that are a place of no interest."""
+
+Places = dict[str, Counter[tuple[str, str]]]
+"""By class, the number of times that a thing of it is ON or INSIDE (relation) a thing of a class."""
 
 REQUIRED: dict[str, tuple[tuple[str, ...], ...]] = {
     "dinner or kitchen table": (("table",), ("kitchen_table",), ("dining_table",), ("dinnertable",)),
@@ -42,18 +47,19 @@ def lacking(graph: EnvironmentGraph) -> tuple[str, ...]:
 def of_home(graph: EnvironmentGraph, knowledge: Knowledge) -> dict[str, Any]:
     """One home's figures: counts, `degrees` of all nodes, `areas` of its rooms in square metres where known."""
     edges = edge_set(graph.edges)
-    degrees: Counter[int] = Counter()
-    for source, _, target in edges:
-        degrees[source] += 1
-        degrees[target] += 1
+    degrees = Counter(end for source, _, target in edges for end in (source, target))
+    relations = Counter(relation for _, relation, _ in edges)
     rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
+    nodes, objects = len(graph.nodes), sum(node.category not in PLAIN for node in graph.nodes)
     return {
         "rooms": len(rooms),
-        "nodes": len(graph.nodes),
-        "edges": len(edges),
-        "objects": sum(node.category not in PLAIN for node in graph.nodes),
+        "nodes": nodes,
+        "objects": objects,
+        "objects a room": objects / max(1, len(rooms)),
         "classes": len({node.class_name for node in graph.nodes}),
-        "relations": Counter(relation for _, relation, _ in edges),
+        "edges": len(edges),
+        "edges a node": len(edges) / max(1, nodes),
+        **{f"{name} a node": relations[name] / max(1, nodes) for name in SHOWN},
         "degrees": [degrees[node.id] for node in graph.nodes],
         "areas": [room.box.size[0] * room.box.size[2] for room in rooms if room.box is not None],
         "sound": not lint(graph, knowledge),
@@ -66,35 +72,61 @@ def of_homes(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> dict[s
     homes = [of_home(graph, knowledge) for graph in graphs]
     if not homes:
         return {}
-
-    def mean(values: Iterable[float], digits: int = 1) -> float | None:
-        found = list(values)
-        return round(fmean(found), digits) if found else None
-
     degrees = sorted(degree for home in homes for degree in home["degrees"])
     areas = [area for home in homes for area in home["areas"]]
+    means = ("nodes", "objects", "objects a room", "classes", "edges")
+    ratios = ("edges a node", *(f"{name} a node" for name in SHOWN))
     return {
         "homes": len(homes),
         "pass lint": sum(home["sound"] for home in homes),
         "have the furniture of the thesis": sum(not home["lacks"] for home in homes),
-        "rooms": mean(home["rooms"] for home in homes),
+        "rooms": round(fmean(home["rooms"] for home in homes), 1),
         "fewest rooms": min(home["rooms"] for home in homes),
         "most rooms": max(home["rooms"] for home in homes),
-        "room area, m2": mean(areas),
+        "room area, m2": round(fmean(areas), 1) if areas else None,
         "smallest room, m2": round(min(areas), 1) if areas else None,
         "largest room, m2": round(max(areas), 1) if areas else None,
-        "nodes": mean(home["nodes"] for home in homes),
-        "objects": mean(home["objects"] for home in homes),
-        "objects a room": mean(home["objects"] / max(1, home["rooms"]) for home in homes),
-        "classes": mean(home["classes"] for home in homes),
-        "edges": mean(home["edges"] for home in homes),
-        "edges a node": mean((home["edges"] / max(1, home["nodes"]) for home in homes), 2),
-        "least edges a node": round(min(home["edges"] / max(1, home["nodes"]) for home in homes), 2),
-        "most edges a node": round(max(home["edges"] / max(1, home["nodes"]) for home in homes), 2),
+        **{name: round(fmean(home[name] for home in homes), 1) for name in means},
+        **{name: round(fmean(home[name] for home in homes), 2) for name in ratios},
+        "least edges a node": round(min(home["edges a node"] for home in homes), 2),
+        "most edges a node": round(max(home["edges a node"] for home in homes), 2),
         "median degree": round(median(degrees)),
         "95th percentile of degrees": degrees[int(0.95 * (len(degrees) - 1))],
-        **{f"{name} a node": mean((h["relations"][name] / max(1, h["nodes"]) for h in homes), 2) for name in SHOWN},
     }
+
+
+def places(graphs: Iterable[EnvironmentGraph], knowledge: Knowledge) -> Places:
+    """What the things of some homes are on and in, by class; synonyms count as one class."""
+
+    def named(class_name: str) -> str:
+        known = knowledge.object_class(class_name)
+        return (known.same_as or known.name) if known else class_name
+
+    found: Places = defaultdict(Counter)
+    for graph in graphs:
+        things = {node.id: named(node.class_name) for node in graph.nodes if node.category not in PART_OF_HOME}
+        for source, relation, target in edge_set(graph.edges):
+            if relation in ("ON", "INSIDE") and source in things and target in things:
+                found[things[source]][relation, things[target]] += 1
+    return found
+
+
+def placement_distance(one: Places, other: Places) -> float | None:
+    """How differently two collections of homes place the same things: 0 the same, 1 nothing in common.
+
+    The total variation distance of each class's places, weighted by the smaller of its two counts of places; None where
+    no class has a place in both.
+    """
+    counts = {name: (one[name].total(), other[name].total()) for name in one.keys() & other.keys()}
+    weights = sum(map(min, counts.values()))
+    if not weights:
+        return None
+    apart = (
+        min(mine, theirs) * abs(one[name][place] / mine - other[name][place] / theirs) / 2
+        for name, (mine, theirs) in sorted(counts.items())
+        for place in sorted(one[name].keys() | other[name].keys())
+    )
+    return round(sum(apart) / weights, 3)
 
 
 def beside(figures: dict[str, Any], theirs: dict[str, Any] | None) -> float | None:

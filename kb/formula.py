@@ -21,14 +21,11 @@ A term is a variable (`a` the acting character, `o` and `s` the first and second
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeVar
 
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
+from hearth.schemas.tokens import Tokens
 
 FUNCTIONS = frozenset({"room", "origin", "place"})
 """Terms that find a thing from a thing; they may find nothing."""
@@ -149,11 +146,6 @@ def _grouped(part: Formula) -> str:
     return str(part) if isinstance(part, Literal | Not) else f"({part})"
 
 
-T = TypeVar("T")
-
-_TOKEN = re.compile(r"\s*(?:(->|[()&|:,<])|([A-Za-z_][A-Za-z_0-9]*))")
-
-
 @lru_cache(maxsize=4096)
 def parse_formula(text: str) -> Formula:
     """Read a formula.
@@ -161,7 +153,7 @@ def parse_formula(text: str) -> Formula:
     Raises:
         HearthError: SYNTAX, saying what was expected where.
     """
-    return _read(text, _Parser.alternatives)
+    return _Parser(text).whole(_Parser.alternatives)
 
 
 @lru_cache(maxsize=4096)
@@ -171,7 +163,7 @@ def parse_effect(text: str) -> Effect:
     Raises:
         HearthError: SYNTAX, saying what was expected where.
     """
-    return _read(text, _Parser.effect)
+    return _Parser(text).whole(_Parser.effect)
 
 
 @lru_cache(maxsize=512)
@@ -181,51 +173,13 @@ def parse_atom(text: str) -> Literal[Term]:
     Raises:
         HearthError: SYNTAX.
     """
-    return _read(text, _Parser.atom)
+    return _Parser(text).whole(_Parser.atom)
 
 
-def _read(text: str, rule: Callable[[_Parser], T]) -> T:
-    """What a rule makes of a whole text."""
-    parser = _Parser(text)
-    result = rule(parser)
-    if parser.peek():
-        raise parser.fault(f"`{parser.peek()}` is too much")
-    return result
-
-
-class _Parser:
+class _Parser(Tokens):
     """Recursive descent over the tokens of one line."""
 
-    def __init__(self, text: str) -> None:
-        self.text = text
-        self.tokens: list[str] = []
-        position = 0
-        while position < len(text.rstrip()):
-            found = _TOKEN.match(text, position)
-            if not found:
-                raise self.fault(f"cannot read `{text[position:].strip()[:20]}`")
-            self.tokens.append(found[1] or found[2])
-            position = found.end()
-        self.next = 0
-
-    def fault(self, message: str) -> HearthError:
-        return HearthError.of(Code.SYNTAX, f"in `{self.text}`: {message}")
-
-    def peek(self, ahead: int = 0) -> str:
-        return self.tokens[self.next + ahead] if self.next + ahead < len(self.tokens) else ""
-
-    def take(self, wanted: str = "") -> str:
-        token = self.peek()
-        if not token or (wanted and token != wanted):
-            raise self.fault(f"expected {wanted or 'a name'} but found `{token or 'the end'}`")
-        self.next += 1
-        return token
-
-    def name(self) -> str:
-        token = self.take()
-        if not (token[0].isalpha() or token[0] == "_"):
-            raise self.fault(f"expected a name but found `{token}`")
-        return token
+    PATTERN = re.compile(r"->|[()&|:,<]|[A-Za-z_][A-Za-z_0-9]*")
 
     def effect(self) -> Effect:
         variables: tuple[str, ...] = ()
@@ -244,14 +198,6 @@ class _Parser:
         if negated:
             self.take()
         return Effect(self.atom()._replace(negated=negated), condition, variables)
-
-    def several(self, rule: Callable[[], T], mark: str) -> tuple[T, ...]:
-        """What a rule makes of parts with a mark between them."""
-        parts = [rule()]
-        while self.peek() == mark:
-            self.take()
-            parts.append(rule())
-        return tuple(parts)
 
     def alternatives(self) -> Formula:
         parts = self.several(self.conjunction, "|")

@@ -80,6 +80,10 @@ class _Checker:
                 span = self._object(ref, line)
                 faults.append(self._fault(Code.UNKNOWN_OBJECT, f"unknown object `{ref.name}`", line, remedy, span))
             objects.append(ref if name in (None, ref.name) else replace(ref, name=name))
+        if not faults and len(set(objects)) < len(objects):
+            message = f"[{action.name}] takes {len(objects)} different objects, not `{print_object(objects[0])}` twice"
+            remedy = f"another of its kind is <{objects[0].name}> ({objects[0].instance + 1})"
+            faults.append(self._fault(Code.WRONG_ARITY, message, line, remedy, self._arguments(step, line)))
         if faults:
             return step, faults
         if action.name == step.action and tuple(objects) == step.objects:
@@ -89,7 +93,7 @@ class _Checker:
     def affordances(self, step: Step, line: int) -> Iterator[Diagnostic]:
         action = self.knowledge.actions[step.action]
         for position, ref in enumerate(step.objects[: action.arity]):
-            if not self.knowledge.affords(step.action, position, ref.name):
+            if self._class_name(ref.name) and not self.knowledge.affords(step.action, position, ref.name):
                 message = f"[{step.action}] can't be done to `{ref.name}`"
                 remedy = f"it takes {action.grammar[position]}"
                 yield self._fault(Code.NOT_AFFORDED, message, line, remedy, self._object(ref, line))

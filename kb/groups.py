@@ -2,19 +2,23 @@
 
 from collections.abc import Callable, Iterable, Mapping
 
-from hearth.kb.formula import TRUE, Effect
+from hearth.kb.formula import TRUE, And, Effect, Some
 from hearth.kb.records import Action
 from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import OPPOSITE
 
 DECLARED: dict[str, str] = {
     "animated": "what the thesis animates and programs contain (table 2.2; 4.4, footnote 1)",
+    "gets_up": "ends rest, whether it changes the posture or not",
     "goes": "afterwards the character is at its object",
     "handling": "a means to something else: no object is made for it",
     "hand": "done with a hand that is free, else with the right one",
     "idle": "moves or looks, and does nothing",
     "looks": "turns the eyes to its object",
+    "lies": "done in bed rather than on a seat",
     "preparation": "what it is for is another step, in any activity",
+    "unplanned": "its effects depend on facts that planning problems omit: nearby objects, former places",
     "unsaid": "goes without saying among people (thesis 3.4.1)",
     "variant": "changes what a plainer action changes, too",
 }
@@ -83,6 +87,21 @@ character is; it is put on or in another; the character sits or lies, gets up, t
 def state_of(action: Action) -> str:
     """The state that its object enters, or ''."""
     return next((text[len("state(o, ") : -1] for text in sorted(_adds(action)) if text.startswith("state(o, ")), "")
+
+
+def relation_of(action: Action) -> str:
+    """The relation into which it puts what is held with its second object (ON, INSIDE), or ''."""
+    return next((name for name in ("ON", "INSIDE") if _frees_hand(action) and f"{name}(o, s)" in _adds(action)), "")
+
+
+def tool_of(action: Action) -> str | None:
+    """Part of the name of the thing in hand that it needs and does not name: '' for anything, None if it needs none."""
+    needed = (c.formula for c in action.preconditions if c.code is Code.NOT_HOLDING and isinstance(c.formula, Some))
+    for some in needed:
+        parts = some.part.parts if isinstance(some.part, And) else (some.part,)
+        named = (p.terms[1].name for p in parts if isinstance(p, Literal) and p.name == "class_contains")
+        return next(named, "")
+    return None
 
 
 def groups(actions: Iterable[Action]) -> Mapping[str, frozenset[str]]:

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from hearth.kb.formula import Effect, Formula, Term
-from hearth.kb.groups import groups, state_of
+from hearth.kb.groups import groups, relation_of, state_of, tool_of
 from hearth.kb.records import Action, Association, Kind, ObjectClass, Placement, Repair, StateGroup
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
@@ -39,7 +39,6 @@ class Knowledge:
         actions: the actions by canonical name, in the order of their ids.
         objects: the classes by canonical name, in the order of their ids; rooms are classes too.
         rooms: the eight rooms a program may name, sorted.
-        room_standins: room -> the room that serves where a home lacks it.
         state_groups: groups of states by name.
         table_like: classes on which rule 9 of the preconditions expects things (semantics).
         defaults: class or property -> the states a home is prepared with (thesis 5.5.2).
@@ -52,7 +51,6 @@ class Knowledge:
     actions: Mapping[str, Action]
     objects: Mapping[str, ObjectClass]
     rooms: tuple[str, ...]
-    room_standins: Mapping[str, str]
     state_groups: Mapping[str, StateGroup]
     table_like: frozenset[str]
     defaults: Mapping[str, Mapping[str, tuple[str, ...]]]
@@ -133,6 +131,14 @@ class Knowledge:
     @cached_property
     def _states_made(self) -> Mapping[str, str]:
         return {name: state_of(action) for name, action in self.actions.items() if state_of(action)}
+
+    def relation_of(self, action: str) -> str:
+        """The relation into which an action puts what is held with its second object (ON, INSIDE), or ''."""
+        return relation_of(self.actions[action]) if action in self.actions else ""
+
+    def tool_of(self, action: str) -> str | None:
+        """What an action needs in hand without naming it: part of a name, '' for anything, None for nothing."""
+        return tool_of(self.actions[action]) if action in self.actions else None
 
     def repairs_for(self, code: Code, action: str) -> tuple[Repair, ...]:
         """What may be done when the action fails with that code, the first choice first."""

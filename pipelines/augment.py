@@ -10,7 +10,6 @@ from hearth.datasets.format.codecs import (
     conditions_of,
     environment_row,
     failure_row,
-    named,
     program_of,
     step_rows,
 )
@@ -20,18 +19,19 @@ from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Output, Plan, Stage
-from hearth.repair.loop import Attempt, successes
-from hearth.repair.perturb import Chances, Perturbation
+from hearth.repair.causes import cause
+from hearth.repair.loop import successes
+from hearth.repair.perturb import Chances
 from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
 from hearth.repair.variants import Augmented, Options, Pair, augment, default_chances
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import CaseRow, DifferenceRow, PerturbationRow, RepairRow, SketchRow, TriedRow
+from hearth.schemas.row_types import CaseRow, DifferenceRow, PerturbationRow, RepairRow, Row, SketchRow
 from hearth.schemas.syntax import print_step
-from hearth.schemas.tables import CASE, SKETCHED, TRIED
-from hearth.simulation.engine import Execution
+from hearth.schemas.tables import CASE, SKETCHED
+from hearth.simulation.engine import Execution, run
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.manifest import read_manifest
@@ -42,6 +42,9 @@ THESIS = 0.7
 
 ALLOWANCE = 1.3
 """Pairs made for each program wanted: some are duplicates, and some programs have too few preconditions to perturb."""
+
+ORIGINAL = "original"
+"""By which rows of originals in perturbed environments are counted; others are counted by their number of repairs."""
 
 _DONE = frozenset({Code.DUPLICATE, Code.UNPERTURBED})
 """Why a program that runs and reaches its goal is refused."""
@@ -82,7 +85,8 @@ def scaled(chances: Chances, factor: float) -> Chances:
 
 
 def process(record: CaseRow, context: Context) -> Iterator[Output]:
-    """A row for each repaired program; the failed attempts and a reject for each environment that gave none.
+    """A row for each repaired program, a reject for each environment that gave none, and a row for the original in each
+    environment in which it had to be repaired.
 
     The program's sketch is added once, however many homes it is in, and each child's sketch is inherited from it.
     """
@@ -112,11 +116,8 @@ def _outputs(record: CaseRow, found: Augmented, context: Context, *, wanted: boo
     for pair in found.pairs:
         if pair.failure is not None:
             yield _reject(record, pair, pair.failure)
-            yield from (("attempts", row) for row in _failed_attempts(record, pair, pair.failure))
-            continue
-        row = _row(record, pair, context)
-        yield row
-        yield "sketches", _sketch(row["program_id"], "inherited", pair.program, inherited(context.keep, pair.sources))
+        if pair.attempts:
+            yield from _cases(record, pair, context)
     if not found.pairs and wanted:
         yield _nothing_to_perturb(record)
 
@@ -136,13 +137,6 @@ def _reject(record: CaseRow, pair: Pair, failure: Failure) -> Reject:
     return Reject.failed(failure, record["place"], where=f"in {record['home']}, where {perturbed}")
 
 
-def _failed_attempts(record: CaseRow, pair: Pair, failure: Failure) -> Iterator[TriedRow]:
-    parent, home, outcome = record["program_id"], record["home"], str(failure.code)
-    perturbations = [_perturbation(one) for one in pair.perturbations]
-    for repair in _repairs(pair):
-        yield {"parent_id": parent, "home": home, "perturbations": perturbations, "outcome": outcome, **repair}
-
-
 def _conditions(record: CaseRow) -> Preconditions:
     """The conditions of a row, without those that name objects which the program does not use."""
     keys = {(ref["name"], ref["instance"]) for step in record["steps"] for ref in step["objects"]} | {CHARACTER}
@@ -150,28 +144,44 @@ def _conditions(record: CaseRow) -> Preconditions:
     return found.without(*(condition for condition in found if not keys.issuperset(condition.objects)))
 
 
-def _row(record: CaseRow, pair: Pair, context: Context) -> CaseRow:
-    home = record["home"]
-    program_id = f"{record['program_id']}+{home}.{pair.number}"
-    environment_id = f"{program_id}@{home}"
-    return {
-        **named(record),
-        "program_id": program_id,
-        "origin": "augmented",
-        "parent_id": record["program_id"],
-        "steps": step_rows(pair.program),
-        "warnings": [],
+def _cases(record: CaseRow, pair: Pair, context: Context) -> Iterator[Output]:
+    """The cases of the repaired program, if there is one, and of the original in the same environment.
+
+    The original has the repairs if no program came of them.
+    """
+    program_id = f"{record['program_id']}+{record['home']}.{pair.number}"
+    environment_id = f"{program_id}@{record['home']}"
+    ids = [f"{environment_id}#{number}" for number in range(len(pair.perturbations))]
+    repairs = _repairs(pair, ids)
+    original = run(pair.environment.world, pair.environment.program, context.options.rules)
+    row: CaseRow = {
+        **record,
         "environment_id": environment_id,
-        "execution_id": f"{environment_id}/0",
-        "home": home,
+        "execution_id": f"{environment_id}/original",
         "seed": context.seed,
-        "environment": _environment(pair.environment, home, context),
+        "environment": _environment(pair.environment, record["home"], context),
         "conditions": condition_rows(pair.environment.conditions),
-        **run_row(pair.execution, "default"),
+        **run_row(original),
         "reproduces": None,
-        "perturbations": [_perturbation(one) for one in pair.perturbations],
-        "repairs": _repairs(pair),
+        "perturbations": _perturbations(pair, ids, repairs),
+        "outcome": str(pair.failure.code) if pair.failure else "REPAIRED",
+        "repairs": repairs if pair.failure else [],
     }
+    if pair.failure is None:
+        keep = inherited(context.keep, pair.sources)
+        yield "sketches", _sketch(program_id, "inherited", pair.program, keep)
+        yield {
+            **row,
+            "program_id": program_id,
+            "origin": "augmented",
+            "parent_id": record["program_id"],
+            "steps": step_rows(pair.program),
+            "warnings": [],
+            "execution_id": f"{environment_id}/0",
+            **run_row(pair.execution),
+            "repairs": repairs,
+        }
+    yield row
 
 
 def _environment(environment: Environment, name: str, context: Context) -> DifferenceRow:
@@ -185,26 +195,42 @@ def _environment(environment: Environment, name: str, context: Context) -> Diffe
     return environment_row(replace(kept, added_nodes=tuple(nodes)))
 
 
-def _perturbation(perturbation: Perturbation) -> PerturbationRow:
-    return {"kind": perturbation.kind, "condition": condition_rows([perturbation.about])[0]}
+def _perturbations(pair: Pair, ids: list[str], repairs: list[RepairRow]) -> list[PerturbationRow]:
+    rows: list[PerturbationRow] = []
+    for perturbation_id, one in zip(ids, pair.perturbations, strict=True):
+        caused = [repair for repair in repairs if repair["perturbation_id"] == perturbation_id]
+        rows.append(
+            {
+                "perturbation_id": perturbation_id,
+                "kind": one.kind,
+                "dropped": condition_rows(one.dropped),
+                "added": condition_rows(one.added),
+                "attempts": [repair["attempt"] for repair in caused],
+                "failure": caused[0]["failure"] if caused else None,
+            }
+        )
+    return rows
 
 
-def _repairs(pair: Pair) -> list[RepairRow]:
+def _repairs(pair: Pair, ids: list[str]) -> list[RepairRow]:
     given_up = pair.failure if pair.failure is not None and pair.failure.code not in _DONE else None
     helped = successes(pair.attempts, given_up)
-    return [_repair(attempt, success) for attempt, success in zip(pair.attempts, helped, strict=True)]
-
-
-def _repair(attempt: Attempt, successful: bool) -> RepairRow:
-    return {
-        "attempt": attempt.number,
-        "step": attempt.step,
-        "failure": failure_row(attempt.failure),
-        "handler": attempt.handler,
-        "before": _texts(attempt.before),
-        "after": _texts(attempt.after),
-        "successful": successful,
-    }
+    rows: list[RepairRow] = []
+    for attempt, successful in zip(pair.attempts, helped, strict=True):
+        of = cause(pair.perturbations, attempt, pair.environment.program)
+        rows.append(
+            {
+                "perturbation_id": None if of is None else ids[of],
+                "attempt": attempt.number,
+                "step": attempt.step,
+                "failure": failure_row(attempt.failure),
+                "handler": attempt.handler,
+                "before": _texts(attempt.before),
+                "after": _texts(attempt.after),
+                "successful": successful,
+            }
+        )
+    return rows
 
 
 def _texts(steps: tuple[Step, ...]) -> list[str]:
@@ -231,9 +257,15 @@ def prepare(settings: Settings) -> Plan:
     return plan
 
 
+def _label(row: Row) -> str | None:
+    if "repairs" not in row:
+        return None
+    return f"{len(row['repairs'])} repairs" if row["origin"] == "augmented" else ORIGINAL
+
+
 STAGE = Stage(
     name="augment",
-    tables={"": CASE, "attempts": TRIED, "sketches": SKETCHED},
+    tables={"": CASE, "sketches": SKETCHED},
     process=process,
     reads=("sample",),
     settings=("seed", "probability", "variants", "target", "tries"),
@@ -242,5 +274,5 @@ STAGE = Stage(
     facts=knowledge_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
-    label=lambda row: f"{len(row['repairs'])} repairs" if "repairs" in row else None,
+    label=_label,
 )

@@ -15,9 +15,11 @@ from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, stage
+from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import RejectedRow
+from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.row_types import RejectedRow
 from hearth.storage.lock import locked
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts
@@ -37,11 +39,15 @@ class Funnel:
         stages: counts by stage, in order, of the stages that have run.
         fresh: stages that were not up to date.
         dataset: the folder of the published dataset; None before it is published.
+        columns: the columns of each table that was read, by field.
+        unread: files that were not read, with the reason.
     """
 
     stages: dict[str, Counts]
     fresh: tuple[str, ...]
     dataset: Path | None
+    columns: dict[str, dict[str, str]]
+    unread: tuple[str, ...]
 
     def to_json(self) -> dict[str, Any]:
         """Plain values."""
@@ -49,6 +55,8 @@ class Funnel:
             "stages": {name: counts.to_json() for name, counts in self.stages.items()},
             "fresh": list(self.fresh),
             "dataset": str(self.dataset) if self.dataset else None,
+            "columns": self.columns,
+            "unread": self.unread,
         }
 
     @property
@@ -104,6 +112,8 @@ def build(
             settings = kept_knowledge(settings)
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
             for name in [only] if only else list(STAGES):
+                if name == "render" and progress and (settings.pictures or settings.videos):
+                    _note_lacking(progress)
                 result = run_stage(stage(name), settings, pool, progress)
                 if name == "validate" and not only:
                     expected = forecast(result.manifest.counts.through, settings, pool.count, force=force)
@@ -111,9 +121,15 @@ def build(
                         progress.note(expected)
                 if result.fresh:
                     fresh.append(name)
-                if name == "ingest":
-                    _check_something(result.manifest)
+                if name == "ingest" or not only:
+                    _check_left(name, settings)
         return funnel(settings, tuple(fresh))
+
+
+def _note_lacking(progress: Progress) -> None:
+    """Report that pictures are left out, if they are."""
+    if libraries := lacking("pictures"):
+        progress.note(f"{no_pictures(libraries)}. To have them, {remedy('pictures')}, and build again.")
 
 
 def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
@@ -121,15 +137,34 @@ def funnel(settings: Settings, fresh: tuple[str, ...] = ()) -> Funnel:
     manifests = {name: read_manifest(settings.folder(name)) for name in STAGES}
     counts = {name: manifest.counts for name, manifest in manifests.items() if manifest}
     published = manifests["publish"]
-    return Funnel(counts, fresh, published.folder if published else None)
+    ingested = manifests["ingest"]
+    columns = ingested.content.get("columns", {}) if ingested else {}
+    return Funnel(counts, fresh, published.folder if published else None, columns, tuple(_unread(ingested)))
 
 
-def _check_something(ingested: Manifest) -> None:
-    """Raise the first rejects if no record could be read."""
-    if ingested.counts.through:
+def _unread(ingested: Manifest | None) -> Iterator[str]:
+    """The files that `ingest` refused whole, with the reason; at most `_SHOWN`, then their number."""
+    if ingested is None:
         return
-    faults = list(_faults(pq.read_table(ingested.folder / REJECTS).slice(0, _SHOWN).to_pylist()))
-    raise HearthError(faults or [Diagnostic(Code.EMPTY, "the sources hold no records")])
+    rows = pq.read_table(ingested.folder / REJECTS, columns=["record_id", "file", "message", "fault"]).to_pylist()
+    whole = [row for row in rows if row["record_id"] == row["file"] and not row["fault"]]
+    yield from (f"{row['file']}: {row['message']}" for row in whole[:_SHOWN])
+    if len(whole) > _SHOWN:
+        yield f"{len(whole) - _SHOWN:,} further files, listed in `rejects`"
+
+
+def _check_left(name: str, settings: Settings) -> None:
+    """Raise the first rejects if a stage leaves neither a program nor a description to publish."""
+    ingested, done = (read_manifest(settings.folder(stage)) for stage in ("ingest", name))
+    if name not in ("ingest", "validate", "sample") or not ingested or not done or done.counts.through:
+        return
+    if name != "ingest" and ingested.counts.tally["description"]:
+        return
+    faults = list(_faults(pq.read_table(done.folder / REJECTS).slice(0, _SHOWN).to_pylist()))
+    message, refused = f"nothing is left after `{name}`", done.counts.rejected
+    what = f"{message}: {refused:,} refused" if refused else f"{message}: there is not one program in the sources"
+    left = [] if name == "ingest" and faults else [Diagnostic(Code.EMPTY, what)]
+    raise HearthError([*faults, *left])
 
 
 def _faults(rows: Iterable[RejectedRow]) -> Iterator[Diagnostic]:

@@ -1,23 +1,34 @@
 """Stage 1: reads descriptions and programs of any known form, one row each, their text unchanged."""
 
+import shutil
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
+import pyarrow.parquet as pq
+
+from hearth.datasets.format.codecs import graph_of
+from hearth.datasets.format.shared_homes import write_home
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.known_descriptions import Described
 from hearth.pipelines.crowd.repeated import Repeated
+from hearth.pipelines.engine.build_homes import DERIVED
+from hearth.pipelines.engine.context import knowledge
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.sources import labelled, salt
 from hearth.pipelines.engine.stage import BATCH, Job, Partition, Stage
-from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
+from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
+from hearth.pipelines.readers.columns import FieldColumns, read_columns
 from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.tables import INGESTED
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import value_digest
+from hearth.storage.names import inside
+from hearth.storage.partitions import Counts
 from hearth.storage.rejects import Reject, as_text
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
@@ -29,11 +40,15 @@ SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     ours.NAME: ours.scan,
     LISTED: ours.scan_list,
     DOCUMENT: ours.scan_document,
+    spreadsheets.NAME: spreadsheets.scan,
     published.NAME: published.scan,
     sketches.NAME: sketches.scan,
     scenes.NAME: scenes.scan,
 }
 """The function that finds the records of a file or folder, by reader."""
+
+_NAMED = frozenset({ours.NAME, LISTED, DOCUMENT, spreadsheets.NAME})
+"""Readers of records whose fields may have other names."""
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
@@ -55,18 +70,29 @@ _USUAL = 64
 _FULL = 8_192
 
 
-def items(sources: Iterable[Source]) -> Iterator[tuple[str, Item]]:
-    """Every record of the sources with its source's label; a copy of an earlier record is refused."""
+def items(
+    sources: Iterable[Source], columns: FieldColumns | None = None, found_columns: dict[str, FieldColumns] | None = None
+) -> Iterator[tuple[str, Item]]:
+    """Every record of the sources with its source's label; a copy of an earlier record is refused.
+
+    Args:
+        sources: files and folders.
+        columns: columns of tables and keys of JSON that hold fields; others are guessed.
+        found_columns: receives those of each table as it is read.
+    """
+    given = columns or {}
     repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in _recognised(source)]
     described = Described()
-    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry))
+    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry, given))
     copies = Copies(pasted(described.noted(batches)))
     for label, entry in found:
         if entry.refusal:
             yield label, refused(entry.inside, entry.refusal)
             continue
-        checked = repeated.first(_scanned(entry), entry.reader, entry.inside)
+        if entry.reader == spreadsheets.NAME and found_columns is not None:
+            found_columns[entry.inside] = spreadsheets.columns_of(entry.path, given)
+        checked = repeated.first(_scanned(entry, given), entry.reader, entry.inside)
         if entry.reader == crowd.NAME:
             checked = map(described.checked, map(copies.checked, checked))
         yield from ((label, item) for item in checked)
@@ -86,11 +112,12 @@ def _recognised(source: Source) -> Iterator[Recognised]:
         yield Recognised(source.path, source.label, "", Reject.caused(error, source.label))
 
 
-def _scanned(entry: Recognised) -> Iterator[Item]:
+def _scanned(entry: Recognised, columns: FieldColumns) -> Iterator[Item]:
     """The records that a reader finds; if it breaks off, those before the break, then the break as a reject."""
     found = False
     try:
-        for item in SCANNERS[entry.reader](entry.path, entry.inside):
+        more = (columns,) if entry.reader in _NAMED else ()
+        for item in SCANNERS[entry.reader](entry.path, entry.inside, *more):
             found = True
             yield item
     except DamagedError as error:
@@ -110,7 +137,9 @@ def partitions(job: Job) -> Iterator[Partition]:
     share: list[tuple[str, Item]] = []
     weight = 0
     number = 0
-    for found in _limited(items(labelled(job.settings.sources)), job.settings.limit):
+    columns = read_columns(job.settings.columns)
+    found_items = items(labelled(job.settings.sources), columns, job.context.columns)
+    for found in _limited(found_items, job.settings.limit):
         if share and (weight >= _FULL or share[0][0] != found[0]):
             yield _partition(number, share)
             number += 1
@@ -181,9 +210,21 @@ def records(job: Job, partition: Partition) -> Iterator[Found]:
         yield {"program_id": item.record_id, "source": source, "item": item}
 
 
-def process(record: Found, salt: str) -> list[IngestedRow | Reject]:
-    """Read one record."""
-    return read(record["item"], record["source"], salt)
+class Context(NamedTuple):
+    """The salt of workers' ids, the columns of each table that was read, and the settings."""
+
+    salt: str
+    columns: dict[str, FieldColumns]
+    settings: Settings
+
+
+def process(record: Found, context: Context) -> list[IngestedRow | Reject]:
+    """Read one record; a scene that is not a home in which something can run is refused."""
+    found = read(record["item"], record["source"], context.salt)
+    for row in found:
+        if not isinstance(row, Reject) and row["kind"] == "scene":
+            scenes.check(row, knowledge(context.settings))
+    return found
 
 
 def read(item: Item, source: str = "", salt: str = "") -> list[IngestedRow | Reject]:
@@ -203,15 +244,30 @@ def prepare(settings: Settings) -> dict[str, Any]:
     return {"salt": value_digest(salt(settings))[:16]}
 
 
+def write_scenes(job: Job, counts: Counts) -> None:
+    """Write the scene graphs as homes; a name that two of them share is numbered."""
+    folder = job.folder / DERIVED
+    shutil.rmtree(folder, ignore_errors=True)
+    taken: Counter[str] = Counter()
+    for path in sorted(job.folder.glob("part-*.parquet")) if counts.tally["scene"] else ():
+        for row in pq.read_table(path, columns=["title", "groundings"], filters=[("kind", "=", "scene")]).to_pylist():
+            folder.mkdir(exist_ok=True)
+            taken[row["title"]] += 1
+            name = row["title"] if taken[row["title"]] == 1 else f"{row['title']}~{taken[row['title']]}"
+            write_home(inside(folder, f"{name}.json"), graph_of(row["groundings"][0]["start"]))
+
+
 STAGE = Stage(
     name="ingest",
     tables={"": INGESTED},
     process=process,
-    settings=("limit",),
-    open=lambda job: salt(job.settings),
+    settings=("limit", "columns"),
+    open=lambda job: Context(salt(job.settings), {}, job.settings),
     prepare=prepare,
     partitions=partitions,
     records=records,
+    finish=write_scenes,
+    facts=lambda job: {"columns": job.context.columns},
     batch=lambda partition: max(BATCH, (partition.size or 0) // 16),
     label=lambda row: row["kind"],
 )

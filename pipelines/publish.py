@@ -1,34 +1,92 @@
 """Stage 6: the published tables. An execution that its published row does not reproduce is refused."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import difference_on_replay
-from hearth.datasets.format.ids import STAMP, activity_id, split_of
+from hearth.datasets.format.ids import STAMP, activity_id
+from hearth.datasets.format.splits import LEFT_OUT, PARTS
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.final_tables import finish
-from hearth.pipelines.engine.stage import Stage
+from hearth.pipelines.engine.runner import input_partitions
+from hearth.pipelines.engine.split_assignment import Assignment, assignment
+from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import CaseRow, EnvironmentRow, ExecutionRow, ProgramRow, RepairedRow, Row, columns_of
+from hearth.schemas.row_types import (
+    CaseRow,
+    EnvironmentRow,
+    ExecutionRow,
+    PerturbedRow,
+    ProgramRow,
+    RepairedRow,
+    Row,
+    columns_of,
+)
 from hearth.schemas.tables import TABLES
+from hearth.storage.files import value_digest
+from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
 
-PER_CASE = ("programs", "environments", "executions", "repairs")
-"""Tables whose rows come from one case each; the others need all cases."""
+PER_CASE = {
+    **{f"programs.{part}": TABLES["programs"] for part in (*PARTS, LEFT_OUT)},
+    **{name: TABLES[name] for name in ("environments", "executions", "perturbations", "repairs")},
+}
+"""Tables whose rows come from one case each, programs by part; the others need all cases."""
 
 GATHER = 2_048
 """Cases published in one file: a query opens every file's footer, so files should be few."""
 
 
 class Context:
-    """Homes, the seed, and the program published last: a program in several homes is one row."""
+    """Homes, and the program and environment published last: both may be those of several cases."""
 
-    def __init__(self, homes: Homes, seed: int) -> None:
-        self.homes, self.seed = homes, seed
-        self.last = ""
+    def __init__(self, job: Job) -> None:
+        self.homes, self._job = Homes(job.settings), job
+        self.last = self.environment = ""
+
+    @cached_property
+    def assignment(self) -> Assignment:
+        """The part of every program, made once and not by the workers."""
+        files = [Path(path) for part in input_partitions(self._job) for path in part.payload]
+        return assignment(files, self._job.settings.seed)
 
 
-def process(case: CaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
+class SplitCaseRow(CaseRow):
+    """A case with the part of its program in the split `activities`."""
+
+    split: str | None
+
+
+def partitions(job: Job) -> Iterator[Partition]:
+    """The parts of the stages before, each with the parts of its programs."""
+    part_of = job.context.assignment.part_of
+    for partition in input_partitions(job):
+        names = {name for path in partition.payload for name in _programs(path)}
+        mine = {name: part_of[name] for name in sorted(names)}
+        yield replace(partition, digest=value_digest([partition.digest, mine]), payload=(partition.payload, mine))
+
+
+def _programs(path: str) -> list[str]:
+    names: list[str] = pq.read_table(path, columns=["program_id"])["program_id"].unique().to_pylist()
+    return names
+
+
+def records(job: Job, partition: Partition) -> Iterator[SplitCaseRow]:
+    """The cases of a partition."""
+    paths, part_of = partition.payload
+    cases: Iterator[CaseRow] = chain.from_iterable(read_rows(Path(path)) for path in paths)
+    for case in cases:
+        yield {**case, "split": part_of[case["program_id"]]}
+
+
+def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
     """The rows of one case, if replaying it gives the same execution."""
     difference = difference_on_replay(case, context.homes)
     if difference:
@@ -36,32 +94,42 @@ def process(case: CaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reje
     return _rows(case, context)
 
 
-def _rows(case: CaseRow, context: Context) -> Iterator[tuple[str, Row]]:
-    if case["program_id"] != context.last:
+def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
+    """The rows of a case; the run of an original in a perturbed environment is published if it fails there."""
+    perturbed = case["parent_id"] is None and bool(case["perturbations"])
+    if not perturbed and case["program_id"] != context.last:
         context.last = case["program_id"]
-        yield "programs", {**program_row(case, context.seed), **STAMP}
-    yield "environments", {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
-    yield "executions", {**columns_of(ExecutionRow, case), **STAMP}
+        yield f"programs.{case['split'] or LEFT_OUT}", {**program_row(case), **STAMP}
+    # What came of repairing: for an original, nothing.
+    came: Any = {"program_id": None, "execution_id": None, "parent_id": case["program_id"]} if perturbed else {}
+    if case["environment_id"] != context.environment:
+        context.environment = case["environment_id"]
+        yield "environments", {**columns_of(EnvironmentRow, {**case, **case["environment"]}), **STAMP}
+        for one in case["perturbations"]:
+            yield "perturbations", {**columns_of(PerturbedRow, {**case, **came, **one}), **STAMP}
+    if not (perturbed and case["executable"]):
+        yield "executions", {**columns_of(ExecutionRow, case), **STAMP}
     for repair in case["repairs"]:
-        # The repairs that the program came of.
-        yield "repairs", {**columns_of(RepairedRow, {**case, "outcome": "REPAIRED", **repair}), **STAMP}
+        yield "repairs", {**columns_of(RepairedRow, {**case, **came, **repair}), **STAMP}
 
 
-def program_row(case: CaseRow, seed: int) -> ProgramRow:
-    """The program of a case; its activity and the build's seed decide its split."""
-    activity = activity_id(case["title"])
-    return columns_of(ProgramRow, {**case, "activity_id": activity, "split": split_of(activity, seed)})
+def program_row(case: SplitCaseRow) -> ProgramRow:
+    """The program of a case."""
+    place = case["place"] if case["line"] is None else f"{case['place']}:{case['line'] + 1}"
+    return columns_of(ProgramRow, {**case, "place": place, "activity_id": activity_id(case["title"])})
 
 
 STAGE = Stage(
     name="publish",
-    tables={name: TABLES[name] for name in PER_CASE},
+    tables=PER_CASE,
     process=process,
     reads=("sample", "augment"),
     needs=("ingest", "validate", "render"),
     settings=("seed",),
-    open=lambda job: Context(Homes(job.settings), job.settings.seed),
+    open=Context,
     prepare=overlays,
+    partitions=partitions,
+    records=records,
     gather=GATHER,
     exchanged=True,
     identify=lambda case: str(case["execution_id"]),

@@ -8,16 +8,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from hearth.datasets.format.cases import rerun
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
-from hearth.schemas.rows import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
+from hearth.schemas.failures import Code
+from hearth.schemas.libraries import lacking, remedy
+from hearth.schemas.row_types import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
 from hearth.schemas.tables import FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest
 from hearth.storage.partitions import READ_BATCH, read_rows
+from hearth.storage.rejects import Reject
 
 if TYPE_CHECKING:
     from hearth.rendering.cameras.camera import Camera
@@ -44,17 +50,18 @@ class Context(NamedTuple):
 
     def home(self, name: str) -> DrawableHome:
         """A home with geometry, derived from its relations if it has none; once a process."""
-        from hearth.homes import library
         from hearth.rendering.scene.with_geometry import with_geometry
 
         if name not in self.drawable:
-            graph = library.load_graph(name, self.homes.knowledge, self.job.settings.homes_folder)
-            self.drawable[name] = with_geometry(graph, name, self.homes.knowledge)
+            self.drawable[name] = with_geometry(self.homes.graph(name), name, self.homes.knowledge)
         return self.drawable[name]
 
 
-def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow]]:
-    """One row for each picture of a case, and one for its film, if any."""
+def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow] | Reject]:
+    """One row for each picture of a case, and one for its film, if any; a reject if libraries for pictures lack."""
+    if context.job.plan["lacking"]:
+        yield Reject.of(Code.NOT_RENDERED, no_pictures(context.job.plan["lacking"]), suggestion=remedy("pictures"))
+        return
     from hearth.rendering.film.png import encode
     from hearth.rendering.film.snapshots import snapshots
 
@@ -168,7 +175,13 @@ def prepare(settings: Settings) -> Plan:
         if row["executable"] and homes.in_catalog(row["home"]):
             found.setdefault(row["program_id"], (row["execution_id"], file))
     films = sorted(name for name, _ in list(found.values())[: settings.videos])
-    return {**overlays(settings), "executions": dict(sorted(found.values())), "films": films}
+    chosen = {"executions": dict(sorted(found.values())), "films": films}
+    return {**overlays(settings), **chosen, "lacking": lacking("pictures")}
+
+
+def no_pictures(libraries: list[str]) -> str:
+    """The message of a build without these libraries."""
+    return f"pictures are left out: {', '.join(libraries)} not installed"
 
 
 def _sampled(settings: Settings) -> Iterator[tuple[str, Any]]:
@@ -201,9 +214,7 @@ def partitions(job: Job) -> Iterator[Partition]:
 
 def records(job: Job, partition: Partition) -> Iterator[CaseRow]:
     """The cases of a partition; the others, nearly all, are never converted to rows."""
-    import pyarrow as pa
     import pyarrow.compute as pc
-    import pyarrow.parquet as pq
 
     left = {execution: job.plan["executions"][execution] for execution in partition.payload}
     for name in sorted(set(left.values())):

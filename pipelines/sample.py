@@ -21,7 +21,7 @@ from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
+from hearth.schemas.row_types import CaseRow, ConditionRow, DifferenceRow, GraphRow, GroundingRow, RunRow, ValidatedRow
 from hearth.schemas.tables import CASE
 from hearth.simulation.engine import run
 from hearth.simulation.rules import REPLAY, RULES, Rules
@@ -88,7 +88,7 @@ def _sampled(
     environment, execution = drawn
     differs = environment_of(environment, context.homes.edges(name))
     conditions = environment.conditions
-    return _case(record, name, differs, condition_rows(conditions), run_row(execution, "default"), seed=context.seed)
+    return _case(record, name, differs, condition_rows(conditions), run_row(execution), seed=context.seed)
 
 
 def failed(failure: Failure, program: Program, place: str, where: str = "") -> Reject:
@@ -110,7 +110,7 @@ def _stored(record: ValidatedRow, grounding: GroundingRow, start: GraphRow, cont
         reproduces = execution.executable and execution.final.changes(world) == change_of(grounding["final"])
     differs = difference_of(world, context.homes.home(name), context.homes.edges(name))
     conditions = record["conditions"] or _inferred(program, context.homes.knowledge, REPLAY)
-    return _case(bound, name, differs, conditions, run_row(execution, "replay"), reproduces=reproduces)
+    return _case(bound, name, differs, conditions, run_row(execution), reproduces=reproduces)
 
 
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> list[ConditionRow]:
@@ -143,6 +143,7 @@ def _case(
         **execution,
         "reproduces": reproduces,
         "perturbations": [],
+        "outcome": None,
         "repairs": [],
     }
 

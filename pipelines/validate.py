@@ -1,23 +1,30 @@
 """Stage 2: checks programs by the action grammar: syntax, names, arity and affordances."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from hearth.datasets.format.codecs import binding_rows, named, step_rows, warning_row
+from hearth.datasets.format.codecs import binding_rows, graph_of, named, step_rows, warning_row
+from hearth.grounding.binding import bind_stored
 from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.plans import parse_steps
+from hearth.kb.language.numbered_steps import parse_steps
 from hearth.pipelines.checks import programs, special
 from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_used, overlays
 from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
-from hearth.schemas.diagnostics import Diagnostic
-from hearth.schemas.failures import Code
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program
-from hearth.schemas.rows import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
+from hearth.schemas.row_types import GroundingRow, IngestedRow, ValidatedRow, WrittenGroundingRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import VALIDATED
+from hearth.simulation.rules import REPLAY
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 from hearth.storage.rejects import Reject
+
+Check = Callable[[str, int, str, Knowledge], tuple[Program, tuple[Diagnostic, ...], tuple[Diagnostic, ...]]]
+"""`checked`, or `checked_natural_language`."""
 
 
 def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject]:
@@ -26,7 +33,7 @@ def process(record: IngestedRow, known: Knowledge) -> list[ValidatedRow | Reject
     program, faults, warnings = check(record["text"] or "", record["line"] or 0, record["place"], known)
     if faults:
         return [Reject(faults)]
-    outcomes = [_grounding(grounding, record["place"], known) for grounding in record["groundings"] or ()]
+    outcomes = [_grounding(grounding, record["place"], known, check) for grounding in record["groundings"] or ()]
     groundings = [outcome for outcome in outcomes if not isinstance(outcome, Reject)]
     titled = replace(
         program, title=record["title"] or program.title, description=record["description"] or program.description
@@ -121,8 +128,18 @@ def _numbered(program: Program) -> Program:
     return replace(program, steps=steps)
 
 
-def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge) -> GroundingRow | Reject:
-    program, faults, _ = checked(grounding["text"], 0, f"{place} in {grounding['home']}", known)
+def _grounding(grounding: WrittenGroundingRow, place: str, known: Knowledge, check: Check) -> GroundingRow | Reject:
+    program, faults, _ = check(grounding["text"], 0, f"{place} in {grounding['home']}", known)
+    unbound = [ref for ref in program.objects() if ref.node is None]
+    if grounding["start"] and unbound and not faults:
+        try:
+            home = Home.from_graph(graph_of(grounding["start"]), grounding["home"], known)
+            found = bind_stored(program, World.start(home), REPLAY)
+        except HearthError as error:
+            return Reject.because(error.diagnostics, place)
+        if isinstance(found, Failure):
+            return Reject.failed(found, place, where=f"in {grounding['home']}")
+        program = found.apply(program)
     unbound = [ref for ref in program.objects() if ref.node is None]
     if not faults and unbound:
         message = f"`{unbound[0].name}` ({unbound[0].instance}) is not bound to a node"

@@ -17,9 +17,6 @@ from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution
 from hearth.simulation.world.world import World
 
-_WITH_TOOLS = {"Wipe": (), "Cut": ("knife",)}
-"""Actions that need something in hand that they do not name; part of its name where only some things will do."""
-
 _ANYTHING = frozenset({"thing", "artefact", "being"})
 """Kinds too general to be asked for by name."""
 
@@ -51,7 +48,7 @@ def meant(goal: Postconditions, program: Program, conditions: Preconditions, kno
         if name == "OPEN":
             return subject not in reached_into and not _used_after(program, "Open", subject, preparation)
         if name == HOLDS and target is not None:
-            return not _used_after(program, "Grab", target, preparation) and not _is_tool(program, target)
+            return not _used_after(program, "Grab", target, preparation) and not _is_tool(program, target, knowledge)
         return True
 
     return tuple(fact for fact in goal if is_meant(fact))
@@ -94,14 +91,14 @@ def _used_after(program: Program, action: str, key: Key, preparation: frozenset[
     return any(step.action not in preparation and key in (ref.key for ref in step.objects) for step in later)
 
 
-def _is_tool(program: Program, key: Key) -> bool:
+def _is_tool(program: Program, key: Key, knowledge: Knowledge) -> bool:
     """Whether a thing was the last one taken before something was done that takes such a thing."""
     held: Key | None = None
     for step in program.steps:
         if step.action == "Grab":
             held = _first(step)
-        parts = _WITH_TOOLS.get(step.action)
-        if parts is not None and held == key and _first(step) != key and all(part in key[0] for part in parts):
+        part = knowledge.tool_of(step.action)
+        if part is not None and held == key and _first(step) != key and part in key[0]:
             return True
     return False
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from hearth.grounding.preconditions.postconditions import Postconditions, missing, nodes_of
 from hearth.kb.knowledge import Knowledge
 from hearth.repair import trim
+from hearth.repair.circumstances import Lost, lost
 from hearth.repair.handlers.common import Edit, Handler, RepairContext
 from hearth.repair.handlers.registry import HANDLERS, UNREPAIRABLE
 from hearth.schemas.failures import Code, Failure
@@ -80,12 +81,22 @@ def successes(attempts: Sequence[Attempt], failure: Failure | None) -> tuple[boo
 
 
 class _Task(NamedTuple):
-    """What a program is repaired for: its goal, about these nodes."""
+    """What a program is repaired for: its goal, about these nodes, and the circumstances of each of its steps."""
 
+    original: Program
     goal: Postconditions
     nodes: Mapping[Key, int]
     knowledge: Knowledge
     rules: Rules
+    wanted: Sequence[Postconditions]
+
+    def lost(self, execution: Execution, sources: Sequence[int]) -> Lost | None:
+        """The first step done in other circumstances, if they are known."""
+        return lost(self.original, self.wanted, sources, execution) if self.wanted else None
+
+    def keeps(self, execution: Execution, sources: Sequence[int]) -> bool:
+        """Whether no step is done in other circumstances."""
+        return self.lost(execution, sources) is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +117,7 @@ def repair(
     handlers: Mapping[Code, Handler] = HANDLERS,
     tries: int = TRIES,
     canonical_only: bool = True,
+    wanted: Sequence[Postconditions] = (),
 ) -> Repaired:
     """Repair a program until it runs and reaches its goal (thesis 5.5.4, algorithm 4).
 
@@ -117,10 +129,12 @@ def repair(
         handlers: by failure code.
         tries: repairs at most.
         canonical_only: remove the steps that the repaired program does not need; costs more than the repairs.
+        wanted: the `circumstances` of each step of the original's run, which its repair has to keep; unknown if empty.
 
     Returns:
         The repaired program. Or, with `failure`, what remains of it: NO_HANDLER where a failure can't be
-        repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST, or HANDLER_ERROR.
+        repaired, LOOP where the same program came up again, TOO_MANY_TRIES, GOAL_LOST,
+        CIRCUMSTANCES_LOST, or HANDLER_ERROR.
 
     Examples:
         >>> from hearth.grounding.preconditions.postconditions import achieved
@@ -131,7 +145,7 @@ def repair(
         (None, ['not_close'], True)
     """
     revision = _Revision(program, tuple(range(len(program.steps))), run(world, program, rules))
-    task = _Task(goal, nodes_of(program, world), knowledge, rules)
+    task = _Task(program, goal, nodes_of(program, world), knowledge, rules, wanted)
     attempts: list[Attempt] = []
     seen = {program.steps}
     while True:
@@ -143,35 +157,55 @@ def repair(
         name, edit, refusal = _consult(handlers, context)
         if edit is None:
             attempts.append(_attempt(attempts, context, name, ()))
-            code = Code.GOAL_LOST if context.failure.code is Code.GOAL_LOST else Code.NO_HANDLER
+            code = context.failure.code if context.failure.code in _MISSED else Code.NO_HANDLER
             return _given_up(revision, attempts, context, Code.HANDLER_ERROR if refusal else code, refusal)
         revision = _edited(revision, edit, rules)
         attempts.append(_attempt(attempts, context, edit.name, revision.program.steps))
-        tried = len(seen)
-        seen.add(revision.program.steps)
-        if len(seen) == tried:
+        if revision.program.steps in seen:
             return _given_up(revision, attempts, context, Code.LOOP, f"{edit.name} leads back to an earlier program")
+        seen.add(revision.program.steps)
     if not attempts or not canonical_only:
         return Repaired(revision.program, revision.execution, tuple(attempts), revision.sources)
-    trimmed, sources = trim.trim(program, revision.execution, revision.sources, goal, rules)
+    trimmed, sources = trim.trim(program, revision.execution, revision.sources, goal, rules, task.keeps)
     return Repaired(trimmed.program, trimmed, tuple(attempts), sources)
 
 
+_MISSED = frozenset({Code.GOAL_LOST, Code.CIRCUMSTANCES_LOST})
+"""The faults of a program that runs."""
+
+
 def _context(revision: _Revision, task: _Task) -> RepairContext | None:
-    """The first thing wrong with a program: a step that fails, or a goal that is missed."""
+    """The first thing wrong with a program: a step that fails or is done in other circumstances, or a missed goal."""
     execution = revision.execution
-    failure, at = execution.failure, len(revision.program.steps)
-    lost = () if failure else missing(task.goal, task.nodes, execution.final)
-    if failure is not None:
-        at = _failing(revision.program, failure)
-    elif not lost:
+    if execution.failure is not None:
+        at = _failing(revision.program, execution.failure)
+        return _at(revision, task, at, execution.failure, execution.final)
+    odd = task.lost(execution, revision.sources)
+    if odd is not None:
+        step = revision.program.steps[odd.step]
+        objects = tuple(ref.node for ref in step.objects if ref.node is not None)
+        names = tuple(ref.name for ref in step.objects)
+        expected = "; ".join(map(str, odd.facts))
+        failure = Failure(
+            Code.CIRCUMSTANCES_LOST, odd.tick, step.agent, step.action, objects, names, expected, "not so"
+        )
+        return _at(revision, task, odd.step, failure, execution.worlds[odd.tick], odd.facts)
+    missed = missing(task.goal, task.nodes, execution.final)
+    if not missed:
         return None
-    else:
-        wanted = "; ".join(map(str, lost))
-        failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=wanted, actual="not so at the end")
+    expected = "; ".join(map(str, missed))
+    failure = Failure(Code.GOAL_LOST, len(execution.worlds) - 1, expected=expected, actual="not so at the end")
+    return _at(revision, task, len(revision.program.steps), failure, execution.final, missed)
+
+
+def _at(
+    revision: _Revision, task: _Task, at: int, failure: Failure, world: World, missed: Postconditions = ()
+) -> RepairContext:
+    wanted = tuple(task.wanted[source] if source >= 0 else None for source in revision.sources) if task.wanted else ()
     return RepairContext(
-        revision.program, at, failure, execution.final, task.knowledge, task.rules, task.goal, task.nodes, lost
-    )
+        revision.program, at, failure, world, task.knowledge, task.rules,
+        task.goal, task.nodes, missed, wanted, revision.execution.worlds,
+    )  # fmt: skip
 
 
 def _failing(program: Program, failure: Failure) -> int:

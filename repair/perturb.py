@@ -174,12 +174,30 @@ def _plugged(case: Case) -> Iterator[Perturbation]:
 
 
 def _at_reach(case: Case) -> Iterator[Perturbation]:
-    """An object at reach is where it belongs, but not at reach."""
+    """An object at reach is where it belongs, but not at reach; what is used from a seat, if either can be carried."""
+    seats = _seats(case)
     for condition in case.conditions:
+        used = (condition.objects[0][0], seats.get(condition.step, ""))
+        if used[1] and not any(case.knowledge.has(name, "GRABBABLE") for name in used):
+            continue
         if condition.name == "nearby":
             yield Perturbation("at_reach", (condition,))
         elif condition.name == "atreach" and condition.objects[0] != condition.objects[1]:
             yield _replaced(case, "at_reach", condition, condition.instead("not_near"))
+
+
+def _seats(case: Case) -> dict[int | None, str]:
+    """The class of what the character sits or lies on, by the numbers of the steps that the program does there."""
+    found: dict[int | None, str] = {}
+    seat = ""
+    for number, step in enumerate(case.program.steps):
+        if seat:
+            found[number] = seat
+        if step.action in case.knowledge.group("rests"):
+            seat = step.objects[0].name
+        elif step.action in case.knowledge.group("rises"):
+            seat = ""
+    return found
 
 
 def _container(case: Case) -> Iterator[Perturbation]:

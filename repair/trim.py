@@ -4,7 +4,7 @@ A step that a repair has inserted stays only if without it the program stops or 
 the character has just walked; nothing is opened only to be closed again.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from hearth.grounding.preconditions.postconditions import Postconditions, nodes_of, reached
 from hearth.kb.knowledge import Knowledge
@@ -33,11 +33,16 @@ def resume(execution: Execution, program: Program, first: int, rules: Rules) -> 
         from dataclasses import replace
 
         failure = replace(failure, tick=failure.tick + first)
-    return Execution(program, (*execution.worlds[:first], *rest.worlds), failure)
+    return Execution(program, (*execution.worlds[:first], *rest.worlds), failure, rules)
 
 
 def trim(
-    original: Program, execution: Execution, sources: tuple[int, ...], goal: Postconditions, rules: Rules
+    original: Program,
+    execution: Execution,
+    sources: tuple[int, ...],
+    goal: Postconditions,
+    rules: Rules,
+    keeps: Callable[[Execution, Sequence[int]], bool] = lambda _execution, _sources: True,
 ) -> tuple[Execution, tuple[int, ...]]:
     """Remove unneeded steps, until no more can be removed.
 
@@ -48,6 +53,7 @@ def trim(
             repairing made them void.
         goal: what must stay reached; the characters' hands, too, must end up holding what they hold now.
         rules: for the runs.
+        keeps: whether a shorter program, with its sources, does its steps as it has to.
 
     Returns:
         The execution of what is left, and the sources of its steps.
@@ -55,9 +61,10 @@ def trim(
     nodes = nodes_of(original, execution.final)
     hands = _hands(execution.final)
 
-    def suffices(shorter: Execution) -> bool:
+    def suffices(shorter: Execution, left: tuple[int, ...]) -> bool:
         end = shorter.final
-        return shorter.failure is None and _hands(end) == hands and reached(goal, nodes, end)
+        reaches = shorter.failure is None and _hands(end) == hands and reached(goal, nodes, end)
+        return reaches and keeps(shorter, left)
 
     while True:
         smaller = next(_smaller(original, execution, sources, suffices, rules), None)
@@ -70,7 +77,7 @@ def _smaller(
     original: Program,
     execution: Execution,
     sources: tuple[int, ...],
-    suffices: Callable[[Execution], bool],
+    suffices: Callable[[Execution, tuple[int, ...]], bool],
     rules: Rules,
 ) -> Iterator[tuple[Execution, tuple[int, ...]]]:
     """The program without one step, or without a pair of steps that undo each other, where it still does its work."""
@@ -78,8 +85,9 @@ def _smaller(
         steps = execution.program.steps
         program = execution.program.with_steps(steps[:start] + steps[end:])
         shorter = resume(execution, program, start, rules)
-        if suffices(shorter):
-            yield shorter, sources[:start] + sources[end:]
+        left = sources[:start] + sources[end:]
+        if suffices(shorter, left):
+            yield shorter, left
 
 
 def _candidates(
@@ -110,7 +118,10 @@ def _undo(one: Step, other: Step, both_new: bool, knowledge: Knowledge) -> bool:
     made = knowledge.state_of(one.action)
     if made:
         return knowledge.state_of(other.action) == OPPOSITE[made]
-    return both_new and {one.action, other.action} == {"Grab", "Release"}
+    return both_new and any(
+        first.action in knowledge.group("takes") and then.action in knowledge.group("lets_go")
+        for first, then in ((one, other), (other, one))
+    )
 
 
 def _walks_where_it_is(original: Program, steps: tuple[Step, ...], number: int, walks: frozenset[str]) -> bool:

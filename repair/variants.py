@@ -1,15 +1,16 @@
 """Augmenting a program in a home: perturb its preconditions, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 from hearth.grounding.environments.default_state import Base, prepared
 from hearth.grounding.environments.sampling import Environment, Size, draw, sample
-from hearth.grounding.preconditions.checking import unmet
+from hearth.grounding.preconditions.checking import unmet, unmet_failure
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.postconditions import Postconditions, achieved
+from hearth.repair.circumstances import circumstances
 from hearth.repair.loop import TRIES, Attempt, repair
 from hearth.repair.perturb import MOST, PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
 from hearth.schemas.diagnostics import HearthError
@@ -17,9 +18,9 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.simulation.engine import Execution
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.home import Home
-from hearth.storage.inputs import load_yaml
+from hearth.storage.input_files import load_yaml
 
 DRAWS = 3
 """Environments drawn for one perturbation before it is given up."""
@@ -32,7 +33,8 @@ class Options:
     """How a program is augmented.
 
     Attributes:
-        count: perturbed environments at most; there are fewer when no more distinct ones are found.
+        count: perturbed environments at most; there are fewer when no more distinct ones are found. One in which
+            repairing is given up is replaced by another, up to twice this number in all.
         tries: repairs of one program in one environment.
         chances: how likely perturbations are; those of perturbations.yaml when None.
         rules: for the runs.
@@ -113,6 +115,7 @@ def augment(
         (['not_close', 'inside_closed'], None)
     """
     base = prepared(home)
+    options = replace(options, rules=suited(program, base.knowledge, options.rules))
     if original is None:
         sampled = sample(program, home, seed, record_id, rules=options.rules)
         if isinstance(sampled, Failure):
@@ -120,14 +123,24 @@ def augment(
         original = sampled[0].conditions, sampled[1]
     conditions, execution = original
     goal = achieved(execution)
+    wanted = circumstances(execution)
     chances = options.chances or default_chances()
     generator = rng(seed, "perturb", base.home.name, record_id)
     seen: set[object] = {_shape(program)}
     pairs: list[Pair] = []
-    for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, options.count)):
+    wished = options.count
+    for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, 2 * wished)):
+        if number == wished:
+            break
         drawn = _drawn(program, base, perturbed, seed, f"{record_id}/{number}")
-        pairs.append(_judged(_pair(number, perturbed, drawn, goal, options), seen))
+        pairs.append(_judged(_pair(number, perturbed, drawn, (goal, wanted), options), seen))
+        wished += _is_refused(pairs[-1])
     return Augmented(execution, goal, tuple(pairs))
+
+
+def _is_refused(pair: Pair) -> bool:
+    """Whether repairing was given up: another environment is drawn instead, as long as there are any."""
+    return bool(pair.attempts) and pair.failure is not None and pair.failure.code is not Code.DUPLICATE
 
 
 @lru_cache(maxsize=8)
@@ -186,17 +199,20 @@ def _pair(
     number: int,
     perturbed: Perturbed,
     drawn: Environment | tuple[Environment, Condition],
-    goal: Postconditions,
+    aim: tuple[Postconditions, Sequence[Postconditions]],
     options: Options,
 ) -> Pair:
-    """A perturbed environment's program, repaired."""
+    """A perturbed environment's program, repaired to reach a goal, its steps in their circumstances."""
     if isinstance(drawn, tuple):
         environment, condition = drawn
-        failure = Failure(Code.CONDITION_UNMET, expected=str(condition), actual=f"not so in {DRAWS} environments drawn")
-        program, execution = environment.program, Execution(environment.program, (environment.world,), failure)
+        failure = unmet_failure(condition, environment.program.unbound(), DRAWS)
+        program = environment.program
+        execution = Execution(program, (environment.world,), failure, options.rules)
         sources = tuple(range(len(program.steps)))
         return Pair(number, perturbed.perturbations, environment, program, sources, execution, (), failure)
-    done = repair(drawn.program, drawn.world, goal, drawn.base.knowledge, options.rules, tries=options.tries)
+    goal, wanted = aim
+    known = drawn.base.knowledge
+    done = repair(drawn.program, drawn.world, goal, known, options.rules, tries=options.tries, wanted=wanted)
     return Pair(
         number, perturbed.perturbations, drawn, done.program, done.sources, done.execution, done.attempts, done.failure
     )

@@ -43,8 +43,9 @@ class Splitter:
     def _parted(self, line: str, blanks: int) -> bool:
         if self.has_steps:
             return blanks > 0
-        return (blanks > 1 or (blanks == 1 and self._header > 1)) and not _is_sentence(line)
+        return (blanks > 1 or (blanks == 1 and self._header > 1)) and not is_sentence(line)
 
 
-def _is_sentence(line: str) -> bool:
+def is_sentence(line: str) -> bool:
+    """Whether a line reads like a sentence, which a title does not."""
     return line.rstrip().endswith(_SENTENCE_ENDS) or len(line.split()) >= _SENTENCE_WORDS

@@ -1,7 +1,7 @@
 """The difference of two graphs: the form in which ticks, environments and final graphs are published.
 
 `encode` compares two graphs, and `apply` makes the later one from the earlier one. Worlds are compared faster, by what
-moved (`simulation.world.change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
+moved (`simulation.world.world_change`), with the same result; `datasets.format.codecs` reads and writes rows of tables.
 """
 
 from __future__ import annotations
@@ -133,14 +133,14 @@ class WorkingGraph:
 
     Attributes:
         nodes: by id, with the states they are in.
-        edges: as a set.
+        edges: in the order in which they came: nearly sorted edges are sorted ten times as fast as those of a set.
     """
 
     __slots__ = ("edges", "nodes")
 
     def __init__(self, nodes: Iterable[Node] = (), edges: Iterable[Edge] = ()) -> None:
         self.nodes = {node.id: node for node in nodes}
-        self.edges = set(edges)
+        self.edges = dict.fromkeys(edges)
 
     def copy(self) -> WorkingGraph:
         """Another one of the same content."""
@@ -162,19 +162,19 @@ class WorkingGraph:
         nodes = self.nodes
         if change.removed_nodes:
             removed = set(change.removed_nodes)
-            self.edges = {edge for edge in self.edges if edge.source not in removed and edge.target not in removed}
+            self.edges = {edge: None for edge in self.edges if removed.isdisjoint((edge.source, edge.target))}
             for node_id in removed:
                 nodes.pop(node_id, None)
         nodes.update((node.id, node) for node in change.added_nodes)
-        self.edges.difference_update(change.removed)
-        self.edges.update(change.added)
+        for edge in change.removed:
+            self.edges.pop(edge, None)
+        self.edges.update(dict.fromkeys(change.added))
         for node_id, names in restated(change, lambda node_id: nodes[node_id].states).items():
             nodes[node_id] = in_states(nodes[node_id], names)
 
     def graph(self) -> EnvironmentGraph:
         """The graph as it is now: nodes by id, edges sorted."""
-        nodes = tuple(node for _, node in sorted(self.nodes.items()))
-        return EnvironmentGraph(nodes, tuple(sorted(self.edges)))
+        return EnvironmentGraph(tuple(map(self.nodes.__getitem__, sorted(self.nodes))), tuple(sorted(self.edges)))
 
 
 def restated(change: Change, before: Callable[[int], Iterable[str]]) -> dict[int, set[str]]:

@@ -94,6 +94,7 @@ class Code(StrEnum):
     LOOP = "LOOP", 60
     GOAL_LOST = "GOAL_LOST", 61
     UNPERTURBED = "UNPERTURBED", 62
+    CIRCUMSTANCES_LOST = "CIRCUMSTANCES_LOST", 73
     # Scoring and publishing
     UNKNOWN_ID = "UNKNOWN_ID", 63
     MISSING_PREDICTION = "MISSING_PREDICTION", 64
@@ -106,6 +107,7 @@ class Code(StrEnum):
     INTERNAL_ERROR = "INTERNAL_ERROR", 70
     DAMAGED_FILE = "DAMAGED_FILE", 71
     TIMED_OUT = "TIMED_OUT", 72
+    BAD_ARGUMENT = "BAD_ARGUMENT", 74
 
 
 @dataclass(frozen=True, slots=True)

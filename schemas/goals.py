@@ -1,4 +1,4 @@
-"""Goals: counted literals such as `ON(plate, dinnertable): 2` (thesis 6.3, tables B.1, C.2)."""
+"""Goals: counted literals such as `ON(plate, dinnertable): 2` (thesis 6.3, tables B.1, C.2), alternatives and order."""
 
 from __future__ import annotations
 
@@ -9,14 +9,35 @@ from hearth.schemas.literals import Literal, Name
 
 
 @dataclass(frozen=True, slots=True)
-class Goal:
-    """Literals with how often each must hold.
+class Joined:
+    """Goals joined by a word.
 
-    Counted are distinct subjects; of a literal about characters, what each of them is related to: `HOLDS(agent, book)`
-    counts books.
+    Attributes:
+        join: `or` (one of them), `then` (all, in this order), `not`, `exists` or `forall` (of one, about things).
+        goals: what is joined.
+        variable: of `exists` and `forall`; in the goal it is a term that begins with `?`.
     """
 
-    counts: tuple[tuple[Literal[Name], int], ...]
+    join: str
+    goals: tuple[Goal, ...]
+    variable: str = ""
+
+    def __str__(self) -> str:
+        if self.variable:
+            return f"{self.join} {self.variable[1:]}. ({self.goals[0]})".replace("?", "")
+        return f"not ({self.goals[0]})" if self.join == "not" else f" {self.join} ".join(f"({g})" for g in self.goals)
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What must all be reached: literals with how often each must hold, and parts that are joined by other words.
+
+    Counted are distinct subjects; of a literal about characters, what each of them is related to: `HOLDS(agent, book)`
+    counts books. A literal may name an action, `Watch(television)`: counted are the different objects it was done with.
+    """
+
+    counts: tuple[tuple[Literal[Name], int], ...] = ()
+    parts: tuple[Joined, ...] = ()
 
     @classmethod
     def of(cls, *wanted: Literal[Name] | tuple[Literal[Name], int]) -> Goal:
@@ -25,3 +46,30 @@ class Goal:
 
     def __iter__(self) -> Iterator[tuple[Literal[Name], int]]:
         return iter(self.counts)
+
+    def __and__(self, other: Goal) -> Goal:
+        return Goal(self.counts + other.counts, self.parts + other.parts)
+
+    def literals(self) -> Iterator[tuple[Literal[Name], int]]:
+        """Its counted literals and those of its parts."""
+        yield from self.counts
+        for part in self.parts:
+            for goal in part.goals:
+                yield from goal.literals()
+
+    def bound(self, variable: str, node: int) -> Goal:
+        """The goal with a node instead of a variable."""
+        counts = ((lit._replace(terms=tuple(node if t == variable else t for t in lit.terms)), n) for lit, n in self)
+        parts = (Joined(p.join, tuple(g.bound(variable, node) for g in p.goals), p.variable) for p in self.parts)
+        return Goal(tuple(counts), tuple(parts))
+
+    def __str__(self) -> str:
+        counted = (_text(literal) + (f": {number}" if number != 1 else "") for literal, number in self)
+        parts = (f"({part})" if self.counts or self.parts[1:] else str(part) for part in self.parts)
+        return " and ".join((*counted, *parts))
+
+
+def _text(literal: Literal[Name]) -> str:
+    """A literal; an action in brackets, so that `[Open](fridge)` is not the state."""
+    name = literal.name if literal.name.isupper() else f"[{literal.name}]"
+    return str(literal._replace(name=name)) if literal.terms else name

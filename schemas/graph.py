@@ -1,12 +1,13 @@
 """Environment graphs: the nodes of a home and how they relate (thesis 2.3.2, 5.4.1)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
+from hearth.schemas.vocabulary import RELATIONS
 
 Point = tuple[float, float, float]
 """(x, y, z) in metres, y upwards."""
@@ -28,6 +29,19 @@ class Edge(NamedTuple):
     source: int
     relation: str
     target: int
+
+
+class EdgeColumns(NamedTuple):
+    """Edges column by column, as arrays of int64; relations by their ids in the vocabulary."""
+
+    sources: Any
+    relations: Any
+    targets: Any
+
+    def rows(self) -> Iterator[Edge]:
+        """The edges, as plain tuples, which equal `Edge` and are made faster."""
+        names = map(RELATIONS.__getitem__, self.relations.tolist())
+        return cast("Iterator[Edge]", zip(self.sources.tolist(), names, self.targets.tolist(), strict=True))
 
 
 @dataclass(frozen=True, slots=True)

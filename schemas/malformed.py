@@ -9,12 +9,12 @@ from hearth.schemas.failures import Code
 _FORM = "write [Action] <object> (1), with `|` between the agents of one tick"
 _SPECIAL = re.compile(r"\s*\[\s*special\s*\]", re.IGNORECASE)
 _AGENT = re.compile(r"<[^<>\[\]]*>(?=\s*\[)")
-_NAMED_AGENT = re.compile(r"<\s*char\d{1,3}\s*>", re.IGNORECASE)
+_NAMED_AGENT = re.compile(r"<\s*char[0-9]{1,3}\s*>", re.IGNORECASE)
 _BRACKETS = re.compile(r"\[[^\[\]<>]*\]")
 _ACTION_NAME = re.compile(r"\[\s*[A-Za-z][A-Za-z _-]*?\s*\]")
 _OBJECT = re.compile(r"<([^<>\[\]]*)>")
 _INSTANCE = re.compile(r"\(([^()<>\[\]|]*)\)")
-_NUMBER = re.compile(r"\s*\d{1,9}(\.\d{1,9})?\s*")
+_NUMBER = re.compile(r"\s*(?!0+\s*$)[0-9]{1,9}(\.[0-9]{1,9})?\s*")
 _MODIFIERS = re.compile(r"\{[^{}]*\}")
 _WORD = re.compile(r"[^\W_]")
 

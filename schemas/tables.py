@@ -1,23 +1,24 @@
-"""The columns of every table as Arrow schemas, made from the rows that `schemas.rows` declares.
+"""The columns of every table as Arrow schemas, made from the rows that `schemas.row_types` declares.
 
 A column's comment stands in its field's metadata (`comment`).
 """
 
-from collections.abc import Iterable
-from types import UnionType
+from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType, UnionType
 from typing import Any, Final, Union, get_args, get_origin, get_type_hints, is_typeddict
 
 import pyarrow as pa
 
-from hearth.schemas import rows
-from hearth.schemas.rows import Arrow
+from hearth.schemas import row_types
+from hearth.schemas.row_types import Arrow
+from hearth.schemas.yaml_extent import packaged
 
 _PLAIN = {str: pa.string(), bool: pa.bool_(), int: pa.int32(), float: pa.float64()}
 
 
 def struct(row: type) -> pa.DataType:
-    """The Arrow type of a declared row; nested columns have no comments."""
-    return pa.struct([(name, _type(hint)) for name, hint in get_type_hints(row, include_extras=True).items()])
+    """The Arrow type of a declared row."""
+    return pa.struct(_fields(row))
 
 
 def _type(hint: Any) -> pa.DataType:
@@ -34,54 +35,78 @@ def _type(hint: Any) -> pa.DataType:
     return struct(hint) if is_typeddict(hint) else _PLAIN[hint]
 
 
-def _schema(row: type, known: Iterable[pa.Field] = (), otherwise: str = "") -> pa.Schema:
-    """The schema of a declared row.
+def _schema(row: type, known: Iterable[pa.Field] = ()) -> pa.Schema:
+    """The schema of a declared row; columns that have no comment have that of the known field of their name."""
+    comments = {field.name: comment_of(field) for field in known}
+    return pa.schema(_fields(row, comments), metadata={"comment": str(row.__doc__)})
 
-    Args:
-        row: a TypedDict.
-        known: fields with comments, for columns of the same name that have none.
-        otherwise: the comment of columns in neither, with their name put in.
-    """
-    comments = {field.name: field.metadata[b"comment"] for field in known}
+
+def _fields(row: type, comments: Mapping[str, str] = MappingProxyType({})) -> list[pa.Field]:
     fields = []
     for name, hint in get_type_hints(row, include_extras=True).items():
         own = (each for each in getattr(hint, "__metadata__", ()) if not isinstance(each, Arrow))
-        comment = next(own, None) or comments.get(name) or otherwise.format(name)
+        comment = next(own, None) or comments.get(name, "")
         fields.append(pa.field(name, _type(hint), metadata={"comment": comment}))
-    return pa.schema(fields)
+    return fields
 
 
-INGESTED: Final = _schema(rows.IngestedRow)
-VALIDATED: Final = _schema(rows.ValidatedRow)
-CASE: Final = _schema(rows.CaseRow)
-_REPAIRED = [CASE.field(name) for name in ("execution_id", "environment_id", "parent_id", "home", "perturbations")]
-TRIED: Final = _schema(rows.TriedRow, _REPAIRED, "repair: {}")
-SKETCHED: Final = _schema(rows.SketchRow)
-RENDERED: Final = _schema(rows.RenderedRow)
-FILMED: Final = _schema(rows.FilmedRow)
-REJECTED: Final = _schema(rows.RejectedRow)
+def comment_of(described: pa.Field | pa.Schema) -> str:
+    """The meaning of a column, of a nested field, or of a table."""
+    return str((described.metadata or {}).get(b"comment", b"").decode())
 
-_VERSIONS: Final = _schema(rows.VersionsRow)
+
+def nested(column: pa.Field, path: str = "") -> Iterator[tuple[str, pa.Field]]:
+    """A column and all fields within it, with their paths: `steps`, `steps[].objects`, `steps[].objects[].name`."""
+    kind, path = column.type, path or column.name
+    yield path, column
+    while pa.types.is_list(kind):
+        kind, path = kind.value_type, f"{path}[]"
+    for field in kind if pa.types.is_struct(kind) else ():
+        yield from nested(field, f"{path}.{field.name}")
+
+
+INGESTED: Final = _schema(row_types.IngestedRow)
+VALIDATED: Final = _schema(row_types.ValidatedRow)
+CASE: Final = _schema(row_types.CaseRow)
+SKETCHED: Final = _schema(row_types.SketchRow)
+RENDERED: Final = _schema(row_types.RenderedRow)
+FILMED: Final = _schema(row_types.FilmedRow)
+REJECTED: Final = _schema(row_types.RejectedRow)
+
+_VERSIONS: Final = _schema(row_types.VersionsRow)
 
 TABLES: Final[dict[str, pa.Schema]] = {
-    table: pa.schema([*schema, *_VERSIONS])
+    table: pa.schema([*schema, *_VERSIONS], metadata=schema.metadata)
     for table, schema in {
-        "activities": _schema(rows.ActivityRow),
-        "descriptions": _schema(rows.DescriptionRow, INGESTED),
-        "programs": _schema(rows.ProgramRow, CASE),
-        "homes": _schema(rows.HomeRow),
-        "home_nodes": _schema(rows.HomeNodeRow, otherwise="node: {}"),
-        "home_edges": _schema(rows.HomeEdgeRow, otherwise="edge: {}"),
-        "environments": _schema(rows.EnvironmentRow, CASE, "differs from the home: {}"),
-        "executions": _schema(rows.ExecutionRow, CASE),
-        "repairs": _schema(rows.RepairedRow, _REPAIRED, "repair: {}"),
-        "splits": _schema(rows.SplitRow),
+        "activities": _schema(row_types.ActivityRow),
+        "descriptions": _schema(row_types.DescriptionRow, INGESTED),
+        "programs": _schema(row_types.ProgramRow, CASE),
+        "homes": _schema(row_types.HomeRow),
+        "home_nodes": _schema(row_types.HomeNodeRow),
+        "home_edges": _schema(row_types.HomeEdgeRow),
+        "environments": _schema(row_types.EnvironmentRow, CASE),
+        "executions": _schema(row_types.ExecutionRow, CASE),
+        "perturbations": _schema(row_types.PerturbedRow),
+        "repairs": _schema(row_types.RepairedRow),
+        "splits": _schema(row_types.SplitRow),
         "sketches": SKETCHED,
-        "frames": _schema(rows.FrameRow),
-        "videos": _schema(rows.VideoRow),
-        "vocabulary": _schema(rows.NameRow),
-        "rejects": _schema(rows.RejectRow),
-        "ledger": _schema(rows.LedgerRow),
+        "frames": _schema(row_types.FrameRow),
+        "videos": _schema(row_types.VideoRow),
+        "vocabulary": _schema(row_types.NameRow),
+        "rejects": _schema(row_types.RejectRow),
+        "ledger": _schema(row_types.LedgerRow),
     }.items()
 }
 """Published tables by name."""
+
+_RELATED: Final = packaged("hearth.schemas", "keys.yaml")
+
+KEYS: Final[dict[str, tuple[str, ...]]] = {table: tuple(columns) for table, columns in _RELATED["keys"].items()}
+"""Key columns of each table."""
+
+REFERENCES: Final[tuple[tuple[str, str, str, str], ...]] = tuple(
+    (table, column, other, KEYS[other][0])
+    for table, columns in _RELATED["references"].items()
+    for column, other in columns.items()
+)
+"""References: table and column, and the table and key that must contain the value; null refers to nothing."""

@@ -1,5 +1,6 @@
-"""How much YAML from others may hold: an alias takes four characters to write, and may stand for a million values."""
+"""Reading our YAML, and how much that of others may hold: a short alias may stand for a million values."""
 
+from importlib.resources import files
 from typing import Any
 
 import yaml
@@ -14,6 +15,11 @@ DEEPEST = 20
 LIMITS = f"at most {LARGEST:,} bytes, {MOST:,} values, {DEEPEST} in one another"
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def packaged(package: str, file: str) -> Any:
+    """The content of a YAML file of ours, which lies in a package."""
+    return yaml.load((files(package) / file).read_text("utf-8"), LOADER)
 
 
 def too_much(text: str) -> str:

@@ -1,40 +1,52 @@
-"""Baselines of the thesis on a dataset's own splits (4.3, 5.6.2; tables 4.4, 4.5 and 5.2)."""
+"""Baselines of the thesis on a dataset's own splits (4.3, 5.6.2; tables 4.4, 4.5 and 5.2), and yardsticks of ours."""
 
 from collections.abc import Callable, Sequence
 from random import Random
 from typing import NamedTuple
 
 from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.stored_cases import StoredCaseRow, stored_cases
+from hearth.datasets.verify import opened
+from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
+from hearth.repair.loop import repair
 from hearth.schemas.literals import Literal
-from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import DifferenceRow
 from hearth.scoring.dataset_scores import score_steps
-from hearth.scoring.evaluate import Scored, summarise
+from hearth.scoring.evaluate import METRICS, Scored, summarise
 from hearth.scoring.metrics.lcs import matrix
+from hearth.simulation.actions.legal import legal
+from hearth.simulation.engine import act
+from hearth.simulation.rules import RULES, Rules
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 Steps = tuple[Step, ...]
 
 
 class Example(NamedTuple):
-    """A program with its description, its sketch, and the difference of its start from the home, as class literals."""
+    """A program with its description, its sketch, the difference of its start from the home, and its execution."""
 
     execution_id: str
     text: str
     steps: Steps
     sketch: Steps = ()
     start: frozenset[Literal[str]] = frozenset()
+    case: StoredCaseRow | None = None
+
+
+Starting = Callable[[Sequence[Example], Example, World, Rules, Random], Steps]
+"""A baseline that sees the start of one test example."""
 
 
 class Result(NamedTuple):
-    """A baseline's mean scores: LCS by action, object and step, and their mean; graph F1; executability; parsability.
-
-    None if the thesis has no figure.
+    """A baseline's mean scores, as in `METRICS`: of programs, of final graphs, of goals, of running. None if the thesis
+    has no figure.
     """
 
     baseline: str
@@ -42,9 +54,12 @@ class Result(NamedTuple):
     object: float | None
     step: float | None
     mean: float | None
+    step_instances: float | None = None
     f1_relation: float | None = None
     f1_state: float | None = None
     f1: float | None = None
+    goal: float | None = None
+    goal_fraction: float | None = None
     executable: float | None = None
     parsable: float | None = None
 
@@ -56,12 +71,13 @@ THESIS = (
     Result("Random sampling, table 4.5", 0.106, 0.018, 0.004, 0.043),
     Result("Random retrieval, table 4.5", 0.320, 0.037, 0.032, 0.130),
     Result("Skip-thoughts retrieval, table 4.5", 0.469, 0.297, 0.266, 0.344),
-    Result("Nearest neighbours, table 5.2", None, None, 0.127, None, 0.019, 0.288, 0.041),
-    Result("Unaries, table 5.2", None, None, 0.372, None, 0.162, 0.142, 0.159, 0.248, 0.753),
-    Result("ResActGraph, table 5.2", None, None, 0.516, None, 0.410, 0.420, 0.413, 0.493, 0.853),
+    Result("Nearest neighbours, table 5.2", None, None, None, None, 0.127, 0.019, 0.288, 0.041),
+    Result("Unaries, table 5.2", None, None, None, None, 0.372, 0.162, 0.142, 0.159, None, None, 0.248, 0.753),
+    Result("ResActGraph, table 5.2", None, None, None, None, 0.516, 0.410, 0.420, 0.413, None, None, 0.493, 0.853),
 )
 """The thesis's figures: 4.4 on synthetic programs, 4.5 on crowd-sourced ones, 5.2 on augmented ones. Retrieval in 4.4
-is always executable, because programs run without a given home; here they run in the test's home."""
+is always executable, because programs run without a given home; here they run in the test's home. In 5.2 the LCS
+compares nodes."""
 
 MOST = 1_000
 """Greatest number of test executions for baselines over sketches; of more, a sample spread over all of them."""
@@ -70,78 +86,65 @@ MOST = 1_000
 def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> list[Result]:
     """Every baseline on a split: trained on `train`, tested on all test parts.
 
-    Baselines over descriptions use original programs, whose descriptions people wrote; those over sketches use every
-    execution. A baseline without train or test programs has no row.
+    Baselines over descriptions use original programs, whose descriptions people wrote; those over sketches and starts
+    use every execution. A baseline without train or test programs has no row.
     """
     found = []
-    for makers, originals in ((BASELINES, True), (BY_SKETCH, False)):
+    for makers, starting, originals in ((BASELINES, {}, True), (BY_SKETCH, BY_START, False)):
         train, test = (_examples(dataset, split, part, originals) for part in ("train", "test"))
         test = test[:: max(1, -(-len(test) // MOST))]
         if train and test:
             predicted = [make(train, test, seed, dataset.knowledge) for make in makers.values()]
+            predicted += [[_planned(name, train, each, seed, dataset) for each in test] for name in starting]
             # Predictions for one execution are adjacent: it is then read once.
             pairs = ((each.execution_id, one) for each, *some in zip(test, *predicted, strict=True) for one in some)
             scored = score_steps(dataset, pairs)
-            found += [_result(name, scored[place :: len(makers)]) for place, name in enumerate(makers)]
+            found += [_result(name, scored[place :: len(predicted)]) for place, name in enumerate((*makers, *starting))]
     return found
 
 
 _EXAMPLES = """
-    SELECT min(s.execution_id) AS execution_id, any_value(p) AS program, any_value(k.keep) AS keep,
-        arg_min(e.environment_id, s.execution_id) AS environment_id
+    SELECT min(s.execution_id), any_value(k.keep)
     FROM splits s JOIN programs p USING (program_id) JOIN executions e USING (execution_id)
     LEFT JOIN (SELECT program_id, min(keep) AS keep FROM sketches WHERE keep IS NOT NULL GROUP BY 1) k
         ON k.program_id = p.program_id
-    WHERE s.split = $split AND starts_with(s.part, $part) AND e.executable AND {where} GROUP BY {group} ORDER BY 1
-"""
-
-_STARTS = """
-    WITH fact AS (
-        SELECT environment_id, home, s.state AS name, s.node AS node, NULL AS other
-        FROM (SELECT environment_id, home, unnest(set_states) AS s FROM environments)
-        UNION ALL
-        SELECT environment_id, home, d.relation, d.source, d.target
-        FROM (SELECT environment_id, home, unnest(added) AS d FROM environments) WHERE d.relation IN ('ON', 'INSIDE')
-    ),
-    node AS (
-        SELECT environment_id, n.id AS id, n.class_name AS class_name
-        FROM (SELECT environment_id, unnest(added_nodes) AS n FROM environments)
-    )
-    SELECT fact.environment_id, list(DISTINCT [name, coalesce(a.class_name, b.class_name),
-                                             coalesce(c.class_name, d.class_name)]) AS literals
-    FROM fact
-    LEFT JOIN node a ON a.environment_id = fact.environment_id AND a.id = fact.node
-    LEFT JOIN home_nodes b ON b.home = fact.home AND b.id = fact.node
-    LEFT JOIN node c ON c.environment_id = fact.environment_id AND c.id = fact.other
-    LEFT JOIN home_nodes d ON d.home = fact.home AND d.id = fact.other
-    GROUP BY fact.environment_id
+    WHERE s.split = $split AND starts_with(s.part, $part) AND e.executable AND {where} GROUP BY {group}
 """
 
 
 def _examples(dataset: Dataset, split: str, part: str, originals: bool) -> list[Example]:
     where = "p.parent_id IS NULL" if originals else "k.keep IS NOT NULL"
     query = _EXAMPLES.format(where=where, group="p.program_id" if originals else "s.execution_id")
-    rows = dataset.sql(query, split=split, part=part).to_arrow_table().to_pylist()
-    starts = {} if originals else {name: frozenset(map(_literal, found)) for name, found in dataset.rows(_STARTS)[1]}
-    return [_example(row, starts.get(row["environment_id"], frozenset())) for row in rows]
+    keeps = dict(dataset.rows(query, split=split, part=part)[1])
+    homes = opened(str(dataset.folder))[1]
+    cases = stored_cases(dataset, list(keeps)) if keeps else ()
+    found = (_example(case, keeps[case["execution_id"]] or (), homes.home(case["home"])) for case in cases)
+    return sorted(found, key=lambda each: each.execution_id)
 
 
-def _literal(names: Sequence[str | None]) -> Literal[str]:
-    name, *terms = (each for each in names if each)
-    return Literal(name, tuple(terms))
+def _example(case: StoredCaseRow, keep: Sequence[bool], home: Home) -> Example:
+    steps = program_of(case).steps
+    kept = tuple(step for step, keeps in zip(steps, keep, strict=False) if keeps)
+    text = f"{case['title']} {case['description']}"
+    return Example(case["execution_id"], text, steps, kept, _start(case["environment"], home), case)
 
 
-def _example(row: Row, start: frozenset[Literal[str]]) -> Example:
-    program = row["program"]
-    steps = program_of(program).steps
-    kept = tuple(step for step, keep in zip(steps, row["keep"] or (), strict=False) if keep)
-    return Example(row["execution_id"], f"{program['title']} {program['description']}", steps, kept, start)
+def _start(environment: DifferenceRow, home: Home) -> frozenset[Literal[str]]:
+    """The difference of an environment from its home, as literals of classes."""
+    added = {node["id"]: node["class_name"] for node in environment["added_nodes"]}
+
+    def name(node: int) -> str:
+        return added[node] if node in added else home.classes[home.index[node]]
+
+    edges = [edge for edge in environment["added"] if edge["relation"] in ("ON", "INSIDE")]
+    states = {Literal.of(each["state"], name(each["node"])) for each in environment["set_states"]}
+    return frozenset(states | {Literal.of(e["relation"], name(e["source"]), name(e["target"])) for e in edges})
 
 
 def _result(name: str, scored: Sequence[Scored]) -> Result:
     means = summarise(scored).means
-    wanted = ("lcs_action", "lcs_object", "lcs_step", "lcs_mean", "f1_relation", "f1_state", "f1", "executable")
-    return Result(name, *(means[each].mean if each in means else None for each in (*wanted, "parsable")))
+    columns = (each if each in METRICS else f"lcs_{each}" for each in Result._fields[1:])
+    return Result(name, *(means[each].mean if each in means else None for each in columns))
 
 
 def random_sampling(train: Sequence[Example], test: Sequence[Example], seed: int, knowledge: Knowledge) -> list[Steps]:
@@ -166,16 +169,9 @@ def random_retrieval(train: Sequence[Example], test: Sequence[Example], seed: in
 
 
 def nearest_description(train: Sequence[Example], test: Sequence[Example], seed: int, _: Knowledge) -> list[Steps]:
-    """The program with the most similar description, by the cosine of TF-IDF weights; of equal ones the first.
+    """The program with the most similar description, by the cosine of TF-IDF weights; of equal ones the first."""
+    from sklearn.feature_extraction.text import TfidfVectorizer
 
-    Raises:
-        HearthError: MISSING_FILE, if scikit-learn is not installed.
-    """
-    try:
-        from sklearn.feature_extraction.text import TfidfVectorizer
-    except ImportError as error:
-        remedy = "pip install scikit-learn"
-        raise HearthError.of(Code.MISSING_FILE, f"no TF-IDF here: {error}", suggestion=remedy) from None
     weights = TfidfVectorizer(token_pattern=WORD)
     known = weights.fit_transform([each.text for each in train])
     alike = (weights.transform([each.text for each in test]) @ known.T).toarray()
@@ -206,6 +202,38 @@ def _shared(one: frozenset[Literal[str]], other: frozenset[Literal[str]]) -> flo
     return len(one & other) / len(one | other) if one or other else 1.0
 
 
+def empty(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
+    """The program without steps."""
+    return ()
+
+
+def random_legal(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
+    """Steps that the engine does not refuse, as many as a random training program has."""
+    steps: list[Step] = []
+    for _ in range(len(random.choice(train).steps)):
+        could = legal(world, rules=rules)
+        action = random.choice(sorted(could.masks))
+        nodes = [random.choice(could.objects(action, place)) for place in range(len(could.masks[action]))]
+        objects = tuple(ObjectRef(world.home.classes[world.home.index[node]], 1, node) for node in nodes)
+        after = act(world, Step(action, objects), rules)
+        if isinstance(after, World):
+            steps.append(Step(action, objects))
+            world = after
+    return tuple(steps)
+
+
+def sketch_alone(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
+    """The sketch, its objects bound to the nearest nodes of their classes."""
+    program = Program(steps=example.sketch)
+    return nearest(program, world).apply(program).steps
+
+
+def planner(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
+    """The sketch so bound, and repaired until it runs: what planning without learning achieves."""
+    program = Program(steps=sketch_alone(train, example, world, rules, random))
+    return repair(program, world, (), world.home.knowledge, rules, canonical_only=False).program.steps
+
+
 Maker = Callable[[Sequence[Example], Sequence[Example], int, Knowledge], list[Steps]]
 
 BASELINES: dict[str, Maker] = {
@@ -216,4 +244,19 @@ BASELINES: dict[str, Maker] = {
 """Each predicts a program for every test example from its description. To add one: a function, a row here, a test."""
 
 BY_SKETCH: dict[str, Maker] = {"nearest sketch": nearest_sketch}
-"""Likewise from its sketch and its start."""
+"""Likewise from its sketch and its start's differences from the home."""
+
+BY_START: dict[str, Starting] = {
+    "empty program": empty,
+    "random legal steps": random_legal,
+    "sketch alone": sketch_alone,
+    "planner": planner,
+}
+"""Likewise for one test example, in its environment at the start: yardsticks of ours."""
+
+
+def _planned(baseline: str, train: Sequence[Example], example: Example, seed: int, dataset: Dataset) -> Steps:
+    case = example.case
+    assert case
+    world = start_of(case["environment"], case["home"], opened(str(dataset.folder))[1])
+    return BY_START[baseline](train, example, world, RULES[case["rules"]], rng(seed, baseline, example.execution_id))

@@ -18,9 +18,8 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.evaluate import Options, Reference, Scored, lcs_of, scored
+from hearth.scoring.evaluate import BothLcs, Options, Reference, Scored, lcs_of, scored
 from hearth.scoring.lines import steps_of
-from hearth.scoring.metrics.lcs import LcsScore
 from hearth.scoring.prediction_rows import Named
 from hearth.scoring.predictions import Pair, read_pairs
 from hearth.simulation.engine import run
@@ -67,7 +66,7 @@ def score_dataset(
     """
     opened.cache_clear()
     wanted = chosen(dataset, split, part)
-    known: dict[str, tuple[Step, ...]] = dict.fromkeys(chosen(dataset), ())
+    known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
     named = _named(dataset)
     predicted = {pair.id: pair for pair in read_pairs(file, known, partial(read_line, dataset.knowledge), named)}
     return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
@@ -100,7 +99,7 @@ def _scored_share(job: Job) -> list[Scored]:
 
 
 def _scored(
-    case: StoredCaseRow, pairs: Sequence[tuple[Pair, LcsScore]], homes: Source, options: Options
+    case: StoredCaseRow, pairs: Sequence[tuple[Pair, BothLcs]], homes: Source, options: Options
 ) -> Iterator[Scored]:
     """The scores of an execution's predictions, given with their LCS."""
     world, options = start_of(case["environment"], case["home"], homes), replace(options, rules=RULES[case["rules"]])
@@ -124,7 +123,7 @@ def _named(dataset: Dataset) -> Named:
     """A function from a row without `id` to its executions."""
     of_program: dict[str, list[str]] = {}
     there: dict[tuple[str, str], list[str]] = {}
-    query = "SELECT execution_id, program_id, home FROM executions WHERE executable ORDER BY 1"
+    query = f"SELECT execution_id, program_id, home FROM executions WHERE {dataset.included} ORDER BY 1"
     for execution_id, program_id, home in dataset.rows(query)[1]:
         of_program.setdefault(program_id, []).append(execution_id)
         there.setdefault((program_id, home), []).append(execution_id)
@@ -142,20 +141,24 @@ def _named(dataset: Dataset) -> Named:
     return named
 
 
+def _every(dataset: Dataset) -> list[str]:
+    return [name for (name,) in dataset.rows("SELECT execution_id FROM executions")[1]]
+
+
 def chosen(dataset: Dataset, split: str = "", part: str = "") -> list[str]:
-    """The ids of the executable executions in a part of a split, sorted.
+    """The ids of the executions in a part of a split, sorted; without a split, of all that the dataset includes.
 
     Raises:
         HearthError: UNKNOWN_ID, with the existing parts.
     """
     if not split:
-        query = "SELECT execution_id FROM executions WHERE executable ORDER BY 1"
+        query = f"SELECT execution_id FROM executions WHERE {dataset.included} ORDER BY 1"
         return [name for (name,) in dataset.rows(query)[1]]
     query = """SELECT execution_id FROM splits SEMI JOIN (SELECT execution_id FROM executions WHERE executable)
         USING (execution_id) WHERE split = $split AND starts_with(part, $part) ORDER BY 1"""
     found = [name for (name,) in dataset.rows(query, split=split, part=part)[1]]
     if not found:
-        there = dataset.rows("SELECT DISTINCT split || ' ' || part FROM splits ORDER BY 1")[1]
+        there = dataset.rows("SELECT DISTINCT split || ' ' || part FROM splits WHERE part IS NOT NULL ORDER BY 1")[1]
         message = f"no executions in part `{part}` of split `{split}`"
         suggestion = f"there are {', '.join(name for (name,) in there)}"
         raise HearthError.of(Code.UNKNOWN_ID, message, file=str(dataset.folder), suggestion=suggestion)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
@@ -17,17 +17,26 @@ from hearth.scoring.lines import Lines
 from hearth.scoring.metrics import executability as running
 from hearth.scoring.metrics import goals
 from hearth.scoring.metrics.executability import ErrorClass, Executability, executability
-from hearth.scoring.metrics.goals import Satisfaction, goal_of, satisfaction
-from hearth.scoring.metrics.graph_f1 import FAILED, GraphScore, MatchBy, Scope, f1_signature, named
+from hearth.scoring.metrics.goals import goal_of
+from hearth.scoring.metrics.graph_f1 import FAILED, MATCH, SCOPE, GraphScore, MatchBy, Scope, f1_signature, named
 from hearth.scoring.metrics.graph_f1 import score as graph_score
-from hearth.scoring.metrics.lcs import LcsScore, lcs_signature, score_pairs
+from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
 from hearth.scoring.metrics.parsability import Parsability, parsability
 from hearth.scoring.predictions import Pair
+from hearth.simulation.engine import run
+from hearth.simulation.goal_text import read_goal
+from hearth.simulation.goals import Progress
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
+GOALS = ("goal", "tl_goal", "vh_goal")
+"""Columns of rows that have a goal of their own."""
+
 NO_LCS = LcsScore(0.0, 0.0, 0.0)
+
+BothLcs = tuple[LcsScore, LcsScore]
+"""Similarity by class, or as the options say, and by instance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +47,13 @@ class Options:
         rules: of simulation.
         match: assignment of instances in final graphs.
         scope: the program whose objects are compared in final graphs.
-        instances: whether LCS distinguishes instances.
+        instances: whether LCS distinguishes instances at all levels; `Scored.by_instance` always does.
         seed: of the intervals.
     """
 
     rules: Rules = DEFAULT
-    match: MatchBy = "best"
-    scope: Scope = "either"
+    match: MatchBy = MATCH
+    scope: Scope = SCOPE
     instances: bool = False
     seed: int = 0
 
@@ -55,20 +64,23 @@ class Scored:
 
     Attributes:
         pair: the prediction and its reference.
-        lcs: similarity of the programs.
+        lcs: similarity of the programs, by class unless the options say otherwise.
+        by_instance: similarity where each object is an instance, as in tables 5.2 to 5.5.
         parse: None for a missing prediction.
         execution: None without an environment, and for a missing prediction.
         graph: None without an environment, or if the reference does not run.
-        goal: satisfaction of the reference's achieved goal; None as for `graph`, or if the prediction does not run.
+        goal: progress of the row's own goal, else of the goal that the reference achieves; None if the prediction does
+            not run, or without either.
         comparable: whether the reference runs; None without an environment.
     """
 
     pair: Pair
     lcs: LcsScore
+    by_instance: LcsScore
     parse: Parsability | None = None
     execution: Executability | None = None
     graph: GraphScore | None = None
-    goal: Satisfaction | None = None
+    goal: Progress | None = None
     comparable: bool | None = None
 
     @property
@@ -82,10 +94,24 @@ class Scored:
         return self.pair.predicted == ()
 
 
-def _goal(scored: Scored, value: Callable[[Satisfaction], float]) -> float | None:
-    if not scored.comparable:
+def _goal(scored: Scored, value: Callable[[Progress], float]) -> float | None:
+    if not scored.comparable and given_goal(scored.pair) is None:
         return None
     return value(scored.goal) if scored.goal else 0.0
+
+
+def given_goal(pair: Pair) -> Any:
+    """The goal in a prediction's row, unread; None if it has none."""
+    return next((found for name in GOALS if (found := pair.more.get(name)) is not None), None)
+
+
+def _progress(pair: Pair, ran: Executability, world: World, rules: Rules, achieved: Goal | None) -> Progress | None:
+    """The progress of the goal that a prediction is asked to reach, at the end of its run."""
+    given = given_goal(pair)
+    if ran.final is None or given is None:
+        return Progress.at(achieved, ran.final) if ran.final and achieved else None
+    place = f"goal of `{pair.id}`, row {pair.line}"
+    return Progress.of(read_goal(given, world.home, place), run(world, ran.program, rules))
 
 
 def _executable(scored: Scored) -> float | None:
@@ -99,6 +125,8 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "lcs_action": lambda s: s.lcs.action,
     "lcs_object": lambda s: s.lcs.object,
     "lcs_mean": lambda s: s.lcs.mean,
+    "lcs_step_instances": lambda s: s.by_instance.step,
+    "lcs_object_instances": lambda s: s.by_instance.object,
     "parsable": lambda s: float(s.parse is not None and s.parse.parsable),
     "parsable_names": lambda s: float(s.parse is not None and s.parse.named),
     "executable": _executable,
@@ -120,7 +148,7 @@ class Summary:
         count: number of predictions, including missing ones.
         missing: number of missing predictions, which score 0.
         empty: number of predictions without lines, which parse and run; `executable_filled` excludes them.
-        incomparable: number of references that do not run; excluded from the F1 and goal scores.
+        incomparable: number of references that do not run; excluded from F1, and from goals that are theirs.
         inexact: number of predictions whose F1 is a lower bound.
         means: each score's mean and interval.
         errors: first failures by class.
@@ -140,7 +168,8 @@ class Summary:
 def signatures(options: Options) -> dict[str, str]:
     """The signature of each family of scores."""
     return {
-        **{f"lcs_{level}": lcs_signature(level, options.instances) for level in ("step", "action", "object")},
+        **{f"lcs_{level}": lcs_signature(level, options.instances) for level in LEVELS},
+        **{f"lcs_{level}_instances": lcs_signature(level, True) for level in ("step", "object")},
         "parsable": PARSABLE,
         "executable": running.SIGNATURE,
         "f1": f1_signature(options.match, options.scope),
@@ -148,10 +177,12 @@ def signatures(options: Options) -> dict[str, str]:
     }
 
 
-def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[LcsScore]:
-    """The similarity of each prediction to its reference; 0 for a missing one."""
-    found = score_pairs(((pair.predicted or (), pair.reference) for pair in pairs), instances)
-    return [NO_LCS if pair.predicted is None else score for pair, score in zip(pairs, found, strict=True)]
+def lcs_of(pairs: Sequence[Pair], instances: bool = False) -> list[BothLcs]:
+    """The similarity of each prediction to its reference, and that by instance; 0 for a missing one."""
+    lines = [(pair.predicted or (), pair.reference) for pair in pairs]
+    distinct = score_pairs(lines, instances=True)
+    both = zip(distinct if instances else score_pairs(lines), distinct, strict=True)
+    return [(NO_LCS, NO_LCS) if pair.predicted is None else found for pair, found in zip(pairs, both, strict=True)]
 
 
 def evaluate(
@@ -231,7 +262,7 @@ def reference_of(lines: Lines, world: World, rules: Rules) -> Reference:
 
 def scored(
     pair: Pair,
-    lcs: LcsScore,
+    lcs: BothLcs,
     knowledge: Knowledge,
     world: World | None,
     options: Options,
@@ -249,13 +280,14 @@ def scored(
     """
     parsed = None if pair.predicted is None else parsability(pair.predicted, knowledge)
     if world is None:
-        return Scored(pair, lcs, parsed)
-    program, final, goal = known or reference_of(pair.reference, world, options.rules)
+        return Scored(pair, *lcs, parsed)
+    program, final, achieved = known or reference_of(pair.reference, world, options.rules)
     ran = None if pair.predicted is None else executability(pair.predicted, world, program, options.rules)
-    if final is None or goal is None:
-        return Scored(pair, lcs, parsed, ran, comparable=False)
+    goal = _progress(pair, ran, world, options.rules, achieved) if ran else None
+    if final is None:
+        return Scored(pair, *lcs, parsed, ran, goal=goal, comparable=False)
     if ran is None or ran.final is None:
-        return Scored(pair, lcs, parsed, ran, FAILED, comparable=True)
+        return Scored(pair, *lcs, parsed, ran, FAILED, comparable=True)
     objects = named(ran.program), named(program)
     graph = graph_score(ran.final, final, *objects, match=options.match, scope=options.scope)
-    return Scored(pair, lcs, parsed, ran, graph, satisfaction(goal, ran.final), comparable=True)
+    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable=True)

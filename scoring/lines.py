@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from hearth.kb.language.plan_lines import plan_line
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.program import Program, Step
 from hearth.schemas.syntax import parse_steps
@@ -41,10 +42,11 @@ def steps_of(lines: Iterable[Line]) -> tuple[Step, ...]:
 def _body(text: str, reader: Reader) -> list[str]:
     """The lines from the first step on, or all lines of a text without steps.
 
-    Text before a bracketed step is title and description, even if it reads like a natural-language step.
+    Text before a bracketed or numbered step is title and description, even if it reads like a natural-language step.
     """
     lines = [stripped for line in text.splitlines() if (stripped := line.strip())]
-    written = next((n for n, line in enumerate(lines) if line.startswith(_MARKS)), None)
+    begins = (n for n, line in enumerate(lines) if line.startswith(_MARKS) or plan_line(line).number is not None)
+    written = next(begins, None)
     if written is not None:
         return lines[written:]
     first = next((n for n, line in enumerate(lines) if not isinstance(reader(line), Diagnostic)), 0)

@@ -10,7 +10,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.lines import Source
-from hearth.storage.inputs import LARGEST_TABLE, read_input
+from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PARQUET = b"PAR1"
 """First bytes of a Parquet file, whatever its name."""

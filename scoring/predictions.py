@@ -1,14 +1,15 @@
 """Prediction files: one row per id, with the predicted program and, unless in a separate file, the reference."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.format.ids import names_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_steps
-from hearth.scoring.lines import Lines, Reader, Source, read
+from hearth.scoring.lines import Lines, Reader, Source, read, steps_of
 from hearth.scoring.prediction_rows import Named, Row, rows_of, source_of
 
 SHOWN = 20
@@ -64,7 +65,7 @@ def read_pairs(
         pairs = [_pair(row, _program(row, "reference", path, reader, faults), path, reader, faults) for row in rows]
     else:
         known = _references(references, reader, faults)
-        rows = _rows(path, ("id", "predicted"), faults, named)
+        rows = [_as_known(row, known) for row in _rows(path, ("id", "predicted"), faults, named)]
         faults.extend(_unknown_ids(rows, known, path))
         by_id = {row.id: row for row in rows}
         pairs = [
@@ -74,6 +75,11 @@ def read_pairs(
     if faults:
         raise HearthError(_shortened(faults))
     return pairs
+
+
+def _as_known(row: Row, known: Mapping[str, Lines]) -> Row:
+    """The row under the id of its reference, which may be of another version."""
+    return replace(row, id=next((name for name in names_of(row.id) if name in known), row.id))
 
 
 def _references(references: Path | Mapping[str, Source], reader: Reader, faults: list[Diagnostic]) -> dict[str, Lines]:
@@ -104,12 +110,12 @@ def _pair(row: Row, reference: Lines, path: Path, reader: Reader, faults: list[D
 
 def _program(row: Row, column: str, path: Path, reader: Reader, faults: list[Diagnostic]) -> Lines:
     source = source_of(row.values[column])
-    if source is not None:
-        return read(source, reader)
-    found = type(row.values[column]).__name__
-    message = f"`{column}` of id `{row.id}` is {found}, not a program"
-    faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), row.line, suggestion="a text, or a list of steps"))
-    return ()
+    lines = () if source is None else read(source, reader)
+    found = type(row.values[column]).__name__ if source is None else "text without a step" if lines else ""
+    if source is None or (column == "reference" and found and not steps_of(lines)):
+        message = f"`{column}` of id `{row.id}` is {found}, not a program"
+        faults.append(Diagnostic(Code.BAD_TABLE, message, str(path), row.line, suggestion="a text, or a list of steps"))
+    return lines
 
 
 def _unknown_ids(rows: Iterable[Row], known: Mapping[str, Lines], path: Path) -> Iterator[Diagnostic]:

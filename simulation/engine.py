@@ -19,11 +19,13 @@ class Execution:
         program: what was run, bound to node ids.
         worlds: the start, then the world after each tick that was done. They share all that is equal.
         failure: why it stopped before its end, if it did; nothing of the failed tick is done.
+        rules: how actions were read.
     """
 
     program: Program
     worlds: tuple[World, ...]
     failure: Failure | None = None
+    rules: Rules = DEFAULT
 
     @property
     def executable(self) -> bool:
@@ -57,7 +59,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
             break
         world = result
         worlds.append(world)
-    return Execution(program, tuple(worlds), failure)
+    return Execution(program, tuple(worlds), failure, rules)
 
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
@@ -79,10 +81,13 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
     action = ACTIONS.get(instruction.action)
-    if action is None or instruction.agent >= len(world.agents):
+    if action is None or not 0 <= instruction.agent < len(world.agents):
         return _refused(world, instruction)
     index = world.home.index
     objects = instruction.objects
+    arity = world.home.knowledge.actions[instruction.action].arity
+    if len(objects) != arity:
+        return _miscounted(instruction, arity)
     try:
         o = index[objects[0].node] if objects else -1  # type: ignore[index]
         s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
@@ -162,7 +167,7 @@ def _twice(instruction: Step) -> Failure:
 
 def _refused(world: World, instruction: Step) -> Failure:
     names = tuple(ref.name for ref in instruction.objects)
-    if instruction.agent >= len(world.agents):
+    if not 0 <= instruction.agent < len(world.agents):
         found = f"{len(world.agents)} in this home"
         code, expected = Code.UNKNOWN_AGENT, f"an agent of number {instruction.agent}"
     elif instruction.action in world.home.knowledge.actions:
@@ -170,6 +175,12 @@ def _refused(world: World, instruction: Step) -> Failure:
     else:
         code, expected, found = Code.UNKNOWN_ACTION, "an action of the grammar", instruction.action
     return Failure(code, 0, instruction.agent, instruction.action, (), names, expected, found)
+
+
+def _miscounted(instruction: Step, arity: int) -> Failure:
+    names = tuple(ref.name for ref in instruction.objects)
+    expected, found = f"{arity} objects", str(len(names))
+    return Failure(Code.WRONG_ARITY, 0, instruction.agent, instruction.action, (), names, expected, found)
 
 
 def _unbound(world: World, instruction: Step) -> Failure:

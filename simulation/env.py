@@ -24,6 +24,9 @@ from hearth.simulation.world.edit import edit, free_id
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
+MOST_ADDED = 1_000
+"""Characters that a home takes in at once."""
+
 
 @dataclass(frozen=True, slots=True)
 class Tick:
@@ -166,7 +169,7 @@ class Env:
         Examples:
             >>> _ = env.step("[Walk] <fridge> (1)")
             >>> [step.objects[0].name for step in env.legal() if step.action == "Open"]
-            ['fridge', 'coffe_maker', 'pot', 'cupboard']
+            ['fridge', 'coffe_maker', 'cupboard', 'microwave']
         """
         self._check(agent)
         seen = self.partial if only_visible is None else only_visible
@@ -199,8 +202,8 @@ def with_agents(world: World, count: int, seed: int = 0) -> World:
         return world
     home = world.home
     rooms = [home.ids[i] for i in indices(home.rooms)]
-    if not rooms:
-        raise HearthError.of(Code.NO_ROOM, f"{home!r} has no room for a character")
+    if not rooms or missing > MOST_ADDED:
+        raise HearthError.of(Code.NO_ROOM, f"{home!r} has no room for {missing:,} more characters")
     first = free_id(home, 1)
     chooser = rng(seed, "agents", home.name)
     nodes = [Node(first + n, CHARACTER_CLASS, CHARACTER_CATEGORY, ("PERSON",)) for n in range(missing)]

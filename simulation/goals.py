@@ -1,22 +1,30 @@
-"""The progress of a goal, updated by changes (thesis 6.3, tables B.1 and C.2)."""
+"""The progress of a goal, updated by changes and by what is done (thesis 6.3, tables B.1 and C.2)."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
+from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import RELATIONS, STATE_ID
-from hearth.simulation.holds import Candidates, candidates
+from hearth.simulation.engine import Execution
+from hearth.simulation.goal_trace import Trace, acts, by_agent
+from hearth.simulation.holds import Candidates, candidates, nodes
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
-_RELATIONS = frozenset({*RELATIONS, HOLDS})
+RELATED = frozenset({*RELATIONS, HOLDS})
+"""The relations of goals."""
+
+LiteralFault = tuple[str, Code, str]
+"""Why a literal of a goal is refused: a message, a code and a suggestion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +46,11 @@ class Watch:
 class Progress:
     """A goal in a world: how often each of its literals holds. A value; `after` gives the next one.
 
+    Attributes:
+        goal: as given.
+        watches: its literals, followed by the changes; none of a goal about actions or order.
+        trace: of such a goal, the run up to now.
+
     Examples:
         >>> goal = hearth.Goal.of(hearth.Literal.of("HOLDS", "agent", "milk"), hearth.Literal.of("CLOSED", "fridge"))
         >>> progress = hearth.Progress.start(goal, world).after(execution.final, execution.final.changes(world))
@@ -47,44 +60,84 @@ class Progress:
 
     goal: Goal
     watches: tuple[Watch, ...]
+    trace: Trace | None = None
 
     @classmethod
+    @explained
     def start(cls, goal: Goal, world: World) -> Progress:
         """Look at the whole world once.
 
         Raises:
-            HearthError: UNKNOWN_OBJECT, UNKNOWN_AGENT or SYNTAX: a literal names nothing of this home, or what no
-                action changes.
+            HearthError: UNKNOWN_OBJECT, UNKNOWN_ACTION, UNKNOWN_AGENT, WRONG_ARITY or SYNTAX: a literal names nothing
+                of this home, or what no action changes.
         """
-        watches = []
-        for literal, wanted in goal:
-            found = candidates(literal, world.home)
-            _check(literal, found, world.home)
-            watches.append(Watch(literal, wanted, found, found.met(world)))
-        return cls(goal, tuple(watches))
+        for literal, _ in goal.literals():
+            if fault := check(literal, world.home):
+                raise HearthError.of(fault[1], f"goal {literal}: {fault[0]}", suggestion=fault[2])
+        return cls.at(goal, world)
 
-    def after(self, world: World, change: Change) -> Progress:
-        """The progress in a world that came of the last by a change; looks only at what the change names."""
+    @classmethod
+    def at(cls, goal: Goal, world: World) -> Progress:
+        """The same unchecked: a literal about absent things never holds."""
+        if goal.parts or any(acts(literal, world.home) for literal, _ in goal):
+            return cls(goal, (), Trace((world,)))
+        found = ((literal, wanted, candidates(literal, world.home)) for literal, wanted in goal)
+        return cls(goal, tuple(Watch(literal, wanted, nodes, nodes.met(world)) for literal, wanted, nodes in found))
+
+    @classmethod
+    def of(cls, goal: Goal, execution: Execution) -> Progress:
+        """The progress at the end of a run."""
+        found = cls.start(goal, execution.final)
+        return replace(found, trace=Trace.of(execution)) if found.trace else found
+
+    def after(self, world: World, change: Change, done: Sequence[Step] = ()) -> Progress:
+        """The progress in a world that came of the last by a change; looks only at what the change names.
+
+        Args:
+            world: after the tick.
+            change: from the world before.
+            done: the instructions of the tick; goals about actions and order need them, and every tick.
+        """
+        if self.trace:
+            return replace(self, trace=Trace((*self.trace.worlds, world), (*self.trace.done, tuple(done))))
         touched = _touched(change, world.home)
         if not touched:
             return self
-        watches = tuple(_updated(watch, world, touched) for watch in self.watches)
-        return Progress(self.goal, watches)
+        return replace(self, watches=tuple(_updated(watch, world, touched) for watch in self.watches))
 
     @property
     def counts(self) -> tuple[int, ...]:
         """How often each literal holds, in the goal's order."""
+        if self.trace:
+            return tuple(self.trace.times(literal, 0, len(self.trace.done)) for literal, _ in self.goal)
         return tuple(watch.count for watch in self.watches)
 
     @property
+    def has(self) -> tuple[bool, ...]:
+        """Whether each joined part is reached, in the goal's order."""
+        trace = self.trace
+        return tuple(trace.has(part, 0, len(trace.done)) for part in self.goal.parts) if trace else ()
+
+    @property
     def satisfied(self) -> bool:
-        """Whether every literal holds as often as is wanted."""
-        return all(watch.count >= watch.wanted for watch in self.watches)
+        """Whether every literal holds as often as is wanted, and every part is reached; True for an empty goal."""
+        return all(found >= wanted for found, (_, wanted) in self._counted()) and all(self.has)
+
+    @property
+    def fraction(self) -> float:
+        """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal."""
+        wanted = sum(count for _, count in self.goal) + len(self.goal.parts)
+        found = sum(min(count, most) for count, (_, most) in self._counted()) + sum(self.has)
+        return found / wanted if wanted else 1.0
 
     def unmet(self) -> Goal:
-        """What is still to be done: each literal with how many are missing."""
-        missing = ((watch.literal, watch.wanted - watch.count) for watch in self.watches)
-        return Goal(tuple((literal, number) for literal, number in missing if number > 0))
+        """What is still to be done: each literal with how many are missing, and the parts that are not reached."""
+        missing = ((literal, wanted - found) for found, (literal, wanted) in self._counted())
+        parts = (part for part, reached in zip(self.goal.parts, self.has, strict=True) if not reached)
+        return Goal(tuple((literal, number) for literal, number in missing if number > 0), tuple(parts))
+
+    def _counted(self) -> Iterator[tuple[int, tuple[Literal[Name], int]]]:
+        return zip(self.counts, self.goal, strict=True)
 
 
 def _updated(watch: Watch, world: World, touched: Mapping[str, int]) -> Watch:
@@ -107,21 +160,35 @@ def _touched(change: Change, home: Home) -> Mapping[str, int]:
     return found
 
 
-def _check(literal: Literal[Name], found: Candidates, home: Home) -> None:
-    """Refuse a literal that no change could make hold, or about what the home and its knowledge do not have."""
-    kind, known = ("state", STATE_ID.keys()) if len(literal.terms) == 1 else ("relation", _RELATIONS)
-    if literal.name not in known:
-        raise _fault(Code.SYNTAX, literal, f"{literal.name} is not a known {kind}")
-    for term, nodes in zip(literal.terms, (found.subjects, found.targets), strict=False):
-        if nodes or term == AGENT:
-            continue
-        if isinstance(term, int):
-            raise _fault(Code.UNKNOWN_OBJECT, literal, f"the home has no node {term}")
-        if term.startswith(f"{AGENT}:"):
-            raise _fault(Code.UNKNOWN_AGENT, literal, f"the home has no {term}")
-        if home.knowledge.object_class(term) is None:
-            raise _fault(Code.UNKNOWN_OBJECT, literal, f"`{term}` is not a known class")
+def check(literal: Literal[Name], home: Home) -> LiteralFault | None:
+    """Why no change could make a literal hold, or what the home and its knowledge do not have; None if nothing."""
+    known, terms = home.knowledge, literal.terms
+    if acts(literal, home):
+        action = known.actions[literal.name]
+        if (number := len(terms) - by_agent(literal)) > action.arity:
+            return f"{literal.name} has {number} objects and takes {action.arity}", Code.WRONG_ARITY, ""
+        if not action.executed:
+            return f"{literal.name} is not simulated", Code.NOT_SIMULATED, ""
+    elif not terms:
+        return f"`{literal.name}` is not a known action", Code.UNKNOWN_ACTION, _near(literal.name, home, "action")
+    elif literal.name not in (STATE_ID if len(terms) == 1 else RELATED if len(terms) == 2 else ()):
+        return f"{literal.name} is not a known {'state' if len(terms) == 1 else 'relation'}", Code.SYNTAX, ""
+    return next((fault for term in terms if (fault := unknown(term, home))), None)
 
 
-def _fault(code: Code, literal: Literal[Name], message: str) -> HearthError:
-    return HearthError.of(code, f"goal {literal}: {message}")
+def unknown(term: Name, home: Home) -> LiteralFault | None:
+    """Why a term stands for nothing that there could be; None if it does."""
+    if term == AGENT or nodes(term, home) or str(term).startswith("?"):
+        return None
+    if isinstance(term, int):
+        return f"the home has no node {term}", Code.UNKNOWN_OBJECT, ""
+    if term.startswith(f"{AGENT}:"):
+        return f"the home has no {term}", Code.UNKNOWN_AGENT, ""
+    if home.knowledge.object_class(term):
+        return None
+    return f"`{term}` is not a known class", Code.UNKNOWN_OBJECT, _near(term, home, "object")
+
+
+def _near(name: str, home: Home, kind: str) -> str:
+    near = home.knowledge.suggest(name, kind)
+    return f"did you mean `{near[0]}`?" if near else ""

@@ -108,13 +108,15 @@ def candidates(literal: Literal[Name], home: Home) -> Candidates:
 
 
 def nodes(term: T, home: Home, binding: Mapping[T, int] = UNBOUND) -> int:
-    """The nodes that a term stands for: a program's object or a variable for the one it is bound to, a class for its
-    instances (see `Home.instances`).
+    """The nodes that a term stands for: a program's object or a variable for the one it is bound to, a class, and a
+    room that a program does not name, for its instances (see `Home.instances`).
     """
     if isinstance(term, tuple):
         if term[0] == CHARACTER_CLASS and 0 < term[1] <= len(home.agents):
             return 1 << home.agents[term[1] - 1]
         node_id = binding.get(term, -1)
+        if node_id < 0 and home.knowledge.is_room(term[0]):
+            return home.instances(term[0]) & home.rooms
     elif isinstance(term, int):
         node_id = term
     elif term in binding:

@@ -2,6 +2,10 @@
 
 from typing import Literal, NamedTuple
 
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.literals import Key
+from hearth.schemas.program import Program
+
 
 class Rules(NamedTuple):
     """Options of actions.
@@ -25,5 +29,29 @@ DEFAULT = Rules()
 REPLAY = Rules(origin="release", watch_needs_on=False, doors=False)
 """Reproduces the release's stored end graphs exactly."""
 
-RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY}
+WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
+"""For programs that watch what they themselves keep off (see `suited`)."""
+
+RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "watching_off": WATCHING_OFF}
 """The options by the names that published executions give them."""
+
+
+def suited(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Rules:
+    """The rules by which a program says what its author meant.
+
+    Who switches something on only after watching it, or off before, watches what is off: the release has such programs,
+    and by the thesis's rule (5.5.2) they contradict themselves.
+    """
+    on, off = knowledge.achieving("ON"), knowledge.achieving("OFF")
+    now: dict[Key, bool] = {}
+    watched: set[Key] = set()
+    for step in program.steps:
+        for key in (ref.key for ref in step.objects[:1]):
+            first_on = step.action in on and key not in now
+            if (step.action == "Watch" and not now.get(key, True)) or (first_on and key in watched):
+                return rules._replace(watch_needs_on=False)
+            if step.action == "Watch":
+                watched.add(key)
+            elif step.action in on | off:
+                now[key] = step.action in on
+    return rules

@@ -98,13 +98,23 @@ def tree_digest(path: Path) -> str:
 
 def walk(folder: Path) -> Iterator[Path]:
     """The files under a folder in the order of their names, hidden ones and links that leave it left out."""
-    root = folder.resolve()
+    return (path for path in _visible(folder) if path.is_file() and not _not_followed(path, folder))
+
+
+def links_not_followed(folder: Path) -> Iterator[Path]:
+    """The links under a folder that `walk` leaves out: those to folders, and those that leave it."""
+    return (path for path in _visible(folder) if _not_followed(path, folder))
+
+
+def _visible(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.rglob("*"), key=lambda p: p.relative_to(folder).as_posix()):
-        inside = path.relative_to(folder)
-        hidden = any(part.startswith(".") for part in inside.parts)
-        # Links to folders are not followed, so that only a file that is one itself can lead outside.
-        if not hidden and path.is_file() and (not path.is_symlink() or path.resolve().is_relative_to(root)):
+        if not any(part.startswith(".") for part in path.relative_to(folder).parts):
             yield path
+
+
+def _not_followed(path: Path, folder: Path) -> bool:
+    # Links to folders are not entered, so that only a file that is one itself can lead outside.
+    return path.is_symlink() and (path.is_dir() or not path.resolve().is_relative_to(folder.resolve()))
 
 
 def value_digest(value: Any) -> str:

@@ -18,7 +18,7 @@ import orjson
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import Row
 from hearth.schemas.tables import REJECTED
 from hearth.storage.files import TEMPORARY, commit
 
@@ -36,7 +36,7 @@ class Counts:
         through: records that gave at least one row.
         rejected: records refused whole.
         partial: parts refused of records that went on.
-        rows: rows written, by table.
+        rows: rows written, by table, whatever the share.
         codes: why records were refused whole.
         tally: the stage's own counts of its rows.
     """
@@ -80,8 +80,12 @@ class Counts:
 
 
 def part_path(folder: Path, table: str, number: int) -> Path:
-    """Where partition `number` of a table stands; a stage with one table has its parts in its own folder."""
-    return folder / table / f"part-{number:05d}.parquet"
+    """Where partition `number` of a table stands; a stage with one table has its parts in its own folder.
+
+    A table in several files has one for each share: that of `programs.test` is `programs/part-00000.test.parquet`.
+    """
+    name, *share = table.split(".")
+    return folder / name / f"{'.'.join([f'part-{number:05d}', *share])}.parquet"
 
 
 def rejects_path(folder: Path, number: int) -> Path:

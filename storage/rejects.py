@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import Row
 
 INTERNAL_ERROR = str(Code.INTERNAL_ERROR)
 """The code of a record that made a stage's own code fail: a fault of ours, not of the record."""

@@ -27,6 +27,7 @@ import orjson
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 from hearth.storage.exchange import beside
 from hearth.storage.files import TEMPORARY, is_temporary, read_json, value_digest, write_bytes, write_json
 from hearth.storage.names import inside, leaves
@@ -342,15 +343,9 @@ def read_text(path: Path) -> str | None:
 
 
 def _filesystem(url: str) -> tuple[Any, str]:
+    core = library("fsspec.core")
     try:
-        from fsspec.core import url_to_fs
-    except ImportError:
-        message = "reading and writing URLs needs fsspec, which is not installed"
-        raise HearthError.of(
-            Code.UNSUPPORTED_FILE, message, file=url, suggestion="pip install 'hearth[remote]'"
-        ) from None
-    try:
-        fs, root = url_to_fs(url)
+        fs, root = core.url_to_fs(url)
     except (ImportError, ValueError) as error:
         suggestion = "install the package it names, or check the URL's beginning"
         raise HearthError.of(Code.UNSUPPORTED_FILE, str(error), file=url, suggestion=suggestion) from None

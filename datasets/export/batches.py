@@ -7,7 +7,8 @@ from typing import Any
 
 from hearth.datasets.damage import reading
 from hearth.datasets.dataset import Dataset, Run
-from hearth.schemas.rows import ProgramRow
+from hearth.datasets.format.ids import names_of
+from hearth.schemas.row_types import ProgramRow
 
 _BATCH = 128
 
@@ -26,7 +27,8 @@ class Wanted:
 
     def chosen(self) -> tuple[str, dict[str, Any]]:
         """SQL that selects their ids, and its parameters."""
-        asked = {f"id{number}": name for number, name in enumerate(self.programs)}
+        names = (name for given in self.programs for name in names_of(given))
+        asked = {f"id{number}": name for number, name in enumerate(names)}
         where = f" WHERE program_id IN ({', '.join(f'${name}' for name in asked)})" if asked else ""
         limit = f" LIMIT {int(self.limit)}" if self.limit is not None else ""
         return f"SELECT program_id FROM programs{where} ORDER BY program_id{limit}", asked
@@ -39,12 +41,18 @@ def programs(dataset: Dataset, wanted: Wanted) -> Iterator[ProgramRow]:
                                 " ORDER BY program_id", asked)  # fmt: skip
 
 
-def runs(dataset: Dataset, wanted: Wanted) -> Iterator[tuple[ProgramRow, Run]]:
-    """Each execution with its program's row, sorted by the ids of both."""
+def runs(dataset: Dataset, wanted: Wanted, included: str = "") -> Iterator[tuple[ProgramRow, Run]]:
+    """Each execution with its program's row, sorted by the ids of both.
+
+    Args:
+        dataset: to read.
+        wanted: which programs.
+        included: the condition in SQL on rows `e` of `executions`; that of the dataset if empty.
+    """
     chosen, asked = wanted.chosen()
     query = f"""SELECT p AS program, e AS run, v AS environment
         FROM executions e JOIN environments v USING (environment_id) JOIN programs p ON p.program_id = e.program_id
-        WHERE e.program_id IN ({chosen}) ORDER BY e.program_id, e.execution_id"""
+        WHERE e.program_id IN ({chosen}) AND {included or dataset.included} ORDER BY e.program_id, e.execution_id"""
     for row in stream(dataset, query, asked):
         run: Any = {**row["run"], "environment": row["environment"]}
         yield row["program"], Run(dataset, run)

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import orjson
+
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted, runs, write
 from hearth.storage.names import file_name, inside
@@ -21,7 +23,6 @@ def node_link(dataset: Dataset, to: Path, wanted: Wanted) -> int:
         Number of executions.
     """
     import networkx
-    import orjson
 
     def written(graph: networkx.MultiDiGraph) -> bytes:
         return orjson.dumps(networkx.node_link_data(graph, edges="edges"))

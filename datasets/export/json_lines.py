@@ -9,7 +9,7 @@ from hearth.datasets.export.batches import Wanted, stream
 from hearth.schemas.tables import TABLES
 from hearth.storage.names import inside
 
-_OF_PROGRAMS = ("programs", "environments", "executions", "repairs", "sketches")
+_OF_PROGRAMS = ("programs", "environments", "executions", "perturbations", "repairs", "sketches")
 
 
 def jsonl(dataset: Dataset, to: Path, wanted: Wanted) -> int:

@@ -15,11 +15,10 @@ from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.batches import Wanted
-from hearth.datasets.export.planning_domain import OMITTED, TO_DOOR, planning_domain
+from hearth.datasets.export.planning_domain import TO_DOOR, planning_domain
 from hearth.datasets.export.problems import Task, object_names, problem, tasks
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import run
 from hearth.storage.parallel import Seen, spread, unseen
@@ -128,29 +127,23 @@ def helpful(task: Task) -> tuple[str, ...]:
         if action.executed
         and action.effects
         and name not in spare
-        and name not in OMITTED
+        and name not in home.knowledge.group("unplanned")
         and all(home.able(name, position) & there for position in range(action.arity))
     )
 
 
 def solve(task: Task) -> Outcome:
     """Parse a problem with unified-planning, solve it with Fast Downward, run the plan in the engine."""
-    try:
-        from unified_planning.engines import PlanGenerationResultStatus
-        from unified_planning.io import PDDLReader
-        from unified_planning.shortcuts import OneshotPlanner, get_environment
-    except ImportError as error:
-        remedy = "pip install unified-planning up-fast-downward"
-        raise HearthError.of(Code.MISSING_FILE, f"no planner here: {error}", suggestion=remedy) from None
-    get_environment().credits_stream = None
-    parsed = PDDLReader().parse_problem_string(
-        planning_domain(task.world.home.knowledge, helpful(task), loose=False), problem(task)
-    )
+    planning = library("unified_planning.shortcuts")
+    planning.get_environment().credits_stream = None
+    domain = planning_domain(task.world.home.knowledge, helpful(task), loose=False)
+    parsed = library("unified_planning.io").PDDLReader().parse_problem_string(domain, problem(task))
     options = {"fast_downward_search_time_limit": f"{LIMIT}s"}
     # Fast Downward writes `output.sas` into its working directory: two at once would read each other's.
-    with OneshotPlanner(name="fast-downward", params=options) as planner, TemporaryDirectory() as own, chdir(own):
+    fast_downward = planning.OneshotPlanner(name="fast-downward", params=options)
+    with fast_downward as planner, TemporaryDirectory() as own, chdir(own):
         result = planner.solve(parsed)
-    status = PlanGenerationResultStatus(result.status).name
+    status = library("unified_planning.engines").PlanGenerationResultStatus(result.status).name
     return Outcome(task, status) if result.plan is None else executed(task, status, steps_of(task, result.plan))
 
 

@@ -3,7 +3,8 @@
 `kb.tools.pddl.domain` writes derived predicates as axioms, which few planners support. Here they are expanded where
 they are used, and the character is an object of type `agent`. Every thing of a problem has an INSIDE edge to its room
 from the start; all actions keep it so, and a room is found without following containers. Left out are two actions
-(`OMITTED`), the place that Grab remembers for one of them, and that what is watched must be on, which is an option.
+(the group `unplanned`, which Walk, PutBack and PutIn replace), the place that Grab remembers for one of them, and that
+what is watched must be on, which is an option.
 
 Closed doors stop a walk as in the engine (`Rules.doors`): a problem says by `blocks` which doors part which rooms. To a
 door that is closed between the character and the door's own room it walks on its own side (`this-side`: from where, the
@@ -20,10 +21,6 @@ from hearth.kb.tools.pddl import Names, Writer, dashed, unary_predicates
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
 
-OMITTED = frozenset({"Find", "PutObjBack"})
-"""Their effects depend on facts that problems omit: nearby objects, and former places of objects. Walk, PutBack and
-PutIn replace them."""
-
 TO_DOOR = "WalkToDoor"
 """A Walk in our programs."""
 
@@ -38,7 +35,7 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
             Without it there are fewer ways to satisfy a precondition and planners are faster; their plans
             are plans with it, too.
     """
-    executed = {name for name, action in knowledge.actions.items() if action.executed} - OMITTED
+    executed = {name for name, action in knowledge.actions.items() if action.executed} - knowledge.group("unplanned")
     wanted = executed & {*actions} or executed
     writer = _Writer(knowledge, loose)
     written = [line for name in sorted(wanted) for line in writer.action(knowledge.actions[name])]

@@ -5,7 +5,7 @@ from typing import Any
 
 import orjson
 
-from hearth.datasets.dataset import Dataset, Run
+from hearth.datasets.dataset import OWN, Dataset, Run
 from hearth.datasets.export.batches import Wanted, programs, runs, write
 from hearth.datasets.format.codecs import program_of
 from hearth.schemas.graph import to_release
@@ -19,7 +19,8 @@ ROOT = "programs_processed_precond_nograb_morepreconds"
 def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
     """Programs as collected, their preconditions, grounded programs, and initial and final graphs.
 
-    A program of the release keeps its path; another is in a batch named by its origin.
+    A program of the release keeps its path; another is in a batch named by its origin. A program has one environment a
+    home: originals in perturbed ones are not written.
 
     Returns:
         Number of executions.
@@ -29,7 +30,7 @@ def release(dataset: Dataset, to: Path, wanted: Wanted) -> int:
         place = inside(root / "withoutconds", f"{stem(row['program_id'])}.txt")
         write(place, print_program(program_of(row)).encode())
     number = 0
-    for number, (row, run) in enumerate(runs(dataset, wanted), 1):  # noqa: B007 - the last number is the count
+    for number, (row, run) in enumerate(runs(dataset, wanted, OWN), 1):  # noqa: B007 - the last number is the count
         name, home = stem(row["program_id"]), file_name(run.home)
         grounded = print_grounded(program_of(row, run.bindings()))
         write(inside(root / "executable_programs", f"{home}/{name}.txt"), grounded.encode())

@@ -1,13 +1,17 @@
 """The dataset card: `README.md` beside the tables, with the header that `datasets.load_dataset` reads."""
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import orjson
+import pyarrow as pa
 
 from hearth.datasets.format.croissant import SUMMARY
-from hearth.schemas.tables import TABLES
+from hearth.datasets.format.datasheet import datasheet
+from hearth.datasets.format.splits import LEFT_OUT, PARTS
+from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
 from hearth.version import ACTION_SET, VERSION
 
@@ -22,9 +26,10 @@ def write_card(folder: Path) -> None:
 def card(folder: Path) -> Iterator[str]:
     """The lines of the card."""
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
-    yield from _header(counts)
+    yield from _header(folder)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
     yield from ("## Use", "", "```python", "import hearth", 'ds = hearth.load(".")', *_USES, "```", "")
+    yield from _datasheet(folder)
     yield from _tables(counts)
     yield from ("## Where records went", "", *_ledger(folder), "")
     yield from _splits(folder)
@@ -36,13 +41,19 @@ _USES = (
     'ds.sql("SELECT action, count(*) FROM steps GROUP BY 1").df()',
     "",
     "from datasets import load_dataset",
-    'load_dataset(".", "programs")            # any table, without Hearth',
+    'load_dataset(".")["train"]               # programs by split, without Hearth',
+    'load_dataset(".", "executions")["rows"]  # any other table',
 )
 
-_LICENCE = (
-    "MIT, as is every source that Hearth reads by default; records keep the licence of the source they name.",
-    "Ids of workers are salted hashes; the salt is not published.",
-)
+_LICENCE = ("MIT, as is every source that Hearth reads by default; records keep the licence of the source they name.",)
+
+
+def _datasheet(folder: Path) -> Iterator[str]:
+    sheet = datasheet(folder)
+    yield from ("## Who made it, how, and for what", "")
+    for name in ("motivation", "composition", "process", "authors", "uses", "limits"):
+        yield from (f"**{name.capitalize()}.** {sheet[name]}", "")
+    yield from (sheet["thesis"], "", "```bibtex", sheet["bibtex"], "```", "")
 
 
 def _rows(path: Path) -> int:
@@ -51,45 +62,80 @@ def _rows(path: Path) -> int:
     return int(pq.read_metadata(path).num_rows)
 
 
-def _header(counts: dict[str, int]) -> Iterator[str]:
+def _header(folder: Path) -> Iterator[str]:
     yield from ("---", "license: mit", "pretty_name: Hearth", "language: [en]", "tags: [planning, household, embodied]")
     yield "configs:"
-    for table in TABLES:
-        yield f"- config_name: {table}"
-        yield f'  data_files: "{table}/*.parquet"'
-        if table == "programs":
-            yield "  default: true"
+    parts = {f"programs/*.{part}.parquet": part for part in PARTS}
+    yield from _config(folder, "programs", parts)
+    yield "  default: true"
+    yield from _config(folder, "programs_left_out", {f"programs/*.{LEFT_OUT}.parquet": ROWS})
+    for table in TABLES.keys() - {"programs"}:
+        yield from _config(folder, table, {f"{table}/*.parquet": ROWS})
     yield from ("---", "")
+
+
+ROWS = "rows"
+"""The split of tables that have none, for `load_dataset`, which otherwise calls it `train`."""
+
+
+def _config(folder: Path, name: str, files: dict[str, str]) -> Iterator[str]:
+    """A table for `load_dataset`, with its splits by patterns of files; it fails at splits without a row."""
+    found = {pattern: split for pattern, split in files.items() if any(map(_rows, folder.glob(pattern)))}
+    if found:
+        yield from (f"- config_name: {name}", "  data_files:")
+        for pattern, split in found.items():
+            yield from (f"  - split: {split}", f'    path: "{pattern}"')
 
 
 def _tables(counts: dict[str, int]) -> Iterator[str]:
     yield from ("## Tables", "")
     for table, schema in TABLES.items():
-        yield from (f"### {table} ({counts[table]:,} rows)", "", "| column | type | meaning |", "|---|---|---|")
-        for column in schema:
-            comment = (column.metadata or {}).get(b"comment", b"").decode()
-            kind = str(column.type).split("<")[0].replace("string", "text")
-            yield f"| `{column.name}` | {kind} | {_cell(comment)} |"
-        yield ""
+        yield from (f"### {table} ({counts[table]:,} rows)", "", comment_of(schema), "", *columns(schema), "")
+
+
+def columns(schema: pa.Schema) -> Iterator[str]:
+    """A table of the columns and nested fields, with their types and meanings."""
+    yield from ("| column | type | meaning |", "|---|---|---|")
+    for path, field in (each for column in schema for each in nested(column)):
+        kind = re.sub(r"<.*", "", str(field.type)).replace("string", "text")
+        yield f"| `{path}` | {kind} | {_cell(comment_of(field))} |"
 
 
 def _ledger(folder: Path) -> Iterator[str]:
     import pyarrow.parquet as pq
 
-    yield from ("| stage | in | went on | refused | why |", "|---|--:|--:|--:|---|")
+    yield from (
+        "| stage | in | went on | refused | parts refused | rows | records are | why |",
+        f"|---|{'--:|' * 5}---|---|",
+    )
     for row in pq.ParquetFile(folder / "ledger/part-00000.parquet").read().to_pylist():
         why = ", ".join(f"{each['code']} {each['count']:,}" for each in row["codes"])
-        numbers = (row["records_in"], row["records_through"], row["records_rejected"])
-        yield f"| {row['stage']} | {' | '.join(f'{number:,}' for number in numbers)} | {_cell(why)} |"
+        counts = ("records_in", "records_through", "records_rejected", "partial_rejects", "rows")
+        numbers = " | ".join(f"{row[name]:,}" for name in counts)
+        yield f"| {row['stage']} | {numbers} | {row['record']} | {_cell(why)} |"
 
 
 def _splits(folder: Path) -> Iterator[str]:
     splits: dict[str, Any] = orjson.loads((folder / "splits.json").read_bytes())["splits"]
-    yield from ("## Splits", "", "Table `splits` has the part of every execution in every split.", "")
+    yield from ("## Splits", "", _SPLITS, "")
     for name, split in splits.items():
         parts = ", ".join(f"{part} {number:,}" for part, number in split["runs"].items())
-        yield f"- `{name}`: {split['rule']}. Executions: {parts}. {_leaks(split)}"
-    yield ""
+        without = f"{split['runs_without_part']:,} without a part"
+        yield f"- `{name}`: {split['rule']}. Executions: {parts}; {without}. {_leaks(split)}"
+    yield from ("", "## Executions that fail", "", *_FAILURES, "")
+
+
+_SPLITS = (
+    "Table `splits` has the part of every execution that ran to its end in every split, null where the split has no"
+    " place for it. `programs.split` is the part in `activities`, by which `load_dataset` gives programs."
+)
+
+_FAILURES = (
+    "An original that fails in a perturbed environment is an execution of its own, with `executable` false and a typed",
+    "failure; `perturbations` says how the environment was perturbed and what each perturbation caused, `repairs` what",
+    "was done about it. Such executions are in no split. `hearth.load(..., failures=True)`, `export --failures` and",
+    "`score dataset --failures` have them; otherwise runs, tensors and scores are of executions that ran to their end.",
+)
 
 
 def _leaks(split: dict[str, Any]) -> str:

@@ -19,14 +19,14 @@ from hearth.grounding.environments.sampling import Environment
 from hearth.grounding.environments.thinning import without
 from hearth.schemas.change import Change, State
 from hearth.schemas.graph import Edge
-from hearth.schemas.rows import CaseRow, DifferenceRow, RunRow
+from hearth.schemas.row_types import CaseRow, DifferenceRow, RunRow
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import RULES
-from hearth.simulation.world.change import encode_whole
 from hearth.simulation.world.derived import changed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.nodes import states_of
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_change import encode_whole
 
 _SYMMETRIC = "CLOSE"
 
@@ -101,10 +101,10 @@ def start_of(environment: DifferenceRow, home: str, homes: Source) -> World:
     return World.start(home_of(environment, homes.home(home)))
 
 
-def run_row(execution: Execution, rules: str) -> RunRow:
+def run_row(execution: Execution) -> RunRow:
     """The columns of a run."""
     return {
-        "rules": rules,
+        "rules": next(name for name, rules in RULES.items() if rules == execution.rules),
         "bindings": binding_rows(execution.program),
         "ticks": tick_rows(execution),
         "executable": execution.executable,

@@ -1,6 +1,8 @@
 """The catalog: views and macros over a dataset's files, as a DuckDB file and as SQL."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -8,29 +10,92 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.yaml_extent import packaged
 from hearth.storage.files import replacing, write_bytes
+from hearth.storage.manifest import FORMAT
 
 CATALOG = "catalog.duckdb"
 SQL = "catalog.sql"
 
 
+_BESIDE = (
+    r"regexp_replace(regexp_extract(current_setting('temp_directory'), '^(.*[/\\])catalog\.duckdb\.tmp$', 1), "
+    r"'([*?\[])', '[\1]', 'g')"
+)
+"""The folder of the opened database: DuckDB sets its folder for temporary files beside it, and gives no other path."""
+
+
 def statements(root: str = "") -> str:
-    """The SQL of the catalog; `root` is the prefix of every path."""
+    """The SQL of the catalog; `root` is the prefix of every path, by default found when it is opened."""
     text = (files("hearth.datasets.format") / "catalog.sql").read_text("utf-8")
-    return text.format(root=root.replace("'", "''"))
+    return text.format(folder=quoted(root) if root else _BESIDE)
 
 
-def _reading(root: str, table: str) -> str:
-    quoted = root.replace("'", "''")
-    return f"read_parquet('{quoted}{table}/*.parquet')"
+def comments() -> Iterator[str]:
+    """Statements that comment views and macros; a column's comment has those of its nested fields, one a line."""
+    from hearth.schemas.tables import TABLES, comment_of, nested
+
+    yield from (files("hearth.datasets.format") / "comments.sql").read_text("utf-8").splitlines(keepends=True)
+    for table, schema in TABLES.items():
+        yield f"COMMENT ON VIEW {table} IS {quoted(comment_of(schema))};\n"
+        for column in schema:
+            _, *within = nested(column)
+            lines = (comment_of(column), *(f"{path}: {comment_of(field)}" for path, field in within))
+            yield f"COMMENT ON COLUMN {table}.{column.name} IS {quoted(chr(10).join(lines))};\n"
+
+
+def published() -> str:
+    """The SQL of a dataset's catalog."""
+    return "\n".join((statements(), "".join(comments())))
+
+
+def describe(connection: Any) -> None:
+    """Comment what a connection of `attach` has; not done there, for it takes as long as all the views."""
+    import duckdb
+
+    for statement in comments():
+        with suppress(duckdb.Error):  # a dataset of an earlier version does not have every column
+            connection.execute(statement)
+
+
+def quoted(text: str) -> str:
+    """A text as SQL has it."""
+    return "'" + text.replace("'", "''") + "'"
+
+
+def _reading(table: str, root: str = "") -> str:
+    folder = quoted(root) if root else "dataset_folder()"
+    return f"read_parquet({folder} || '{table}/*.parquet')"
+
+
+@cache
+def earlier(format: int) -> dict[str, Any]:
+    """How tables of a format differ from today's, by table: see `earlier.yaml`."""
+    if format >= FORMAT:
+        return {}
+    return dict(packaged("hearth.datasets.format", "earlier.yaml")[format])
+
+
+def reading(table: str, format: int = FORMAT, root: str = "") -> str:
+    """What a query reads a table from: its files, or, in a dataset of an earlier format, a query over them.
+
+    Args:
+        table: its name.
+        format: of the dataset.
+        root: the prefix of every path, by default that of the catalog.
+    """
+    from hearth.schemas.tables import TABLES
+
+    query = earlier(format).get(table, {}).get("query")
+    return f"({query.format(**{name: _reading(name, root) for name in TABLES})})" if query else _reading(table, root)
 
 
 def write_catalog(folder: Path) -> None:
     """Write `catalog.duckdb` and its SQL, with relative paths that stay valid when the folder is moved."""
-    write_bytes(folder / SQL, statements().encode())
+    write_bytes(folder / SQL, published().encode())
     with replacing(folder / CATALOG) as temporary:
         temporary.unlink(missing_ok=True)
-        make_catalog(temporary, folder, statements())
+        make_catalog(temporary, folder, published())
 
 
 def make_catalog(path: Path, folder: Path, sql: str) -> None:
@@ -56,14 +121,15 @@ _CLOSED = (
 """Settings that keep queries from other files, the network and Python's variables; the last one locks them."""
 
 
-def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
+def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> Any:
     """A connection with the dataset's views, limited to this folder.
 
     DuckDB cannot forbid writing: queries of strangers go through `check_question` first.
 
     Args:
         folder: of the dataset.
-        absent: tables without files; their views are empty.
+        absent: tables without files; their views are empty, unless the format has a query for them.
+        format: of the dataset.
     """
     import duckdb
 
@@ -73,12 +139,14 @@ def attach(folder: Path, absent: Sequence[str] = ()) -> Any:
     connection = duckdb.connect()
     connection.execute("SET parquet_metadata_cache = true")
     text = statements(root)
-    for table in absent:
-        connection.register(f"no_{table}", TABLES[table].empty_table())
-        text = text.replace(_reading(root, table), f"no_{table}")
+    for table in TABLES:
+        here = reading(table, format)
+        if table in absent and here == _reading(table):
+            connection.register(f"no_{table}", TABLES[table].empty_table())
+            here = f"no_{table}"
+        text = text.replace(_reading(table), here)
     connection.execute(text)
-    quoted = root.replace("'", "''")
-    connection.execute(f"SET allowed_directories = ['{quoted}']")
+    connection.execute(f"SET allowed_directories = [{quoted(root)}]")
     for setting in _CLOSED:
         connection.execute(f"SET {setting}")
     return connection

@@ -1,24 +1,27 @@
--- Views and macros over a dataset's Parquet files. `{root}` is the prefix of every path: empty in catalog.duckdb,
--- which finds the files by `file_search_path`; the folder itself where the library opens a dataset.
+-- Open catalog.duckdb by its path, from any folder; attached, copied or renamed, first SET file_search_path = 'FOLDER';
+-- These are the views and macros over a dataset's Parquet files, with a comment for each, for all columns and for all
+-- nested fields: SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal;
 
-CREATE VIEW activities AS SELECT * FROM read_parquet('{root}activities/*.parquet');
-CREATE VIEW descriptions AS SELECT * FROM read_parquet('{root}descriptions/*.parquet');
-CREATE VIEW programs AS SELECT * FROM read_parquet('{root}programs/*.parquet');
-CREATE VIEW homes AS SELECT * FROM read_parquet('{root}homes/*.parquet');
-CREATE VIEW home_nodes AS SELECT * FROM read_parquet('{root}home_nodes/*.parquet');
-CREATE VIEW home_edges AS SELECT * FROM read_parquet('{root}home_edges/*.parquet');
-CREATE VIEW environments AS SELECT * FROM read_parquet('{root}environments/*.parquet');
-CREATE VIEW executions AS SELECT * FROM read_parquet('{root}executions/*.parquet');
-CREATE VIEW repairs AS SELECT * FROM read_parquet('{root}repairs/*.parquet');
-CREATE VIEW splits AS SELECT * FROM read_parquet('{root}splits/*.parquet');
-CREATE VIEW sketches AS SELECT * FROM read_parquet('{root}sketches/*.parquet');
-CREATE VIEW frames AS SELECT * FROM read_parquet('{root}frames/*.parquet');
-CREATE VIEW videos AS SELECT * FROM read_parquet('{root}videos/*.parquet');
-CREATE VIEW vocabulary AS SELECT * FROM read_parquet('{root}vocabulary/*.parquet');
-CREATE VIEW rejects AS SELECT * FROM read_parquet('{root}rejects/*.parquet');
-CREATE VIEW ledger AS SELECT * FROM read_parquet('{root}ledger/*.parquet');
+CREATE MACRO dataset_folder() AS {folder};
 
--- One row per step; `number` counts from 0, as failures and ticks do.
+CREATE VIEW activities AS SELECT * FROM read_parquet(dataset_folder() || 'activities/*.parquet');
+CREATE VIEW descriptions AS SELECT * FROM read_parquet(dataset_folder() || 'descriptions/*.parquet');
+CREATE VIEW programs AS SELECT * FROM read_parquet(dataset_folder() || 'programs/*.parquet');
+CREATE VIEW homes AS SELECT * FROM read_parquet(dataset_folder() || 'homes/*.parquet');
+CREATE VIEW home_nodes AS SELECT * FROM read_parquet(dataset_folder() || 'home_nodes/*.parquet');
+CREATE VIEW home_edges AS SELECT * FROM read_parquet(dataset_folder() || 'home_edges/*.parquet');
+CREATE VIEW environments AS SELECT * FROM read_parquet(dataset_folder() || 'environments/*.parquet');
+CREATE VIEW executions AS SELECT * FROM read_parquet(dataset_folder() || 'executions/*.parquet');
+CREATE VIEW perturbations AS SELECT * FROM read_parquet(dataset_folder() || 'perturbations/*.parquet');
+CREATE VIEW repairs AS SELECT * FROM read_parquet(dataset_folder() || 'repairs/*.parquet');
+CREATE VIEW splits AS SELECT * FROM read_parquet(dataset_folder() || 'splits/*.parquet');
+CREATE VIEW sketches AS SELECT * FROM read_parquet(dataset_folder() || 'sketches/*.parquet');
+CREATE VIEW frames AS SELECT * FROM read_parquet(dataset_folder() || 'frames/*.parquet');
+CREATE VIEW videos AS SELECT * FROM read_parquet(dataset_folder() || 'videos/*.parquet');
+CREATE VIEW vocabulary AS SELECT * FROM read_parquet(dataset_folder() || 'vocabulary/*.parquet');
+CREATE VIEW rejects AS SELECT * FROM read_parquet(dataset_folder() || 'rejects/*.parquet');
+CREATE VIEW ledger AS SELECT * FROM read_parquet(dataset_folder() || 'ledger/*.parquet');
+
 CREATE VIEW steps AS
 SELECT
     program_id,
@@ -38,16 +41,14 @@ FROM (
     FROM programs
 );
 
--- One row per executed tick, with its changes.
 CREATE VIEW ticks AS
-SELECT execution_id, program_id, environment_id, home, number, tick.*
+SELECT execution_id, program_id, environment_id, home, number - 1 AS number, tick.*
 FROM (
     SELECT execution_id, program_id, environment_id, home,
            unnest(ticks) AS tick, generate_subscripts(ticks, 1) AS number
     FROM executions
 );
 
--- A step as text: [PutBack] <cup> (1) <table> (1)
 CREATE MACRO step_text(step) AS
     '[' || step.action || ']'
     || array_to_string(list_transform(step.objects, lambda o: ' <' || o.name || '> (' || o.instance || ')'), '')
@@ -67,8 +68,7 @@ CREATE MACRO steps_text(steps) AS
         ''
     );
 
--- The text of a program: its steps, one tick per line. (Its columns are not called program_id, so that the argument can
--- be a column of that name.)
+-- Its columns are not called program_id, so that the argument can be a column of that name.
 CREATE MACRO program_text(which) AS (
     SELECT steps_text(its_steps)
     FROM (SELECT program_id AS its_id, steps AS its_steps FROM programs)
@@ -76,7 +76,6 @@ CREATE MACRO program_text(which) AS (
 );
 
 -- The semi joins below are for speed: only with them does DuckDB skip row groups without the id.
--- The edges of an execution after a number of ticks (0: its start; NULL: its end).
 CREATE MACRO graph_edges(which, after) AS TABLE
 WITH run_of AS MATERIALIZED (
     SELECT environment_id, home, ticks FROM executions WHERE execution_id = which
@@ -107,7 +106,6 @@ SELECT source, relation, target FROM (
 ) ANTI JOIN changed USING (source, relation, target)
 UNION ALL SELECT source, relation, target FROM changed WHERE holds;
 
--- The nodes of an execution after a number of ticks (0: its start; NULL: its end), with their states.
 CREATE MACRO graph_nodes(which, after) AS TABLE
 WITH run_of AS MATERIALIZED (
     SELECT environment_id, home, ticks FROM executions WHERE execution_id = which
@@ -142,11 +140,10 @@ holding AS (
 SELECT id, class_name, category, properties, coalesce(now, []) AS states
 FROM node LEFT JOIN (SELECT node, list_sort(list(state)) AS now FROM holding GROUP BY node) ON node = id;
 
--- The final states of an execution.
 CREATE MACRO final_state(which) AS TABLE
 SELECT id, class_name, unnest(states) AS state FROM graph_nodes(which, NULL);
 
--- Number of edges by relation over all initial graphs, from counts and differences, without rebuilding graphs.
+-- From counts and differences, without rebuilding graphs.
 CREATE VIEW start_relations AS
 WITH times AS (
     SELECT environment_id, home, count(*) AS times FROM executions GROUP BY ALL

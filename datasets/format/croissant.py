@@ -6,7 +6,9 @@ from typing import Any
 
 import pyarrow as pa
 
-from hearth.schemas.tables import TABLES
+from hearth.datasets.format.datasheet import datasheet
+from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
+from hearth.schemas.yaml_extent import packaged
 from hearth.storage.files import file_digest, write_json
 from hearth.version import RELEASED, VERSION
 
@@ -17,43 +19,6 @@ SUMMARY = (
 PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
-_CONTEXT = {
-    "@language": "en",
-    "@vocab": "https://schema.org/",
-    "citeAs": "cr:citeAs",
-    "column": "cr:column",
-    "conformsTo": "dct:conformsTo",
-    "cr": "http://mlcommons.org/croissant/",
-    "rai": "http://mlcommons.org/croissant/RAI/",
-    "data": {"@id": "cr:data", "@type": "@json"},
-    "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
-    "dct": "http://purl.org/dc/terms/",
-    "examples": {"@id": "cr:examples", "@type": "@json"},
-    "extract": "cr:extract",
-    "field": "cr:field",
-    "fileProperty": "cr:fileProperty",
-    "fileObject": "cr:fileObject",
-    "fileSet": "cr:fileSet",
-    "format": "cr:format",
-    "includes": "cr:includes",
-    "isLiveDataset": "cr:isLiveDataset",
-    "jsonPath": "cr:jsonPath",
-    "key": "cr:key",
-    "md5": "cr:md5",
-    "parentField": "cr:parentField",
-    "path": "cr:path",
-    "recordSet": "cr:recordSet",
-    "references": "cr:references",
-    "regex": "cr:regex",
-    "repeated": "cr:repeated",
-    "replace": "cr:replace",
-    "sc": "https://schema.org/",
-    "separator": "cr:separator",
-    "source": "cr:source",
-    "subField": "cr:subField",
-    "transform": "cr:transform",
-}
-
 
 def write_croissant(folder: Path) -> None:
     """Write the description of a dataset's folder."""
@@ -61,17 +26,24 @@ def write_croissant(folder: Path) -> None:
 
 
 def describe(folder: Path) -> dict[str, Any]:
-    """The description as JSON-LD: every Parquet file with its hash, every table with its columns of plain values.
+    """The description as JSON-LD: every Parquet file with its hash, every table with its key and all its columns.
 
-    Nested columns (steps, ticks, ...) are omitted, because readers of Croissant do not agree on their form; the dataset
-    card describes them.
+    Columns within columns are sub-fields, extracted by JSONPath; of a list within a list (the objects of steps),
+    mlcroissant 1.1 reads the first entry only. References name the files and the column that contain the values, since
+    mlcroissant cannot read a table that refers to a field of itself, or to one of a table that it has read before.
     """
+    sheet = datasheet(folder)
     return {
-        "@context": _CONTEXT,
+        "@context": packaged("hearth.datasets.format", "croissant.yaml"),
         "@type": "sc:Dataset",
         "name": "hearth",
-        "description": SUMMARY,
-        "conformsTo": "http://mlcommons.org/croissant/1.0",
+        "description": f"{SUMMARY} {sheet['motivation']}",
+        "conformsTo": ["http://mlcommons.org/croissant/1.0", "http://mlcommons.org/croissant/RAI/1.0"],
+        "creator": {"@type": "sc:Organization", "name": "The Hearth authors"},
+        "citation": f"{sheet['thesis']} {sheet['bibtex']}",
+        "rai:dataCollection": f"{sheet['process']} {sheet['authors']}",
+        "rai:dataUseCases": sheet["uses"],
+        "rai:dataLimitations": f"{sheet['limits']} {sheet['authors']}",
         "license": LICENSE,
         "url": "https://hearth.invalid/",
         "citeAs": "Hearth: household activities as programs that run",
@@ -106,31 +78,42 @@ def _set(table: str) -> str:
 
 
 def _records(table: str) -> dict[str, Any]:
-    fields = [_field(table, column) for column in TABLES[table] if _kind(column.type)]
-    return {"@type": "cr:RecordSet", "@id": table, "name": table, "field": fields}
+    keys = [
+        {"@id": f"{table}/{column}"} for column in KEYS[table] if not pa.types.is_list(TABLES[table].field(column).type)
+    ]
+    fields = [_field(table, column, column.name) for column in TABLES[table]]
+    return {"@type": "cr:RecordSet", "@id": table, "name": table, "key": keys, "field": fields}
 
 
-def _field(table: str, column: pa.Field) -> dict[str, Any]:
-    comment = (column.metadata or {}).get(b"comment", b"").decode()
-    listed = {"repeated": True} if pa.types.is_list(column.type) else {}
-    return {
+def _field(table: str, column: pa.Field, path: str) -> dict[str, Any]:
+    """A column, or a column within one: the names on the way to it are joined by points, lists marked by `[*]`."""
+    listed = pa.types.is_list(column.type)
+    kind = column.type.value_type if listed else column.type
+    found: dict[str, Any] = {
         "@type": "cr:Field",
-        "@id": f"{table}/{column.name}",
+        "@id": f"{table}/{path.replace('[*]', '').replace('.', '/')}",
         "name": column.name,
-        "description": comment,
-        "dataType": _kind(column.type),
-        **listed,
-        "source": {"fileSet": {"@id": _set(table)}, "extract": {"column": column.name}},
+        "description": comment_of(column),
+        **({"repeated": True} if listed else {}),
     }
+    if pa.types.is_struct(kind):
+        inner = f"{path}[*]" if listed else path
+        return {**found, "subField": [_field(table, child, f"{inner}.{child.name}") for child in kind]}
+    top, _, rest = path.partition(".")
+    transform = {"transform": {"jsonPath": rest}} if rest else {}
+    source = {**_column(table, top.removesuffix("[*]")), **transform}
+    other = next((place for of, name, *place in REFERENCES if (of, name) == (table, path)), None)
+    references = {"references": _column(*other)} if other else {}
+    return {**found, "dataType": _kind(kind), "source": source, **references}
 
 
-def _kind(kind: pa.DataType) -> str | None:
-    if pa.types.is_list(kind):
-        return _kind(kind.value_type)
+def _column(table: str, column: str) -> dict[str, Any]:
+    return {"fileSet": {"@id": _set(table)}, "extract": {"column": column}}
+
+
+def _kind(kind: pa.DataType) -> str:
     if pa.types.is_string(kind):
         return "sc:Text"
     if pa.types.is_integer(kind):
         return "sc:Integer"
-    if pa.types.is_floating(kind):
-        return "sc:Float"
-    return "sc:Boolean" if pa.types.is_boolean(kind) else None
+    return "sc:Boolean" if pa.types.is_boolean(kind) else "sc:Float"

@@ -9,8 +9,22 @@ from hearth.version import ACTION_SET, VERSION
 STAMP = {"action_set": ACTION_SET, "dataset_version": VERSION}
 """Version columns of every published row."""
 
-TRAIN = 7
-"""Number of activities out of ten that are for training (thesis 5.6)."""
+TRAIN, VALIDATION = 7, 1
+"""Numbers of activities out of ten for training and for validation; the others are for tests (thesis 5.6: 7:3)."""
+
+
+OURS = r"^(?:crowd|written)(:3[DP][0-9]{4}[0-9A-Z]{5})\b"
+"""Ids of the embedded corpus, for Python and DuckDB. Until 0.1 they said `crowd`; a platform's have 30 characters."""
+
+
+def current_id(name: str) -> str:
+    """The id that a record, or what was made of it, has in this version."""
+    return re.sub(OURS, r"written\1", name)
+
+
+def names_of(name: str) -> tuple[str, ...]:
+    """An id as it is, as this version has it, and as 0.1 had it."""
+    return tuple(dict.fromkeys((name, current_id(name), re.sub(OURS, r"crowd\1", name))))
 
 
 @lru_cache(maxsize=10_000)
@@ -21,5 +35,6 @@ def activity_id(title: str) -> str:
 
 @lru_cache(maxsize=10_000)
 def split_of(activity: str, seed: int) -> str:
-    """`train` or `test`, by activity, so that descendants of one program stay together."""
-    return "train" if derive(seed, "split", activity) % 10 < TRAIN else "test"
+    """`train`, `validation` or `test`, by activity, so that descendants of one program stay together."""
+    decile = derive(seed, "split", activity) % 10
+    return "train" if decile < TRAIN else "validation" if decile < TRAIN + VALIDATION else "test"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hearth.datasets.format.codecs import graph_of
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node, to_release
-from hearth.schemas.rows import GraphRow
+from hearth.schemas.row_types import GraphRow
 from hearth.storage.files import write_json
 
 

@@ -1,8 +1,8 @@
-"""Train and test splits, stored as a table.
+"""Train, validation and test splits, stored as a table.
 
 Near duplicates are assigned together, whatever their activity: a program and its repaired descendants, programs with
 nearly the same steps, and programs with nearly the same description. If a rule would still separate such a group, its
-training runs are excluded. The leakage that remains is measured, beside that of a random split.
+programs outside the latest part have none. The leakage that remains is measured, beside that of a random split.
 """
 
 from collections import Counter
@@ -12,7 +12,7 @@ from typing import Any
 
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
 from hearth.schemas.rng import derive
-from hearth.schemas.rows import SplitRow
+from hearth.schemas.row_types import SplitRow
 
 NEAR = 0.9
 """Normalised LCS of steps, or similarity of texts, from which two programs are near duplicates."""
@@ -22,13 +22,23 @@ SHORTEST_TEXT = 20
 
 
 RULES = {
-    "activities": "activities 7:3, one home held out (thesis 5.6): train in the other homes; test_seen_home and"
-    " test_held_out_home have activities of which none was trained on",
-    "homes_1_4": "trained in homes 1-4, validated in 5, tested in 1-6 (4.4), other programs each: test_seen in 1-4,"
-    " test_unseen in 5-6",
-    "homes_1_5": "trained in homes 1-5, tested in 6-7 (6.5.1, 7.4), other programs each",
+    "activities": "by program: activities 7:1:2; the parts are those of `programs.split`",
+    "held_out_home": "by execution: as `activities`, with {held_out} held out (thesis 5.6): train and validation in the"
+    " other homes, test_seen_home there too, test_held_out_home in {held_out}",
+    "homes_1_4": "by program: trained in homes 1-4 ({1_4}), validated in 5 ({5_5}), tested in 1-6 (4.4): test_seen in"
+    " 1-4, test_unseen in 5-6 ({5_6})",
+    "homes_1_5": "by program: trained in homes 1-5 ({1_5}), tested in 6-7 ({6_7}) (6.5.1, 7.4)",
 }
-"""The rule of each split. Homes are numbered by name; runs without a part are in `none`."""
+"""The rule of each split, with the names of homes put in; homes are numbered by name.
+
+In a split by program, a program has one part, or none in some homes; by execution, it may have another in each home.
+"""
+
+PARTS = ("train", "validation", "test")
+"""The parts of `activities`, which is `programs.split`; of near duplicates, those in earlier parts are left out."""
+
+LEFT_OUT = "left_out"
+"""In names of files, programs without a part in `activities`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +48,7 @@ class SplitProgram:
     Attributes:
         program_id: its id.
         activity: its activity.
-        part: `train` or `test`, assigned by activity.
+        part: one of `PARTS`, assigned by activity.
         root: id of its original, or its own.
         steps: action and class names, one text per step, without instances.
         description: its text.
@@ -114,82 +124,105 @@ def groups(programs: Sequence[SplitProgram], similarity: Similarity) -> dict[str
     return {each.program_id: find(each.root) for each in programs}
 
 
+def by_activity(programs: Sequence[SplitProgram], similarity: Similarity) -> dict[str, str | None]:
+    """The part of each program in `activities`: that of its activity, unless a near duplicate is in a later part."""
+    group = groups(programs, similarity)
+    last: dict[str, int] = {}
+    for each in programs:
+        mine = group[each.program_id]
+        last[mine] = max(last.get(mine, 0), PARTS.index(each.part))
+    return {
+        each.program_id: each.part if each.part == PARTS[last[group[each.program_id]]] else None for each in programs
+    }
+
+
+def homes_of(runs: Iterable[tuple[str, str, str]], seed: int) -> tuple[list[str], str]:
+    """The homes of runs, in the order in which splits number them, and the one that is held out."""
+    homes = sorted({home for _, _, home in runs})
+    return homes, homes[derive(seed, "split", "home") % len(homes)] if homes else ""
+
+
 def parts(
-    programs: Sequence[SplitProgram], runs: Iterable[tuple[str, str, str]], seed: int, similarity: Similarity
+    programs: Sequence[SplitProgram], runs: Sequence[tuple[str, str, str]], seed: int, similarity: Similarity
 ) -> Iterator[SplitRow]:
     """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
 
     Args:
         programs: all published programs.
-        runs: execution id, program id and home of every execution.
+        runs: execution id, program id and home of every execution that ran to its end.
         seed: of the assignment.
         similarity: near duplicates among these programs.
     """
-    known = {each.program_id: each for each in programs}
-    group = groups(programs, similarity)
-    tested = {group[each.program_id] for each in programs if each.part == "test"}
-    runs = sorted(runs)
-    homes = sorted({home for _, _, home in runs})
+    group, part_of = groups(programs, similarity), by_activity(programs, similarity)
+    homes, out = homes_of(runs, seed)
     number = {home: place for place, home in enumerate(homes, 1)}
-    out = derive(seed, "split", "home") % len(homes) + 1 if homes else 0
-    for execution_id, program_id, home in runs:
-        mine, at = group[program_id], number[home]
+    for execution_id, program_id, home in sorted(runs):
+        mine, at, part = group[program_id], number[home], part_of[program_id]
         assigned = {
-            "activities": _by_activity(known[program_id].part, mine in tested, at == out),
-            "homes_1_4": _by_home_4(derive(seed, "split", "homes_1_4", mine) % 10, at),
-            "homes_1_5": _by_home_5(derive(seed, "split", "homes_1_5", mine) % 10, at),
+            "activities": part,
+            "held_out_home": _by_held_out(part, home == out),
+            **{split: _by_home(split, derive(seed, "split", split, mine) % 10, at) for split in _BY_HOME},
         }
         for split, part in assigned.items():
             yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
 
 
-def _by_activity(part: str, near_test: bool, held_out: bool) -> str:
+def _by_held_out(part: str | None, held_out: bool) -> str | None:
     if part == "test":
         return "test_held_out_home" if held_out else "test_seen_home"
-    return "none" if near_test or held_out else "train"
+    return None if held_out else part
 
 
-def _by_home_4(decile: int, home: int) -> str:
-    if decile < 7:
-        return "train" if home <= 4 else "none"
-    if decile < 8:
-        return "validation" if home == 5 else "none"
-    return "test_seen" if home <= 4 else "test_unseen" if home <= 6 else "none"
+_BY_HOME = {
+    "homes_1_4": ((7, 1, 4, "train"), (8, 5, 5, "validation"), (9, 1, 4, "test_seen"), (10, 5, 6, "test_unseen")),
+    "homes_1_5": ((7, 1, 5, "train"), (10, 6, 7, "test")),
+}
+"""The part of programs up to a decile of their groups, in the homes from a number to a number."""
 
 
-def _by_home_5(decile: int, home: int) -> str:
-    if decile < 7:
-        return "train" if home <= 5 else "none"
-    return "test" if 6 <= home <= 7 else "none"
+def _by_home(split: str, decile: int, home: int) -> str | None:
+    _, first, last, part = next(rule for rule in _BY_HOME[split] if decile < rule[0])
+    return part if first <= home <= last else None
 
 
 def summary(
-    programs: Sequence[SplitProgram], rows: Sequence[SplitRow], seed: int, similarity: Similarity
+    programs: Sequence[SplitProgram],
+    runs: Sequence[tuple[str, str, str]],
+    rows: Sequence[SplitRow],
+    seed: int,
+    similarity: Similarity,
 ) -> dict[str, Any]:
-    """Rule, counts of runs and programs by part, and leakage of each split, as JSON.
+    """Homes in order, and for each split rule, counts of runs and programs by part, and leakage, as JSON.
 
     `leakage` counts test programs with a program in train that has the same original (`siblings`), nearly the same
     steps (`steps`), or nearly the same description (`texts`); `at_random` is the leakage of a random split of equal
     size.
     """
     by_id = {each.program_id: each for each in programs}
-    found: dict[str, Any] = {"seed": seed, "near": NEAR, "splits": {}}
+    homes, out = homes_of(runs, seed)
+    spans = {f"{first}_{last}": ", ".join(homes[first - 1 : last]) or "none here" for first, last in _SPANS}
+    found: dict[str, Any] = {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": {}}
     for split, rule in RULES.items():
-        mine = [row for row in rows if row["split"] == split]
+        counted = Counter(row["part"] for row in rows if row["split"] == split)
         members: dict[str, dict[str, None]] = {}
-        for row in mine:
-            members.setdefault(row["part"], {})[row["program_id"]] = None
+        for row in rows:
+            if row["split"] == split and row["part"]:
+                members.setdefault(row["part"], {})[row["program_id"]] = None
         train = [by_id[name] for name in members.get("train", {})]
         test = [by_id[name] for part, names in sorted(members.items()) if part.startswith("test") for name in names]
         test = list({each.program_id: each for each in test}.values())
         found["splits"][split] = {
-            "rule": rule,
-            "runs": dict(sorted(Counter(row["part"] for row in mine).items())),
+            "rule": rule.format(held_out=out, **spans),
+            "runs": {part: counted[part] for part in sorted(members)},
+            "runs_without_part": counted[None],
             "programs": {part: len(names) for part, names in sorted(members.items())},
             "leakage": leakage(train, test, similarity),
             "at_random": leakage(*_at_random([*train, *test], len(test), seed), similarity),
         }
     return found
+
+
+_SPANS = ((1, 4), (5, 5), (5, 6), (1, 5), (6, 7))
 
 
 def _at_random(programs: list[SplitProgram], tested: int, seed: int) -> tuple[list[SplitProgram], list[SplitProgram]]:

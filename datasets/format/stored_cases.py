@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, TypedDict
 
 from hearth.datasets.dataset import Dataset
-from hearth.schemas.rows import BindingRow, DifferenceRow, StepRow
+from hearth.schemas.row_types import BindingRow, DifferenceRow, StepRow
 
 
 class StoredCaseRow(TypedDict):

@@ -1,10 +1,10 @@
 """The tables of the report, each with its query (`figures.yaml`)."""
 
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
+from hearth.schemas.yaml_extent import packaged
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +29,8 @@ class Figure:
 
 def figures(dataset: Dataset) -> list[Figure]:
     """Every figure with a non-empty result."""
-    import yaml
-
-    asked = yaml.safe_load((files("hearth.datasets.report") / "figures.yaml").read_text("utf-8"))
     found = []
-    for each in asked:
+    for each in packaged("hearth.datasets.report", "figures.yaml"):
         columns, rows = dataset.rows(each["query"])
         if rows:
             lengths = [float(row[columns.index(each["bars"])] or 0) for row in rows]

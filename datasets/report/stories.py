@@ -9,10 +9,10 @@ from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.codecs import change_of, edges_of, program_of
-from hearth.datasets.report.pictures import shown_as
+from hearth.datasets.report.copied_pictures import shown_as
 from hearth.schemas.change import Change, WorkingGraph
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.rows import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
+from hearth.schemas.row_types import ConditionRow, DifferenceRow, FailureRow, ProgramRow, RepairedRow, RepairRow, Row
 from hearth.schemas.syntax import print_step
 
 DRAWN = frozenset({"ON", "INSIDE", "FACING", "HOLDS_RH", "HOLDS_LH"})

@@ -9,14 +9,15 @@ from typing import Any
 
 import orjson
 
-from hearth.datasets.dataset import Dataset
+from hearth.datasets.dataset import OWN, Dataset
+from hearth.datasets.format.datasheet import datasheet
+from hearth.datasets.report.copied_pictures import copy_pictures
+from hearth.datasets.report.drawn_plans import plans
 from hearth.datasets.report.figures import figures
-from hearth.datasets.report.pictures import copy_pictures
-from hearth.datasets.report.plans import plans
 from hearth.datasets.report.stories import DRAWN, Stories
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import Row
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
 
@@ -61,7 +62,10 @@ def _page(dataset: Dataset, programs: int) -> str:
     template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
     versions = {name: dataset.manifest[name] for name in ("version", "action_set")}
     drawn = plans(dataset)
-    return template.render(figures=figures(dataset), plans=drawn, programs=programs, shard=SHARD, **versions)
+    sheet = {name: text for name, text in datasheet(dataset.folder).items() if name != "bibtex"}
+    return template.render(
+        figures=figures(dataset), plans=drawn, sheet=sheet, programs=programs, shard=SHARD, **versions
+    )
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:
@@ -69,8 +73,8 @@ def _rows(dataset: Dataset) -> list[list[Any]]:
     query = f"""SELECT p.*,
             coalesce(e.homes, 0) AS homes, coalesce(e.code, '') AS code, coalesce(r.repairs, 0) AS repairs
         FROM (SELECT {_ROW} FROM programs) p
-        LEFT JOIN (SELECT program_id, count(*) AS homes, min(failure.code) AS code FROM executions GROUP BY 1) e
-            USING (program_id)
+        LEFT JOIN (SELECT program_id, count(*) AS homes, min(failure.code) AS code FROM executions e WHERE {OWN}
+            GROUP BY 1) e USING (program_id)
         LEFT JOIN (SELECT program_id, count(*) AS repairs FROM repairs GROUP BY 1) r USING (program_id)
         ORDER BY program_id"""
     columns, found = dataset.rows(query)
@@ -134,7 +138,7 @@ _RUNS = f"""
             lambda n: {{'id': n.id, 'class_name': n.class_name, 'states': n.states}}),
          'set_states': v.set_states, 'cleared_states': v.cleared_states,
          'added': {_EDGES.format("v.added")}, 'removed': {_EDGES.format("v.removed")}}} AS environment
-    FROM (SELECT * FROM executions WHERE program_id BETWEEN $low AND $high) e
+    FROM (SELECT * FROM executions e WHERE program_id BETWEEN $low AND $high AND {OWN}) e
     JOIN (SELECT * FROM environments WHERE program_id BETWEEN $low AND $high) v USING (environment_id)
     ORDER BY e.execution_id
 """

@@ -19,7 +19,7 @@ PACKAGES = (
 
 ENTRY_POINTS = {
     "A dataset": (
-        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors",
+        "hearth:load", "hearth:Dataset", "hearth:Dataset.sql", "hearth:Dataset.to_tensors", "hearth:ExecutionGraphs",
         "hearth.datasets.dataset:Run.graph", "hearth:verify", "hearth:export",
     ),
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
@@ -28,7 +28,7 @@ ENTRY_POINTS = {
     ),
     "Programs in a home": ("hearth:parse_program", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit"),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
-    "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth.simulation.explain:checks"),
+    "Goals and checks": ("hearth:holds", "hearth:Progress", "hearth:read_goal", "hearth.simulation.explain:checks"),
     "Environments and variants": (
         "hearth:infer", "hearth:sample", "hearth:augment", "hearth.repair.loop:repair", "hearth:sketch",
     ),
@@ -71,7 +71,7 @@ def python_api() -> str:
         lines += ["", f"## {group}"]
         for place in places:
             about, example = documented(place)
-            module = resolve_name(place).__module__.removeprefix("hearth.")
+            module = inspect.unwrap(resolve_name(place)).__module__.removeprefix("hearth.")
             more = "" if module == "hearth" else f" [More](library/{module}.md)"
             lines += ["", f"### {place.replace(':', '.')}", "", "```python", signature(place), "```", ""]
             lines += [f"{' '.join(about.split())}{more}", "", "```pycon", example, "```"]
@@ -149,17 +149,108 @@ def objects() -> str:
 
 
 def tables() -> str:
-    """The published tables with their columns."""
-    from hearth.schemas.tables import TABLES
+    """The published tables with their keys, columns and nested fields; the other views; the macros."""
+    from hearth.datasets.format.card import columns
+    from hearth.schemas.tables import KEYS, TABLES, comment_of
 
-    lines = ["# Tables", "", "Parquet, typed and nested; `catalog.duckdb` has them as views, with `steps` and `ticks`."]
+    lines = ["# Tables", "", *TABLES_ABOUT, "", "![Every table, its key and what it refers to](pictures/tables.svg)"]
     for table, schema in TABLES.items():
-        lines += ["", f"## {table}", "", "| column | type | meaning |", "|---|---|---|"]
-        for column in schema:
-            meaning = (column.metadata or {}).get(b"comment", b"").decode()
-            kind = str(column.type).replace("|", "\\|")
-            lines.append(f"| `{column.name}` | `{kind if len(kind) < 60 else kind[:57] + '...'}` | {meaning} |")
-    return "\n".join(lines) + "\n"
+        keys = ", ".join(f"`{name}`" for name in KEYS[table])
+        refers = "".join(f" `{own}` refers to `{other}`." for own, other in _references(table).items())
+        lines += ["", f"## {table}", "", comment_of(schema), "", f"Key: {keys}.{refers}", "", *columns(schema)]
+    views, macros = _commented()
+    for view, (about, *names) in views.items():
+        lines += ["", f"## {view}", "", f"A view. {about}", "", "| column | meaning |", "|---|---|"]
+        lines += [f"| `{name}` | {meaning} |" for name, meaning in names]
+    lines += ["", "## Macros", "", "| macro | meaning |", "|---|---|"]
+    return "\n".join([*lines, *(f"| `{call}` | {about} |" for call, about in macros)]) + "\n"
+
+
+TABLES_ABOUT = (
+    "Parquet, typed and nested. `catalog.duckdb` has a view of every table, further views, and macros. Open it",
+    "by its path, from any folder: `duckdb mine/publish/catalog.duckdb`. All that stands here is in it as comments:",
+    "",
+    "```sql",
+    "SELECT column_name, comment FROM duckdb_columns() WHERE table_name = 'programs';",
+    "```",
+    "",
+    "`python docs/hooks/pages.py` writes this page and its diagram, in which the columns of keys are underlined.",
+)
+
+
+def _references(table: str) -> dict[str, str]:
+    """Column -> the table and column that it refers to."""
+    from hearth.schemas.tables import REFERENCES
+
+    return {own: f"{other}.{key}" for name, own, other, key in REFERENCES if name == table}
+
+
+def _commented() -> tuple[dict[str, list[Any]], list[tuple[str, str]]]:
+    """The views that are no tables, each with its meaning and (column, meaning); the macros as (call, meaning)."""
+    from hearth.datasets.format.catalog import statements
+
+    text = (ROOT / "datasets/format/comments.sql").read_text("utf-8")
+    views: dict[str, list[Any]] = {}
+    macros = []
+    for kind, name, about in re.findall(r"^COMMENT ON (VIEW|COLUMN|MACRO(?: TABLE)?) (\S+) IS '(.*)';$", text, re.M):
+        view, _, column = name.partition(".")
+        meaning = about.replace("''", "'").replace("|", "\\|").replace("<", "&lt;")
+        if kind == "VIEW":
+            views[view] = [meaning]
+        elif kind == "COLUMN":
+            views[view].append((column, meaning))
+        else:
+            (taken,) = re.findall(rf"CREATE MACRO {name}\((.*?)\)", statements())
+            macros.append((f"{name}({taken})", meaning))
+    return views, macros
+
+
+LINE, WIDTH, GAP = 18, 210, 60
+"""Pixels of the diagram: height of a line, width of a table, space between columns of tables."""
+
+
+def diagram() -> str:
+    """The keys of all tables, as SVG: a table is right of those that it refers to."""
+    from hearth.schemas.tables import KEYS, TABLES
+
+    refers = {table: _references(table) for table in TABLES}
+
+    def level(table: str) -> int:
+        others = {other.partition(".")[0] for other in refers[table].values()} - {table}
+        return max((1 + level(other) for other in others), default=0)
+
+    shown = {table: list(dict.fromkeys((*KEYS[table], *refers[table]))) for table in TABLES}
+    levels = {table: level(table) for table in TABLES}
+    bottom = dict.fromkeys(levels.values(), 20)
+    place: dict[str, tuple[int, int]] = {}
+    for table, names in shown.items():
+        column = levels[table]
+        place[table] = (20 + column * (WIDTH + GAP), bottom[column])
+        bottom[column] += LINE * (len(names) + 1) + 30
+    boxes, lines = [], []
+    for table, (x, y) in place.items():
+        names = shown[table]
+        boxes.append(f'<rect x="{x}" y="{y}" width="{WIDTH}" height="{LINE * (len(names) + 1) + 6}" rx="4"/>')
+        boxes.append(f'<text x="{x + 8}" y="{y + 15}" class="table">{table}</text>')
+        for number, name in enumerate(names, 1):
+            down = y + 15 + LINE * number
+            boxes.append(f'<text x="{x + 8}" y="{down}" class="{"key" if name in KEYS[table] else ""}">{name}</text>')
+            other, _, key = refers[table].get(name, "").partition(".")
+            if other:
+                boxes.append(f'<text x="{x + WIDTH - 8}" y="{down}" class="other">{other}</text>')
+            if other and other != table:
+                left, top = place[other][0] + WIDTH, place[other][1] + 10 + LINE * (1 + shown[other].index(key))
+                middle = (left + x) / 2
+                lines.append(f'<path d="M{x},{down - 5} C{middle:g},{down - 5} {middle:g},{top} {left},{top}"/>')
+    size = max(x for x, _ in place.values()) + WIDTH + 20, max(bottom.values())
+    return "\n".join((
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]} {size[1]}">',
+        "<style>text{font:12px sans-serif;fill:#222}.table{font-weight:bold}"
+        ".key{text-decoration:underline}.other{fill:#a65;text-anchor:end}rect{fill:#fff;stroke:#777}"
+        "path{fill:none;stroke:#a65}</style>",
+        f'<rect width="{size[0]}" height="{size[1]}" style="fill:#f6f4f0;stroke:none"/>',
+        *lines, *boxes, "</svg>\n",
+    ))  # fmt: skip
 
 
 def failures() -> str:
@@ -217,10 +308,13 @@ PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands,
     "reference/actions.md": actions,
     "reference/objects.md": objects,
-    "reference/tables.md": tables,
     "reference/failures.md": failures,
     "library/index.md": library,
 }
+
+
+WRITTEN: dict[str, Callable[[], str]] = {"tables.md": tables, "pictures/tables.svg": diagram}
+"""Pages and pictures of `docs/` that are kept in the checkout; `python docs/hooks/pages.py` writes them."""
 
 
 def on_startup(command: str, dirty: bool) -> None:
@@ -241,3 +335,8 @@ def on_files(files: Any, config: Any) -> Any:
     for name, text in made.items():
         files.append(File.generated(config, name, content=text))
     return files
+
+
+if __name__ == "__main__":
+    for name, page in WRITTEN.items():
+        (ROOT / "docs" / name).write_text(page(), "utf-8")

@@ -65,8 +65,8 @@ class Base:
         self.start = World.start(self.home)
         self.character = self.home.ids[self.home.agents[0]]
         self.room = [self.home.direct_room[i] for i in range(len(self.home))]
-        self.serving, self.instances = cache(self._serving), cache(self._instances)
-        self.kind, self.homeless, self.spots = cache(self._kind), cache(self._homeless), cache(self._spots)
+        self.instances, self.kind = cache(self._instances), cache(self._kind)
+        self.homeless, self.spots = cache(self._homeless), cache(self._spots)
         self._thinned = cache(self._without_many)
 
     def thinned(self, most: int) -> Base:
@@ -84,17 +84,7 @@ class Base:
 
     def rooms(self, name: str) -> tuple[int, ...]:
         """Indices of the rooms that serve as the named one; of all rooms where none does."""
-        return self.serving(name) or tuple(indices(self.home.rooms))
-
-    def _serving(self, name: str) -> tuple[int, ...]:
-        """Indices of the rooms of that class, or of its nearest stand-in; none where the home has neither."""
-        seen: set[str] = set()
-        room, found = name, 0
-        while room and room not in seen and not found:
-            seen.add(room)
-            found = self.home.by_class.get(room, 0) & self.home.rooms
-            room = self.knowledge.room_standins.get(room, "")
-        return tuple(indices(found))
+        return self.instances(name) or tuple(indices(self.home.rooms))
 
     def _instances(self, name: str) -> tuple[int, ...]:
         """Indices of the instances of a class, under the first of its names that occurs in the home."""
@@ -111,7 +101,7 @@ class Base:
         """The failure of any sampling that needs a thing of a class; None if the home can hold one."""
         knowledge, home = self.knowledge, self.home
         if knowledge.is_room(name):
-            if self.serving(name):
+            if self.instances(name):
                 return None
             rooms = ", ".join(sorted({home.classes[i] for i in indices(home.rooms)}))
             return Code.NO_ROOM, f"a home with a {name}, or a room that serves as one", f"{home.name} has {rooms}"

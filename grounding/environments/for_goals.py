@@ -35,7 +35,7 @@ def sample_for_goal(
     """Draw an environment in which a goal can be reached and is not reached yet; an empty goal asks for nothing.
 
     Args:
-        goal: counted literals over classes, nodes of the home or agents.
+        goal: counted literals over classes, nodes of the home or agents; the things of all its parts are provided.
         home: any home; it is brought to its default state first.
         seed, record_id: all the randomness there is.
         size: nodes wanted.
@@ -49,7 +49,8 @@ def sample_for_goal(
         HearthError: UNKNOWN_OBJECT or SYNTAX: a literal names nothing that there is.
     """
     base = size.base(home)
-    for literal, wanted in goal:
+    every = tuple(goal.literals())
+    for literal, wanted in every:
         if wanted > MOST:
             return _failure(Code.NO_PLACE, literal, f"at most {MOST}", str(wanted))
     failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "none was drawn")
@@ -58,10 +59,10 @@ def sample_for_goal(
         if isinstance(environment, Failure):
             return environment
         progress = Progress.start(goal, environment.world)
-        missing = next((p for p, wanted in goal if _candidates(p, environment.world) < wanted), None)
+        missing = next((p for p, wanted in every if _candidates(p, environment.world) < wanted), None)
         if missing is not None:
             failure = _failure(Code.NO_PLACE, missing, "enough of them", "fewer than the goal counts")
-        elif any(True for _ in goal) and progress.satisfied:
+        elif every and progress.satisfied:
             failure = _failure(Code.CONDITION_UNMET, None, "a goal not met at the start", "it is met already")
         elif (fault := unsound(environment.world)) is not None:
             failure = fault
@@ -75,13 +76,16 @@ def _failure(code: Code, literal: Literal[Name] | None, expected: str, actual: s
 
 
 def _class(literal: Literal[Name]) -> str:
-    """The class of things that a literal counts, or "" where it names nodes or agents alone."""
+    """The class of things that a literal counts, or "" where it names nodes, agents or variables alone."""
+    if not literal.terms:
+        return ""
     counted = literal.target if _is_agent(literal.subject) else literal.subject
     return counted if isinstance(counted, str) and not _is_agent(counted) else ""
 
 
 def _is_agent(term: Name | None) -> bool:
-    return isinstance(term, str) and term.startswith(AGENT)
+    """Whether a term stands for agents, or is a variable."""
+    return isinstance(term, str) and term.startswith((AGENT, "?"))
 
 
 def _candidates(literal: Literal[Name], world: World) -> int:
@@ -92,7 +96,7 @@ def _candidates(literal: Literal[Name], world: World) -> int:
 def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size: Size) -> Environment | Failure:
     partial = PartialEnvironment(base, rng(seed, "goal", base.home.name, record_id, attempt))
     wanted: Counter[str] = Counter()
-    for literal, number in goal:
+    for literal, number in goal.literals():
         if name := _class(literal):
             wanted[name] = max(wanted[name], number)
         holder = literal.target
@@ -101,7 +105,7 @@ def _drawn(goal: Goal, base: Base, seed: int, record_id: str, attempt: int, size
     for name, number in sorted(wanted.items()):
         if not base.knowledge.is_room(name):
             provide(partial, name, number)
-    for literal, number in goal:
+    for literal, number in goal.literals():
         _undo(partial, literal, number)
     settle_character(partial, _NO_PROGRAM, _NOTHING)
     fill(partial, size.least, size.most, size.some)

@@ -9,6 +9,8 @@ from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import CHARACTER, Key
 from hearth.schemas.program import Program
+from hearth.simulation.actions.origins import remembered
+from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
 
 _LINKS = {"in": "ON", "inside": "INSIDE", "atreach": "CLOSE", "together": "", "facing": "FACING"}
@@ -29,7 +31,8 @@ class Requirements:
         for step in program.steps:
             for position, ref in enumerate(step.objects):
                 self.uses.setdefault(ref.key, []).append((step.action, position))
-        self.rooms = tuple(key for key in self.uses if knowledge.is_room(key[0]))
+        named = (*self.uses, *(key for condition in conditions for key in condition.objects))
+        self.rooms = tuple(key for key in dict.fromkeys(named) if knowledge.is_room(key[0]))
         self.locations: dict[Key, Key] = {}
         self.links: dict[Key, list[Condition]] = {}
         for condition in conditions:
@@ -115,8 +118,7 @@ def _chosen(partial: PartialEnvironment, requirements: Requirements, key: Key) -
     if placing is not None:
         partial.put(node_id, _LINKS[placing.name], partial.binding[_anchor(placing)])
     elif node_id in partial.new:
-        put_back = any(action == "PutObjBack" for action, _ in requirements.uses[key])
-        put_where_it_belongs(partial, key[0], node_id, room, must=put_back)
+        put_where_it_belongs(partial, key[0], node_id, room, must=_put_back(requirements, key))
     return node_id
 
 
@@ -141,8 +143,9 @@ def _candidates(
     """Indices of the home's own things that could be the object: unused, affording its uses, in the room."""
     home = partial.base.home
     able = reduce(and_, (home.able(action, position) for action, position in requirements.uses[key]), home.everything)
-    ids, rooms = home.ids, partial.base.room
+    ids, rooms, start = home.ids, partial.base.room, partial.base.start
     closed = home.states[0] & ~home.rooms
+    put_back = _put_back(requirements, key)
     return [
         i
         for i in partial.base.instances(key[0])
@@ -150,7 +153,13 @@ def _candidates(
         and ids[i] not in partial.taken
         and (room < 0 or (rooms[i] >= 0 and ids[rooms[i]] == room))
         and not (in_sight and home.inside[i] & closed)
+        and not (put_back and remembered(start, start.agents[0], i, DEFAULT)[0] < 0)
     ]
+
+
+def _put_back(requirements: Requirements, key: Key) -> bool:
+    """Whether the program puts an object back where it came from, and so needs it to come from somewhere."""
+    return any(action == "PutObjBack" for action, _ in requirements.uses[key])
 
 
 def _linked(partial: PartialEnvironment, i: int, condition: Condition) -> bool:

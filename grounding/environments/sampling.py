@@ -11,16 +11,16 @@ from hearth.grounding.environments.placing import bind, requirements_of
 from hearth.grounding.environments.satisfying import fulfil
 from hearth.grounding.environments.soundness import unsound
 from hearth.grounding.preconditions.abduction import StartContext, conditions_for
-from hearth.grounding.preconditions.checking import unmet
-from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.grounding.preconditions.checking import unmet, unmet_failure
+from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
-from hearth.schemas.failures import Code, Failure
+from hearth.schemas.failures import Failure
 from hearth.schemas.graph import Edge, Node
 from hearth.schemas.literals import CHARACTER, HANDS, Key
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.simulation.engine import Execution, run
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import Movable
 from hearth.simulation.world.home import Home
@@ -138,9 +138,10 @@ def sample(
     Examples:
         >>> environment, execution = hearth.sample(program, home, seed=0)
         >>> execution.executable, len(environment.world.graph().nodes)
-        (True, 370)
+        (True, 371)
     """
     base = size.base(home)
+    rules = suited(program, base.knowledge, rules)
     found = infer(program, base.knowledge, rules) if conditions is None else conditions
     if isinstance(found, Failure):
         return found
@@ -154,7 +155,7 @@ def sample(
         fault = unsound(environment.world)
         if not missing and fault is None and (execution.failure is None or not must_run):
             return environment, execution
-        failure = _unmet(missing[0]) if missing else fault or execution.failure
+        failure = unmet_failure(missing[0], program, TRIES) if missing else fault or execution.failure
         if attempt % 2 and execution.failure is not None and not missing:
             found = _with_abduced(found, environment, execution, base)
     assert failure is not None
@@ -175,11 +176,6 @@ def unplaceable(program: Program, base: Base) -> Failure | None:
 
 def _nodes(program: Program) -> dict[Key, int]:
     return {ref.key: ref.node for ref in program.objects() if ref.node is not None}
-
-
-def _unmet(condition: Condition) -> Failure:
-    names = tuple(name for name, _ in condition.objects)
-    return Failure(Code.CONDITION_UNMET, names=names, expected=str(condition), actual="not so in what was drawn")
 
 
 def draw(

@@ -172,7 +172,7 @@ def _resting(context: StartContext) -> Iterator[Condition]:
     moved = context.agent != context.start.agents[context.failure.agent]
     action = context.program.steps[context.at].action
     if not moved or context.agent.on == context.start.agents[context.failure.agent].on:
-        yield context.needs("lying" if action in ("Sleep", "WakeUp") else "sitting", CHARACTER)
+        yield context.needs("lying" if action in context.group("lies") else "sitting", CHARACTER)
 
 
 def _holding(context: StartContext) -> Iterator[Condition]:

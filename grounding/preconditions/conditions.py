@@ -40,6 +40,24 @@ class Condition:
     def __str__(self) -> str:
         return str(self.literal)
 
+    def in_words(self) -> str:
+        """For people: `cup (1) is on table (1)`."""
+        subject, *others = (f"{name} ({instance})" for name, instance in self.objects)
+        return " ".join((subject, "is", _IN_WORDS.get(self.name, self.name), *others[: self.name not in _ABOUT_ONE]))
+
+
+_ABOUT_ONE = ("in_closed_container",)
+"""Conditions whose second object only says which place was meant."""
+
+_IN_WORDS = {
+    "is_on": "switched on", "is_off": "switched off", "plugged": "plugged in", "full_hands": "full-handed",
+    "doors_closed": "behind closed doors", "pet": "under a pet", "in": "on", "location": "in",
+    "atreach": "within reach of", "nearby": "within reach of", "facing_away": "facing away from", "holds": "held by",
+    "together": "in the same room as", "other_room": "in another room than", "not_near": "out of reach of",
+    "in_closed_container": "in something closed",
+}  # fmt: skip
+"""What a condition says of its object, where its name alone does not."""
+
 
 @dataclass(frozen=True, slots=True)
 class Preconditions:

@@ -16,7 +16,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution, run
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.world import World
 
 MAX_CONDITIONS = 200
@@ -54,6 +54,7 @@ def at_odds(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> t
 def _inferred(program: Program, knowledge: Knowledge, rules: Rules) -> tuple[Preconditions, Execution, int]:
     """The conditions found, the last try with them, and the step it failed at, if it did."""
     conditions = Preconditions(tuple(default_conditions(program, knowledge)))
+    rules = suited(program, knowledge, rules)
     tried: dict[int, set[Literal[Key]]] = {}
     for _ in range(MAX_CONDITIONS):
         place = sketch(program, conditions, knowledge)

@@ -99,7 +99,7 @@ def _rest(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
     seated = False
     worn: set[Key] = set()
     for number, step in enumerate(program.steps):
-        if step.action in ("StandUp", "WakeUp") and not seated:
+        if step.action in knowledge.group("gets_up") and not seated:
             yield _soft("sitting", number, CHARACTER)
         elif step.action == "PutOff" and step.objects[0].key not in worn:
             yield _soft("in", number, step.objects[0].key, CHARACTER)
@@ -137,7 +137,7 @@ def _seat(seat: Key | None, step: Step, knowledge: Knowledge) -> Key | None:
     """What the character sits or lies on after a step."""
     if step.action in knowledge.group("rests"):
         return step.objects[0].key
-    return None if step.action in ("StandUp", "WakeUp") else seat
+    return None if step.action in knowledge.group("gets_up") else seat
 
 
 def _seats(program: Program, knowledge: Knowledge) -> Iterator[Condition]:

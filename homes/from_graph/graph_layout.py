@@ -14,11 +14,11 @@ from hearth.homes.from_graph.embedding import guessed
 from hearth.homes.from_graph.parts import Parts
 from hearth.homes.from_graph.rooms import RoomPair, packed
 from hearth.homes.from_graph.shown_relations import missed, unmet
-from hearth.homes.geometry import OPPOSITE_WALL, Rect
+from hearth.homes.geometry import Rect
 from hearth.homes.plans import shell
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
-from hearth.homes.plans.shell import Thing, shared_wall, span
+from hearth.homes.plans.shell import Thing, outer_walls, shared_wall, span
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -156,21 +156,14 @@ def _doorways(parts: Parts, rects: Mapping[int, Rect]) -> list[Doorway]:
 def _ways_out(parts: Parts, rects: Mapping[int, Rect]) -> Iterator[Doorway]:
     """A room's main door, in the last of its outer walls; the others are for windows."""
     for room in parts.rooms:
-        walls = _outer(room, rects)
+        walls = outer_walls(rects[room], [rect for other, rect in rects.items() if other != room])
         for door in parts.of_class(room, "maindoor")[: len(walls[:1])]:
             yield Doorway((_name(parts.nodes[room]), OUTSIDE), wall=walls[-1], line=door)
 
 
-def _outer(room: int, rects: Mapping[int, Rect]) -> list[str]:
-    """The walls of a room that no other room shares."""
-    beside = (shared_wall(rects[room], rects[other]) for other in rects if other != room)
-    inner = {shared[0] for shared in beside if shared is not None}
-    return [wall for wall in OPPOSITE_WALL if wall not in inner]
-
-
 def _windows(parts: Parts, room: int, rects: Mapping[int, Rect]) -> tuple[Window, ...]:
     """As many as the graph has, in the middle of outer walls and then beside the middle; curtains as it has them."""
-    walls = _outer(room, rects)
+    walls = outer_walls(rects[room], [rect for other, rect in rects.items() if other != room])
     if parts.of_class(room, "maindoor"):
         walls = walls[:-1]
     count, curtains = len(parts.of_class(room, "window")), len(parts.of_class(room, "curtain"))

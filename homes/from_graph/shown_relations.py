@@ -6,9 +6,9 @@ from math import cos, hypot, radians, sqrt
 import numpy as np
 
 from hearth.homes.from_graph.parts import SHELL, Parts
-from hearth.homes.geometry import DIRECTIONS, bottom, footprint, top
+from hearth.homes.geometry import bottom, footprint, top
 from hearth.homes.plans.shell import Thing
-from hearth.homes.relations import CLOSE_WITHIN, VIEW
+from hearth.homes.relations import CLOSE_WITHIN, VIEW, arrays, direction
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph
@@ -102,19 +102,10 @@ def gap(one: Box, other: Box) -> float:
     return sqrt(max(across, 0.0) ** 2 + max(up, 0.0) ** 2 + max(along, 0.0) ** 2)
 
 
-def gaps(ones: Sequence[Box], others: Sequence[Box]) -> np.ndarray:
-    """Metres of free space between each of some boxes and each of others."""
-    centers, halves = (np.array([getattr(b, k) for b in ones], float).reshape(-1, 3) for k in ("center", "size"))
-    aims, sizes = (np.array([getattr(b, k) for b in others], float).reshape(-1, 3) for k in ("center", "size"))
-    apart = np.abs(centers[:, None] - aims[None]) - (halves[:, None] + sizes[None]) / 2
-    found: np.ndarray = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=2))
-    return found
-
-
 def seen(ones: Sequence[Box], yaws: Sequence[float], others: Sequence[Box]) -> np.ndarray:
     """Bool (ones, others): as `sees`, for all of them at once."""
-    centers, aims = (np.array([b.center for b in boxes], float).reshape(-1, 3) for boxes in (ones, others))
-    fronts = np.array([FRONTS.get(yaw % 360, (0.0, 1.0)) for yaw in yaws], float).reshape(-1, 2)
+    (centers, _), (aims, _) = arrays(ones), arrays(others)
+    fronts = np.array([direction(yaw) for yaw in yaws], float).reshape(-1, 2)
     towards = (aims[None] - centers[:, None])[..., (0, 2)]
     distance = np.hypot(towards[..., 0], towards[..., 1])
     ahead = (towards * fronts[:, None]).sum(axis=2)
@@ -127,9 +118,8 @@ def sees(one: Box, yaw: float | None, other: Box) -> bool:
     distance = hypot(dx, dz)
     if yaw is None or distance < 0.05:
         return True
-    ahead = {"north": dz, "south": -dz, "east": dx, "west": -dx}
-    name = next((name for name, degrees in DIRECTIONS.items() if degrees == yaw % 360), "north")
-    return bool(ahead[name] / distance >= cos(radians(VIEW)) - 1e-9)
+    x, z = direction(yaw)
+    return (dx * x + dz * z) / distance >= cos(radians(VIEW)) - 1e-9
 
 
 def _on(one: Thing, other: Thing) -> bool:
@@ -152,7 +142,6 @@ def _facing(one: Thing, other: Thing) -> bool:
 
 
 ROOM_MOUNT = "room"
-FRONTS = {0.0: (0.0, 1.0), 90.0: (1.0, 0.0), 180.0: (0.0, -1.0), 270.0: (-1.0, 0.0)}
 WEIGHTS = {"ON": 20, "INSIDE": 20, "CLOSE": 1, "FACING": 1}
 """What relations are worth beside each other where not all can be had."""
 SHOWS = {"ON": _on, "INSIDE": _inside, "CLOSE": _close, "FACING": _facing}

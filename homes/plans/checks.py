@@ -47,7 +47,7 @@ def check_layout(plan: Plan, shell: Shell, things: Sequence[Thing], floor: Floor
         own = [thing for thing in things if thing.room == room.name and _placed(thing)]
         for thing in own:
             _check_walls(thing, interior(room), plan.height, faults)
-            _check_openings(thing, shell, faults)
+            _check_openings(thing, interior(room), shell, faults)
         _check_apart(own, faults)
     _check_kept_free(things, shell, faults)
     _check_reach(plan, things, floor, faults)
@@ -88,7 +88,7 @@ def _check_walls(thing: Thing, inner: Rect, height: float, faults: Faults) -> No
                    thing.line, f"the room is {height:g} m high")  # fmt: skip
 
 
-def _check_openings(thing: Thing, shell: Shell, faults: Faults) -> None:
+def _check_openings(thing: Thing, inner: Rect, shell: Shell, faults: Faults) -> None:
     """What hangs on a wall needs a wall behind it; what is tall must not hide a window."""
     if thing.mount != "wall" or thing.yaw is None:
         return
@@ -96,16 +96,12 @@ def _check_openings(thing: Thing, shell: Shell, faults: Faults) -> None:
     for opening in shell.openings:
         if opening.room != thing.room or opening.wall != wall_of(thing.yaw):
             continue
-        hole = strip(_wall_line(shell, opening.room, opening.wall), opening.wall, opening.start, opening.end, 0.02)
+        hole = strip(inner, opening.wall, opening.start, opening.end, 0.02)
         overlap = min(top(thing.box), opening.y1) - max(bottom(thing.box), opening.y0)
         if rect.overlap(hole) > 0.0005 and overlap > TOUCH:
             what = "door" if opening.door else "window"
             faults.add(Code.NO_PLACE, f"{_short(thing)} hangs before a {what} in the {opening.wall} wall", thing.line,
                        f"the {what} takes {opening.start:.2f} to {opening.end:.2f} m of it")  # fmt: skip
-
-
-def _wall_line(shell: Shell, room: str, wall: str) -> Rect:
-    return Rect.over(footprint(t.box) for t in shell.things if t.room == room and t.class_name == "floor")
 
 
 def _check_apart(things: Sequence[Thing], faults: Faults) -> None:

@@ -17,6 +17,11 @@ ReadValue = Callable[[Any], Any]
 CORNERS = ("northwest", "northeast", "southwest", "southeast")
 MOST = 60
 """Things one entry may count; a larger number is a fault."""
+MOST_ROOMS = 60
+MOST_ENTRIES = 1_000
+"""Rooms and entries of things in a plan: placing and checking takes time by the square of both. Ours have 9 and 250."""
+LONGEST = 100
+"""Metres that a home may measure: its floor is a grid of cells of 10 cm."""
 
 
 class WrongValueError(ValueError):
@@ -105,14 +110,19 @@ def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Pla
     """A plan from YAML text; what cannot be read is left out and noted.
 
     Raises:
-        HearthError: the text is not a YAML mapping.
+        HearthError: the text is not a YAML mapping, or is of a home too large to be one.
     """
     tree = located.read(text, file)
     if not isinstance(tree, located.Mapping):
         raise HearthError.of(Code.SYNTAX, "a plan is a mapping", file=file, suggestion="home, rooms, doors")
     reader = _Reader(knowledge, faults)
     top = reader.fields(tree, PLAN_KEYS, "a plan", need=("home", "rooms"))
+    if len(top.get("rooms") or ()) > MOST_ROOMS:
+        raise _too_large(f"{len(top['rooms']):,} rooms", file)
     rooms = [room for entry in top.get("rooms") or () if (room := reader.room(entry)) is not None]
+    bounds = Rect.over(room.rect for room in rooms) if rooms else Rect(0, 0, 0, 0)
+    if max(bounds.width, bounds.depth) > LONGEST:
+        raise _too_large(f"a home of over {LONGEST} m", file)
     doors = [door for entry in top.get("doors") or () if (door := reader.door(entry)) is not None]
     return Plan(
         name=top.get("home", ""),
@@ -125,12 +135,31 @@ def read_plan(text: str, file: str, knowledge: Knowledge, faults: Faults) -> Pla
     )
 
 
+def _too_large(found: str, file: str) -> HearthError:
+    limits = f"at most {MOST_ROOMS} rooms, {MOST_ENTRIES:,} entries of things, {LONGEST} m"
+    return HearthError.of(Code.FILE_TOO_LARGE, f"a plan cannot have {found}", file=file, suggestion=limits)
+
+
+def read_piece(entry: Any, knowledge: Knowledge) -> Piece:
+    """One entry with what is on and in it, wherever it is placed.
+
+    Raises:
+        HearthError: its faults.
+    """
+    faults = Faults("")
+    piece = _Reader(knowledge, faults).piece(entry, furniture=False)
+    if piece is None or faults:
+        raise HearthError(list(faults))
+    return piece
+
+
 class _Reader:
     """Reads entries of one plan."""
 
     def __init__(self, knowledge: Knowledge, faults: Faults) -> None:
         self.knowledge = knowledge
         self.faults = faults
+        self.entries = 0
 
     def fields(
         self, entry: Any, keys: dict[str, ReadValue], what: str, need: tuple[str, ...] = (), line: int = 0
@@ -212,6 +241,9 @@ class _Reader:
         if not isinstance(entries, (list, tuple)):
             self.faults.add(Code.SYNTAX, "things are a list", located.line_of(entries), "[cup, plate*4]")
             return ()
+        self.entries += len(entries)
+        if self.entries > MOST_ENTRIES:
+            raise _too_large(f"over {MOST_ENTRIES:,} entries", self.faults.file)
         return tuple(piece for entry in entries if (piece := self.piece(entry, furniture)) is not None)
 
     def piece(self, entry: Any, furniture: bool) -> Piece | None:

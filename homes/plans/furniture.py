@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from hearth.homes.forms import Form, form
 from hearth.homes.geometry import (
@@ -28,8 +29,7 @@ Standing = tuple[Rect, float]
 """Where a thing stands, and the way it faces."""
 
 
-@dataclass(frozen=True, slots=True)
-class Placed:
+class Placed(NamedTuple):
     """A piece of furniture that has its place."""
 
     piece: Piece
@@ -45,7 +45,6 @@ class Furnishing:
         inner: the floor between its walls.
         height: of the room.
         placed: what has its place, in the order placed.
-        named: the same by the names that other entries may use.
     """
 
     room: Room
@@ -54,7 +53,13 @@ class Furnishing:
     knowledge: Knowledge
     faults: Faults
     placed: list[Placed] = field(default_factory=list)
-    named: dict[str, list[Placed]] = field(default_factory=dict)
+
+    def find(self, name: str) -> Thing | None:
+        """The last thing placed that other entries call so: by its own name, or by its entry's name or class."""
+        for piece, thing in reversed(self.placed):
+            if name in (thing.name.partition("/")[2], piece.name or piece.class_name):
+                return thing
+        return None
 
 
 class NoPlaceError(Exception):
@@ -66,18 +71,17 @@ def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> 
     found = Furnishing(room, interior(room), height, knowledge, faults)
     numbers: dict[str, int] = {}
     waiting = [(piece, names_of(piece, numbers)) for piece in room.furniture]
-    while waiting:
-        ready = [entry for entry in waiting if _reference(entry[0]) in (None, *found.named)]
-        if not ready:
-            break
+    while ready := [entry for entry in waiting if (name := _reference(entry[0])) is None or found.find(name)]:
         for piece, names in ready:
-            _place(piece, names, found)
+            try:
+                found.placed += stand(piece, names, found)
+            except NoPlaceError as why:
+                faults.add(Code.NO_PLACE, f"`{piece.class_name}` in {room.name}: {why}", piece.line)
         waiting = [entry for entry in waiting if entry not in ready]
     for piece, _ in waiting:
-        reference = _reference(piece)
-        message = f"`{piece.class_name}` refers to `{reference}`, which {room.name} does not hold"
-        holds = f"it holds {', '.join(sorted(found.named)) or 'nothing'}"
-        faults.add(Code.UNKNOWN_OBJECT, message, piece.line, holds)
+        message = f"`{piece.class_name}` refers to `{_reference(piece)}`, which {room.name} does not hold"
+        known = {name for each in found.placed for name in (each.thing.name.partition("/")[2], each.piece.class_name)}
+        faults.add(Code.UNKNOWN_OBJECT, message, piece.line, f"it holds {', '.join(sorted(known)) or 'nothing'}")
     order = {id(piece): number for number, piece in enumerate(room.furniture)}
     found.placed.sort(key=lambda placed: order[id(placed.piece)])
     return found
@@ -110,23 +114,22 @@ def names_of(piece: Piece, numbers: dict[str, int]) -> list[str]:
     return names
 
 
-def _place(piece: Piece, names: Sequence[str], room: Furnishing) -> None:
-    try:
-        shaped = shape(piece, room.knowledge)
-        spots = _spots(piece, shaped, room)
-    except NoPlaceError as why:
-        room.faults.add(Code.NO_PLACE, f"`{piece.class_name}` in {room.room.name}: {why}", piece.line)
-        return
-    base = piece.name or piece.class_name
-    for name, (rect, yaw) in zip(names, spots, strict=True):
-        low = underside(piece, shaped, room)
-        box = box_over(rect, low, low + shaped.size[1])
-        thing = Thing(f"{room.room.name}/{name}", piece.class_name, room.room.name, box, yaw, shaped.mount,
-                      front=shaped.front, line=piece.line)  # fmt: skip
-        placed = Placed(piece, thing)
-        room.placed.append(placed)
-        for alias in dict.fromkeys((name, base)):
-            room.named.setdefault(alias, []).append(placed)
+def stand(piece: Piece, names: Sequence[str], room: Furnishing) -> list[Placed]:
+    """An entry's things where the plan puts them in a room; they are not added to it.
+
+    Raises:
+        NoPlaceError: they cannot be placed so.
+    """
+    shaped = shape(piece, room.knowledge)
+    place = next((place for key, place in PLACERS.items() if piece.has(key)), None)
+    if place is None:
+        raise NoPlaceError("the plan does not say where")
+    low, where = underside(piece, shaped, room), room.room.name
+    return [
+        Placed(piece, Thing(f"{where}/{name}", piece.class_name, where, box_over(rect, low, low + shaped.size[1]), yaw,
+                            shaped.mount, front=shaped.front, line=piece.line))
+        for name, (rect, yaw) in zip(names, place(piece, shaped, room), strict=True)
+    ]  # fmt: skip
 
 
 def underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
@@ -138,13 +141,6 @@ def underside(piece: Piece, shaped: Form, room: Furnishing) -> float:
     return shaped.up if shaped.mount == "wall" else 0.0
 
 
-def _spots(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
-    for key, place in PLACERS.items():
-        if piece.has(key):
-            return place(piece, shaped, room)
-    raise NoPlaceError("the plan does not say where")
-
-
 def _yaw(piece: Piece, usual: float) -> float:
     return DIRECTIONS[piece.place["facing"]] if piece.has("facing") else usual
 
@@ -153,11 +149,11 @@ def _target(piece: Piece, key: str, room: Furnishing, side: str) -> tuple[Thing,
     """What a piece refers to, and its yaw.
 
     Raises:
-        NoPlaceError: it has no such side.
+        NoPlaceError: it is not there, or has no such side.
     """
-    other = room.named[piece.place[key]][-1].thing
-    if other.yaw is None:
-        raise NoPlaceError(f"`{other.class_name}` has no {side}")
+    other = room.find(piece.place[key])
+    if other is None or other.yaw is None:
+        raise NoPlaceError(f"`{piece.place[key]}` has no {side}")
     return other, other.yaw
 
 
@@ -251,7 +247,7 @@ def _opposite(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
 
 def _around(piece: Piece, shaped: Form, room: Furnishing) -> list[Standing]:
     """Around the other, facing it: the long sides first, then the ends."""
-    other = footprint(room.named[piece.place["around"]][-1].thing.box)
+    other = footprint(_target(piece, "around", room, "side")[0].box)
     gap = piece.place.get("gap", 0.06)
     long_sides = ("north", "south") if other.width >= other.depth else ("east", "west")
     short_sides = ("east", "west") if long_sides[0] == "north" else ("north", "south")

@@ -34,8 +34,8 @@ FAR = 0.12
 Local = tuple[float, float, float, float]
 """A rectangle in a support's own axes: along its back from the west or south end, and outwards from its back."""
 
-NamedPiece = tuple[Piece, list[str]]
-"""An entry, and the names of its things."""
+NamedPiece = tuple[Piece, list[str], str]
+"""An entry, the names of its things, and whether they are `on` or `inside` the support."""
 
 
 @dataclass(slots=True)
@@ -90,20 +90,32 @@ def contents(
     numbers: dict[str, int] = {}
     shaped = shape(piece, knowledge)
     settings = list(_settings(thing, piece.lay, seats, numbers, knowledge))
-    for relation, pieces in (("on", piece.on), ("inside", piece.inside)):
-        named = [(entry, names_of(entry, numbers)) for entry in pieces]
-        # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
-        named.sort(key=lambda pair: _rank(pair[0], knowledge))
-        fixed = settings if relation == "on" else []
-        if named or fixed:
-            standing, missed = _arranged(thing, shaped, relation, (named, fixed), knowledge)
+    named = [(entry, names_of(entry, numbers), "on") for entry in piece.on]
+    named += [(entry, names_of(entry, numbers), "inside") for entry in piece.inside]
+    # Sinks and what is placed by hand come first, then the large; names still follow the plan's order.
+    named.sort(key=lambda item: _rank(item[0], knowledge))
+    for level in ("on", "inside"):
+        here = [item for item in named if _level_of(item[0], item[2], shaped, knowledge) == level]
+        fixed = settings if level == "on" else []
+        if here or fixed:
+            standing, missed = _arranged(thing, shaped, level, (here, fixed), knowledge)
             for entry, stood in standing:
                 yield stood
                 yield from contents(stood, entry, knowledge, faults)
             for entry, why in missed:
-                where = f"{'on' if relation == 'on' else 'in'} `{thing.name}`"
+                where = f"{'on' if level == 'on' else 'in'} `{thing.name}`"
                 faults.add(Code.NO_PLACE, f"`{entry.class_name}` {where}: {why}", entry.line,
                            "take something away, or make it larger")  # fmt: skip
+
+
+def _level_of(piece: Piece, relation: str, holder: Form, knowledge: Knowledge) -> str:
+    """Whether a thing stands where things are `on` its support or in its hollow.
+
+    A sink is INSIDE a counter and let into its top, and what is INSIDE a bookcase stands on its open shelves.
+    """
+    known = form(piece.class_name, knowledge)
+    on_top = (known is not None and known.mount == "sunk") or len(holder.levels) > 1
+    return "on" if on_top else relation
 
 
 def _settings(
@@ -135,9 +147,9 @@ def _arranged(
                 found.append((entry, _lay(support, entry, name, rect, knowledge)))
             except NoPlaceError as why:
                 missed.append((entry, str(why)))
-        for entry, names in named:
+        for entry, names, word in named:
             try:
-                found.extend((entry, stood) for stood in stand(support, entry, names, relation, knowledge))
+                found.extend((entry, stood) for stood in stand(support, entry, names, word, knowledge))
             except NoPlaceError as why:
                 missed.append((entry, str(why)))
         if not missed or support.tidy:

@@ -1,6 +1,6 @@
 """The shell of a home: openings, wall panels, floor and ceiling tiles, doors, windows and curtains."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from math import ceil
 
@@ -114,6 +114,12 @@ def shared_wall(a: Rect, b: Rect) -> tuple[str, float, float] | None:
         if abs(distance) < SAME and end - start > 0.05:
             return wall, start, end
     return None
+
+
+def outer_walls(rect: Rect, others: Iterable[Rect]) -> list[str]:
+    """The walls of a room that it shares with none of the others."""
+    shared = {found[0] for other in others if (found := shared_wall(rect, other)) is not None}
+    return [wall for wall in OPPOSITE_WALL if wall not in shared]
 
 
 def strip(rect: Rect, wall: str, start: float, end: float, depth: float) -> Rect:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hearth.homes.geometry import Rect, footprint, front_of
-from hearth.homes.plans.shell import Thing, span
+from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, footprint, front_of
+from hearth.homes.plans.shell import Thing, band, span
 
 AT_TABLE = 0.35
 """A chair no further than this from a table's edge stands at it."""
@@ -13,11 +13,11 @@ BETWEEN = 0.025
 
 
 class Place(NamedTuple):
-    """Where somebody eats: the point of the table's edge before a seat, and the way one looks from there."""
+    """Where somebody eats: the table, the side of it before a seat, and where along that side the seat's middle is."""
 
-    x: float
-    z: float
-    front: str
+    table: Rect
+    side: str
+    along: float
 
 
 def places(table: Thing, seats: Sequence[Thing]) -> list[Place]:
@@ -28,16 +28,10 @@ def places(table: Thing, seats: Sequence[Thing]) -> list[Place]:
         if seat.yaw is None:
             continue
         front, rect = front_of(seat.yaw), footprint(seat.box)
-        x, z = rect.center
-        gap, edge = {
-            "north": (top.z0 - rect.z1, Place(x, top.z0, front)),
-            "south": (rect.z0 - top.z1, Place(x, top.z1, front)),
-            "east": (top.x0 - rect.x1, Place(top.x0, z, front)),
-            "west": (rect.x0 - top.x1, Place(top.x1, z, front)),
-        }[front]
-        low, high = span(top, front)
-        if -0.2 < gap <= AT_TABLE and low < (x if front in ("north", "south") else z) < high:
-            found.append(edge)
+        side = OPPOSITE_WALL[front]
+        (low, high), along = span(top, side), rect.center[0 if along_x(side) else 1]
+        if -0.2 < -rect.reach(front) - top.reach(side) <= AT_TABLE and low < along < high:
+            found.append(Place(top, side, along))
     return found
 
 
@@ -60,17 +54,7 @@ def setting(place: Place, sizes: Sequence[tuple[float, float]]) -> list[Rect]:
         else:
             across, out = beyond - width, EDGE + first_depth + BETWEEN
             beyond -= width + BETWEEN
-        found.append(_turned(place, across, out, width, depth))
+        # Who sits at the north or the east side has the west or the south on the right.
+        start = place.along + across if place.side in ("south", "east") else place.along - across - width
+        found.append(band(place.table, place.side, start, start + width, out, out + depth))
     return found
-
-
-def _turned(place: Place, across: float, out: float, width: float, depth: float) -> Rect:
-    """A rectangle from a person's right and forward distances into the room's axes."""
-    x, z, front = place
-    if front == "north":
-        return Rect(x + across, z + out, x + across + width, z + out + depth)
-    if front == "south":
-        return Rect(x - across - width, z - out - depth, x - across, z - out)
-    if front == "east":
-        return Rect(x + out, z - across - width, x + out + depth, z - across)
-    return Rect(x - out - depth, z + across, x - out, z + across + width)

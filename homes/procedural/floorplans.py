@@ -2,44 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from random import Random
+from typing import Any
 
-from hearth.homes.geometry import OPPOSITE_WALL, Rect
+from hearth.homes.geometry import Rect
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
-from hearth.homes.plans.shell import WALL, shared_wall, span
+from hearth.homes.plans.shell import WALL, outer_walls, shared_wall, span
+from hearth.schemas.yaml_extent import packaged
 
 LEAST_ROOMS, MOST_ROOMS = 3, 9
 
-PROGRAMME: dict[int, tuple[tuple[str, ...], ...]] = {
-    3: (("dining_room", "bathroom", "bedroom"), ("home_office", "bathroom", "bedroom")),
-    4: (("living_room", "kitchen", "bathroom", "bedroom"), ("home_office", "dining_room", "bathroom", "bedroom")),
-    5: (("entrance_hall", "living_room", "kitchen", "bathroom", "bedroom"),),
-    6: (
-        ("entrance_hall", "living_room", "kitchen", "bathroom", "bedroom", "home_office"),
-        ("entrance_hall", "living_room", "dining_room", "bathroom", "bedroom", "kids_bedroom"),
-    ),
-    7: (
-        ("entrance_hall", "living_room", "kitchen", "dining_room", "bathroom", "bedroom", "kids_bedroom"),
-        ("entrance_hall", "living_room", "kitchen", "home_office", "bathroom", "bedroom", "bedroom"),
-    ),
-    8: (("entrance_hall", "living_room", "kitchen", "home_office", "bathroom", "bedroom", "kids_bedroom", "bedroom"),),
-    9: (
-        ("entrance_hall", "living_room", "kitchen", "dining_room", "home_office", "bathroom", "bedroom",
-         "kids_bedroom", "bathroom"),
-    ),
-}  # fmt: skip
-"""The rooms of a home by their number; the first is the hall, or the room that serves as one."""
-
-WIDTHS: dict[str, tuple[float, float]] = {
-    "bathroom": (2.3, 3.0), "bedroom": (3.7, 4.5), "kids_bedroom": (3.5, 4.2), "kitchen": (3.9, 4.8),
-    "dining_room": (4.2, 5.2), "living_room": (4.8, 6.0), "home_office": (3.6, 4.6),
-}  # fmt: skip
-"""Metres along the hall, least and most."""
-DEPTHS = (3.9, 4.6)
-HALL_DEPTH = (1.6, 2.0)
-HUB_DEPTH = (4.4, 5.2)
 LEAST_SHARED = 1.2
 """Metres of wall that a room shares with the hall at least, for its door."""
+
+
+@lru_cache(maxsize=1)
+def _tables() -> Any:
+    return packaged("hearth.data_raw", "floor_plans.yaml")
 
 
 def floor_plan(name: str, rooms: int, rng: Random) -> Plan:
@@ -50,7 +30,7 @@ def floor_plan(name: str, rooms: int, rng: Random) -> Plan:
         rooms: how many, from `LEAST_ROOMS` to `MOST_ROOMS`.
         rng: decides everything.
     """
-    classes = rng.choice(PROGRAMME[rooms])
+    classes = rng.choice(_tables()["rooms"][rooms])
     hall, others = classes[0], list(classes[1:])
     rng.shuffle(others)
     rects = _bands(hall, others, rng)
@@ -68,27 +48,24 @@ def floor_plan(name: str, rooms: int, rng: Random) -> Plan:
 
 def _bands(hall: str, others: Sequence[str], rng: Random) -> list[Rect]:
     """The hall and the rooms on both its long sides (on one, where the hall is a room to live in)."""
-    corridor = hall == "entrance_hall"
-    depth = round(rng.uniform(*(HALL_DEPTH if corridor else HUB_DEPTH)), 1)
+    table, corridor = _tables(), hall == "entrance_hall"
+    depth = round(rng.uniform(*table["depth"]["corridor" if corridor else "hub"]), 1)
     half = (len(others) + 1) // 2 if corridor else len(others) // 3
     sides: list[list[Rect]] = []
     for side, classes in ((-1, others[:half]), (1, others[half:])):
         x, band = 0.0, []
         for class_name in classes:
-            width = round(rng.uniform(*WIDTHS[class_name]), 1)
-            reach = round(rng.uniform(*DEPTHS), 1)
+            width = round(rng.uniform(*table["width"][class_name]), 1)
+            reach = round(rng.uniform(*table["depth"]["room"]), 1)
             z0, z1 = (depth, depth + reach) if side > 0 else (-reach, 0.0)
             band.append(Rect(x, z0, x + width, z1))
             x += width
         sides.append(band)
-    lengths = [band[-1].x1 for band in sides if band]
-    length = max(lengths)
+    length = max(band[-1].x1 for band in sides if band)
     # The last room may reach beyond the hall's end, as far as its door still finds a wall.
     beyond = min(band[-1].width for band in sides if band) - LEAST_SHARED
-    if corridor:
-        length -= round(rng.uniform(0.0, max(0.0, min(beyond, 1.5))), 1)
-    else:
-        length = max(6.0, length - round(rng.uniform(0.0, max(0.0, min(beyond, 1.0))), 1))
+    shorter = round(rng.uniform(0.0, max(0.0, min(beyond, 1.5 if corridor else 1.0))), 1)
+    length = length - shorter if corridor else max(6.0, length - shorter)
     return [Rect(0.0, 0.0, length, depth), *sides[0], *sides[1]]
 
 
@@ -105,12 +82,9 @@ def _moved(rects: Sequence[Rect]) -> list[Rect]:
 
 
 def _names(classes: Sequence[str]) -> list[str]:
-    seen: dict[str, int] = {}
-    names = []
-    for class_name in classes:
-        seen[class_name] = seen.get(class_name, 0) + 1
-        names.append(class_name if seen[class_name] == 1 else f"{class_name}_{seen[class_name]}")
-    return names
+    """The classes, those that stand there again with a number."""
+    counts = (classes[: number + 1].count(name) for number, name in enumerate(classes))
+    return [name if count == 1 else f"{name}_{count}" for name, count in zip(classes, counts, strict=True)]
 
 
 def _doors(rooms: Sequence[Room], rng: Random) -> list[Doorway]:
@@ -126,22 +100,14 @@ def _doors(rooms: Sequence[Room], rng: Random) -> list[Doorway]:
         width = 1.2 if open_plan and end - start > 1.6 else 0.8 if room.class_name == "bathroom" else 0.9
         low, high = WALL + 0.02, end - start - WALL - 0.02 - width
         at = low if rng.random() < 0.4 else high if rng.random() < 0.6 else rng.uniform(low, high)
-        place = (hall.name, room.name), "", round(at, 2), width
-        hinge = "low" if at < (low + high) / 2 else "high"
-        line = 1000 + len(doors)
-        doors.append(
-            Doorway(*place, leaf=False, line=line)
-            if open_plan
-            else Doorway(*place, into=room.name, hinge=hinge, line=line)
-        )
+        hinge = "low" if open_plan or at < (low + high) / 2 else "high"
+        doors.append(Doorway((hall.name, room.name), "", round(at, 2), width, not open_plan,
+                             "" if open_plan else room.name, hinge, line=1000 + len(doors)))  # fmt: skip
     return doors
 
 
 def _front_door(hall: Room, others: Sequence[Room], rng: Random) -> Doorway:
-    walls = [
-        wall for wall in OPPOSITE_WALL if not any((shared_wall(hall.rect, o.rect) or ("",))[0] == wall for o in others)
-    ]
-    wall = rng.choice(walls or ["south"])
+    wall = rng.choice(outer_walls(hall.rect, [other.rect for other in others]) or ["south"])
     low, high = span(hall.rect, wall)
     at = round(rng.uniform(0.2, max(0.2, high - low - 1.2)), 2)
     return Doorway((hall.name, OUTSIDE), wall, at, 0.95, True, hall.name, rng.choice(("low", "high")), line=1000)
@@ -151,9 +117,9 @@ def _windows(room: Room, rooms: Sequence[Room], doors: Sequence[Doorway], rng: R
     """In the middle of outer walls; small and high in bathrooms, none in corridors, not where the front door is."""
     if room.class_name == "entrance_hall":
         return ()
-    inner = [wall for o in rooms if o is not room and (wall := (shared_wall(room.rect, o.rect) or ("",))[0])]
     taken = [door.wall for door in doors if door.rooms == (room.name, OUTSIDE)]
-    outer = [wall for wall in OPPOSITE_WALL if wall not in inner and wall not in taken]
+    walls = outer_walls(room.rect, [other.rect for other in rooms if other is not room])
+    outer = [wall for wall in walls if wall not in taken]
     rng.shuffle(outer)
     if room.class_name == "bathroom":
         return tuple(Window(wall, None, 0.6, 0.6, 1.5) for wall in outer[:1])

@@ -19,7 +19,7 @@ from hearth.kb.formula import (
 )
 from hearth.kb.groups import DECLARED
 from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed, yaml_entries
-from hearth.kb.loading.lines import Entry, Faults, strings
+from hearth.kb.loading.source_files import Entry, Faults, strings
 from hearth.kb.records import Action, Condition, Repair, Requirement
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal

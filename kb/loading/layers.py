@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TypeVar
 
-from hearth.kb.loading.lines import Entry, Faults, read_csv, read_yaml
+from hearth.kb.loading.source_files import Entry, Faults, read_csv, read_yaml
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.vocabulary import PROPERTIES
 

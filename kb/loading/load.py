@@ -9,7 +9,6 @@ from pathlib import Path
 from hearth.kb.knowledge import Knowledge, grouped, key_of
 from hearth.kb.loading.actions import load_actions, load_derived, load_repairs
 from hearth.kb.loading.layers import yaml_entries
-from hearth.kb.loading.lines import Entry, Faults, check_extent
 from hearth.kb.loading.objects import (
     OBJECT_FILES,
     load_aliases,
@@ -18,6 +17,7 @@ from hearth.kb.loading.objects import (
     load_placements,
     load_stand_ins,
 )
+from hearth.kb.loading.source_files import Entry, Faults, check_extent
 from hearth.kb.records import Action, ObjectClass, Placement
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -136,7 +136,6 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         actions=actions,
         objects=named,
         rooms=tuple(sorted(rooms)),
-        room_standins={name: entry.value["stand_in"] for name, entry in rooms.items() if entry.value},
         state_groups=groups,
         table_like=frozenset(tables["table_like"].value),
         defaults=_default_states(tables["default_states"]),
@@ -147,11 +146,19 @@ def _read(layers: list[Path], faults: Faults) -> Knowledge | None:
         _action_names=_action_spellings(actions),
         _object_names=spellings,
         _aliases={name: thing.synonyms for name, thing in named.items() if thing.synonyms},
-        _stand_ins=stand_ins,
+        _stand_ins={**stand_ins, **{name: _serving(name, rooms) for name in rooms}},
         _placements=_by_weight(placements, 0),
         _held=_by_weight(placements, 2),
         _limits={kind: entry.value for kind, entry in limits.items()},
     )
+
+
+def _serving(name: str, rooms: Mapping[str, Entry]) -> tuple[str, ...]:
+    """The rooms that serve as a room where a home lacks it, nearest first."""
+    found = [name]
+    while (stand_in := rooms[found[-1]].value.get("stand_in", name)) not in found:
+        found.append(stand_in)
+    return tuple(found[1:])
 
 
 def _action_spellings(actions: Mapping[str, Action]) -> dict[str, Action]:

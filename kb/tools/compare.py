@@ -112,8 +112,6 @@ def facts_of(knowledge: Knowledge) -> dict[str, set[Fact]]:
             for position, need in enumerate(action.grammar):
                 if need.accepts(thing.properties, name, is_room):
                     facts["affordances"].add((action.name, str(position), name))
-    for room, stand_in in knowledge.room_standins.items():
-        facts["synonyms"].update((room, name) for name in knowledge.same_class(stand_in))
     return facts
 
 

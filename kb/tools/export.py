@@ -5,8 +5,8 @@ from pathlib import Path
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.action_table import action_table
+from hearth.kb.tools.graph_and_tables import fill, graph
 from hearth.kb.tools.pddl import domain
-from hearth.kb.tools.views import fill, graph
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

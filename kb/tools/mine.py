@@ -4,7 +4,7 @@ Nothing is believed here: proposals carry counts and confidence, and are written
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, pairwise
 from typing import NamedTuple
@@ -172,7 +172,7 @@ def _neighbours(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) 
 def _orders(steps: list[tuple[str, tuple[str, ...]]], knowledge: Knowledge) -> Iterator[tuple[str, str]]:
     """Successive actions on one object, looks and moves aside."""
     on: dict[str, list[str]] = {}
-    aside = _moves(knowledge) | {"LookAt", "TurnTo"}
+    aside = _moves(knowledge) | knowledge.group("idle")
     for action, names in steps:
         if names and action not in aside:
             on.setdefault(names[0], []).append(action)
@@ -197,10 +197,21 @@ def _proposals(counts: _Counts, knowledge: Knowledge) -> Iterator[Proposal]:
     for (subject, other), count in counts.near.items():
         share = count / counts.names[subject]
         yield Proposal("near", subject, "NEARBY", other, count, share, 1.0, (subject, "NEARBY", other) in known)
+    named = {room for _, room in counts.rooms}
+    serving = {room for subject, room in counts.rooms if _serves(subject, room, knowledge, named)}
     for (subject, room), count in counts.rooms.items():
         share = count / sum(n for (name, _), n in counts.rooms.items() if name == subject)
         listed = room in knowledge.objects[subject].rooms
-        yield Proposal("found", subject, "found_in", room, count, share, 1.0, listed)
+        if listed or not (room in serving or _serves(subject, room, knowledge)):
+            yield Proposal("found", subject, "found_in", room, count, share, 1.0, listed)
     for (first, then), count in counts.order.items():
         share = count / (count + counts.order.get((then, first), 0))
         yield Proposal("order", first, "before", then, count, share, 1.0, False)
+
+
+def _serves(subject: str, room: str, knowledge: Knowledge, named: Container[str] = ()) -> bool:
+    """Whether a room stands in for one where a thing belongs, of those that are not named: the release's homes have no
+    kitchen, so what it finds in the dining room belongs in a kitchen.
+    """
+    usual = knowledge.objects[subject].rooms
+    return room not in usual and any(room in knowledge.stand_ins(name) for name in usual if name not in named)

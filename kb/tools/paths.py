@@ -7,7 +7,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.tools.views import edges
+from hearth.kb.tools.graph_and_tables import edges
 
 if TYPE_CHECKING:
     import networkx

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading.lines import Faults, read_yaml, strings
+from hearth.kb.loading.source_files import Faults, read_yaml, strings
 from hearth.kb.tools.release_facts import Fact
 
 FIELDS: dict[str, tuple[str, ...]] = {

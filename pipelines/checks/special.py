@@ -3,10 +3,10 @@
 import re
 from dataclasses import replace
 from functools import cache
-from importlib.resources import files
 from typing import NamedTuple
 
 from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.yaml_extent import packaged
 
 FILE = "data_raw/crowd/special_blocks.yaml"
 
@@ -33,9 +33,7 @@ class Expanded(NamedTuple):
 @cache
 def blocks() -> dict[str, tuple[str, ...]]:
     """The steps that replace each free text, which is in lower case with single spaces."""
-    import yaml
-
-    data = yaml.safe_load((files("hearth") / FILE).read_text("utf-8")) or {}
+    data = packaged("hearth", FILE) or {}
     return {_normal(block["text"]): tuple(block["steps"]) for block in data.get("blocks") or ()}
 
 

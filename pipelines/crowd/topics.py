@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import cache
-from importlib.resources import files
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from hearth.pipelines.checks.findings import Finding
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
+from hearth.schemas.yaml_extent import packaged
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
@@ -84,9 +84,7 @@ def no_activity(text: str) -> tuple[str, list[str]] | None:
 
 @cache
 def _kinds() -> dict[str, tuple[re.Pattern[str], ...]]:
-    import yaml
-
-    data = yaml.safe_load((files("hearth") / FILE).read_text("utf-8"))
+    data = packaged("hearth", FILE)
     return {
         kind: tuple(re.compile(rf"(?<![a-z])(?:{phrase})(?![a-z])") for phrase in phrases)
         for kind, phrases in data.items()

@@ -12,7 +12,8 @@ from hearth.simulation.world.world import World
 from hearth.storage.names import inside
 
 DERIVED = "homes"
-"""Folder of the sample stage that holds homes derived from stored start graphs."""
+"""Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from
+stored start graphs."""
 
 
 class Homes:
@@ -22,6 +23,7 @@ class Homes:
         self._settings = settings
         self.home, self.edges = cache(self._home), cache(self._edges)
         self.knowledge = knowledge(settings)
+        self._scenes = frozenset(path.stem for path in (settings.folder("ingest") / DERIVED).glob("*.json"))
 
     def names(self) -> tuple[str, ...]:
         """Homes to sample in: those named in the settings, or all of the catalog.
@@ -29,17 +31,27 @@ class Homes:
         Raises:
             HearthError: UNKNOWN_HOME.
         """
-        from hearth.homes import library
-
         for name in self._settings.homes:
-            library.load_graph(name, self.knowledge, self._settings.homes_folder)
-        return self._settings.homes or library.names(self._settings.homes_folder)
+            self.graph(name)
+        return self._settings.homes or self.catalog()
 
     def catalog(self) -> tuple[str, ...]:
-        """All homes of ours and of the user's folder."""
+        """All homes of ours, of the user's folder, and of scene graphs among the sources."""
         from hearth.homes import library
 
-        return library.names(self._settings.homes_folder)
+        return tuple(sorted({*library.names(self._settings.homes_folder), *self._scenes}))
+
+    def graph(self, name: str) -> EnvironmentGraph:
+        """The scene graph of a home of the catalog.
+
+        Raises:
+            HearthError: UNKNOWN_HOME, or every fault of its plan or graph.
+        """
+        from hearth.homes import library
+
+        if name in self._scenes:
+            return self._stored("ingest", name)
+        return library.load_graph(name, self.knowledge, self._settings.homes_folder)
 
     def in_catalog(self, name: str) -> bool:
         """Whether a home is one of the catalog's."""
@@ -52,13 +64,11 @@ class Homes:
     def _home(self, name: str) -> Home:
         """The home to which environments of that name are differences."""
         from hearth.grounding.environments.default_state import prepared
-        from hearth.homes import library
 
         if self.in_catalog(name):
-            graph = library.load_graph(name, self.knowledge, self._settings.homes_folder)
-            return prepared(Home.from_graph(graph, name, self.knowledge)).home
-        return Home.from_graph(self._derived(name), name, self.knowledge)
+            return prepared(Home.from_graph(self.graph(name), name, self.knowledge)).home
+        return Home.from_graph(self._stored("sample", name), name, self.knowledge)
 
-    def _derived(self, name: str) -> EnvironmentGraph:
-        path = inside(self._settings.folder("sample") / DERIVED, f"{name}.json")
+    def _stored(self, stage: str, name: str) -> EnvironmentGraph:
+        path = inside(self._settings.folder(stage) / DERIVED, f"{name}.json")
         return from_release(orjson.loads(path.read_bytes()), str(path))

@@ -14,6 +14,7 @@ from hearth.pipelines.engine.stage import Done, Job, Partition, RecordsSeen
 from hearth.pipelines.engine.workers import AHEAD, run_here
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 from hearth.storage.partitions import Counts
 
 LOSSES = 3
@@ -52,26 +53,21 @@ class DaskEngine:
         return self._client
 
     def _connected(self) -> Any:
-        try:
-            import dask
-            from distributed import Client, LocalCluster
-        except ImportError:
-            message = "the dask engine needs dask.distributed, which is not installed"
-            raise HearthError.of(Code.MISSING_FILE, message, suggestion="pip install 'hearth[dask]'") from None
-        dask.config.set({"distributed.scheduler.allowed-failures": LOSSES})
+        distributed = library("distributed")
+        library("dask").config.set({"distributed.scheduler.allowed-failures": LOSSES})
         if self._scheduler:
             try:
-                client = Client(self._scheduler, timeout=_CONNECT_SECONDS)
+                client = distributed.Client(self._scheduler, timeout=_CONNECT_SECONDS)
             except (OSError, ValueError) as error:
                 message = f"no scheduler answers at {self._scheduler}: {error}"
                 suggestion = "start one with `dask scheduler`, or leave --scheduler out for a cluster on this machine"
                 raise HearthError.of(Code.MISSING_FILE, message, suggestion=suggestion) from None
             self.count = max(1, sum(client.nthreads().values()))
             return client
-        self._cluster = LocalCluster(
+        self._cluster = distributed.LocalCluster(
             n_workers=self.count, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs="CRITICAL"
         )
-        return Client(self._cluster)
+        return distributed.Client(self._cluster)
 
     def run(self, job: Job, partitions: Iterator[Partition], seen: RecordsSeen) -> Iterator[Done]:
         """Run partitions and yield each with its counts, in the order of completion.

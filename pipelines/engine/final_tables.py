@@ -1,7 +1,6 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
 import shutil
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -10,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hearth.datasets.dataset_knowledge import copy_overlay
@@ -24,19 +22,17 @@ from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
-from hearth.schemas import rows as forms
+from hearth.pipelines.engine.stages import RECORDS, STAGES
+from hearth.schemas import row_types as forms
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import Row, columns_of
+from hearth.schemas.row_types import Row, columns_of
 from hearth.schemas.tables import TABLES
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world.world import World
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts, part_path, read_rows, write_table
-
-STAGES = ("ingest", "validate", "sample", "augment", "render", "publish")
-"""The ledger's order."""
 
 BATCH = 4_096
 
@@ -66,9 +62,6 @@ def finish(job: Job, counts: Counts) -> None:
     }
     for table, rows in makers.items():
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
-    failed = part_path(job.folder, "repairs", len(list((job.folder / "repairs").glob("part-*.parquet"))))
-    write_rows(failed, TABLES["repairs"], _rows(job, "augment", "attempts"))  # those that gave no program
-    counts.rows["repairs"] += pq.read_metadata(failed).num_rows
     _copy_pictures(job)
     copy_overlay(job.settings.kb_folder, job.folder)
     write_card(job.folder)
@@ -158,7 +151,7 @@ class _Activities:
         yield from (row for _, row in sorted(self.descriptions.items()))
 
 
-_WORDS = ["kind", "description_id", "title", "description", "scene", "origin", "source", "worker", "platform"]
+_WORDS = [*(name for name in forms.DescriptionRow.__annotations__ if name not in ("activity_id", "programs")), "kind"]
 
 
 def _activities(job: Job) -> _Activities:
@@ -241,46 +234,14 @@ def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow]:
 
 
 def _splits(job: Job) -> list[forms.SplitRow]:
-    programs = _programs_for_splits(job.folder)
     runs: list[Any] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
-        table = pq.read_table(path, columns=["execution_id", "program_id", "home"])
+        table = pq.read_table(path, columns=["execution_id", "program_id", "home"], filters=[("executable", "=", True)])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
-    similarity = splits.Similarity(programs)
-    rows = list(splits.parts(programs, runs, job.settings.seed, similarity))
-    write_json(job.folder / "splits.json", splits.summary(programs, rows, job.settings.seed, similarity))
+    known, seed = job.context.assignment, job.settings.seed
+    rows = list(splits.parts(known.programs, runs, seed, known.similarity))
+    write_json(job.folder / "splits.json", splits.summary(known.programs, runs, rows, seed, known.similarity))
     return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
-
-
-def _programs_for_splits(folder: Path) -> list[splits.SplitProgram]:
-    columns: dict[str, list[Any]] = {
-        name: [] for name in ("program_id", "activity_id", "split", "parent_id", "description")
-    }
-    steps: list[tuple[str, ...]] = []
-    # Augmented programs share most of their values, which are kept once.
-    same: dict[Any, Any] = {}
-    for path in sorted((folder / "programs").glob("part-*.parquet")):
-        table = pq.read_table(path, columns=[*columns, "steps"])
-        steps.extend(same.setdefault(each, each) for each in _step_names(table["steps"].combine_chunks()))
-        for name, values in columns.items():
-            values.extend(same.setdefault(each, each) for each in table[name].to_pylist())
-    tops = splits.roots(dict(zip(columns["program_id"], columns["parent_id"], strict=True)))
-    rows = zip(*(columns[name] for name in ("program_id", "activity_id", "split", "description")), steps, strict=True)
-    return [splits.SplitProgram(name, of, part, tops[name], mine, text) for name, of, part, text, mine in rows]
-
-
-def _step_names(steps: pa.ListArray) -> Iterator[tuple[str, ...]]:
-    """For each program its steps as action and class names; by columns, because there are hundreds of thousands."""
-    every = steps.flatten()
-    actions, objects = every.field("action"), every.field("objects")
-    names = pa.ListArray.from_arrays(objects.offsets, objects.values.field("name"))
-    texts = [
-        sys.intern(text) for text in pc.binary_join_element_wise(actions, pc.binary_join(names, " "), " ").to_pylist()
-    ]
-    end = 0
-    for length in pc.list_value_length(steps).to_pylist():
-        yield tuple(texts[end : end + length])
-        end += length
 
 
 def _copy_pictures(job: Job) -> None:
@@ -335,6 +296,7 @@ def _ledger(job: Job, counts: Counts) -> Iterator[forms.LedgerRow]:
         codes = sorted(stage_counts.codes.items(), key=lambda item: (-item[1], item[0]))
         yield {
             "stage": stage,
+            "record": RECORDS[stage],
             "order": order,
             "records_in": stage_counts.records_in,
             "records_through": stage_counts.through,

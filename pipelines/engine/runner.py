@@ -108,7 +108,7 @@ def _inputs(stage: Stage, settings: Settings) -> dict[str, str]:
 
 
 def _total(stage: Stage, settings: Settings) -> int | None:
-    if stage.partitions is not None:
+    if stage.partitions is not None and not stage.gather:  # it reads something else than all rows of those stages
         return None
     manifests = [read_manifest(settings.folder(name)) for name in stage.reads]
     return sum(int(part["rows"]) for manifest in manifests if manifest for part in manifest.parts)

@@ -14,6 +14,7 @@ class Settings:
         out: the folder for one folder a stage.
         seed: seed of all random choices.
         limit: programs to read at most, and as many descriptions; None for all.
+        columns: columns of tables, and keys of JSON, that hold fields of a record, as in `title=Task,program=Plan`.
         homes: names of the homes to sample in; empty for every home of the catalog.
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.
@@ -35,6 +36,7 @@ class Settings:
     out: str = "data_out"
     seed: int = 0
     limit: int | None = None
+    columns: str = ""
     homes: tuple[str, ...] = ()
     homes_folder: str | None = None
     kb_folder: str | None = None

@@ -21,7 +21,7 @@ from hearth.pipelines.engine.deadline import Deadline, OverTime
 from hearth.pipelines.engine.dependencies import code_digest
 from hearth.pipelines.engine.settings import Settings
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import Row
 from hearth.storage.exchange import beside
 from hearth.storage.files import value_digest
 from hearth.storage.partitions import Counts, PartWriter, read_rows
@@ -323,7 +323,7 @@ class _Sink:
         for table, batch in batches:
             if len(batch):
                 self.writer.write(table, batch)
-                self.counts.rows[table] += len(batch)
+                self.counts.rows[table.partition(".")[0]] += len(batch)
         for record_id, outcome in records:
             self._count(record_id, outcome)
 

@@ -17,6 +17,17 @@ STAGES: dict[str, str] = {
 """The module of each stage, imported when the stage is run."""
 
 
+RECORDS = {
+    "ingest": "records of the sources: programs, descriptions, sketches, scenes",
+    "validate": "programs; descriptions and sketches go on to publish",
+    "sample": "valid programs, each run in several homes",
+    "augment": "executions of originals, each in several perturbed environments",
+    "render": "executions chosen for pictures",
+    "publish": "executions of sample and of augment",
+}
+"""What a record of each stage is: its input is counted in these."""
+
+
 def stage(name: str) -> Stage:
     """The stage of that name.
 

@@ -1,15 +1,18 @@
 """Shared by all readers: items, and text read safely from files and archives."""
 
+import codecs
+import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, BinaryIO
 
+from hearth.schemas.decoding import LOOKED_AT, encoding_of, western
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
+from hearth.schemas.row_types import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
 from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 
@@ -18,8 +21,6 @@ LONGEST_LINE = 1_000_000
 
 LARGEST_FILE = 256_000_000
 """Bytes a member of an archive may unpack to."""
-
-_MARKS = ((b"\xff\xfe", "utf-16-le", 2), (b"\xfe\xff", "utf-16-be", 2), (b"\xef\xbb\xbf", "utf-8", 3))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +76,7 @@ def record(
     scene: str | None = None,
     worker: str | None = None,
     platform: str | None = None,
+    style: str | None = None,
     rooms: list[QuantityRow] | None = None,
     props: list[QuantityRow] | None = None,
     text: str | None = None,
@@ -96,6 +98,7 @@ def record(
         "scene": scene,
         "worker": worker,
         "platform": platform,
+        "style": style,
         "rooms": rooms,
         "props": props,
         "text": text,
@@ -118,14 +121,13 @@ def read_refused(item: Item) -> Reject:
 
 @contextmanager
 def opened(path: Place) -> Iterator[tuple[BinaryIO, str]]:
-    """A file's bytes, unpacked, after its byte-order mark, and the encoding that the mark names (else UTF-8).
+    """A file's bytes, unpacked, after its byte-order mark, and its encoding: UTF-8, or UTF-16.
 
     Raises:
         DamagedError: while reading, if a packed file is broken or unpacks to far too much.
     """
     with raw(path) as file:
-        start = file.peek(4)[:4]  # type: ignore[attr-defined]
-        encoding, skip = next(((name, size) for mark, name, size in _MARKS if start.startswith(mark)), ("utf-8", 0))
+        encoding, skip = encoding_of(file.peek(LOOKED_AT)[:LOOKED_AT])  # type: ignore[attr-defined]
         file.read(skip)
         yield file, encoding
 
@@ -135,13 +137,17 @@ def suffixless(name: str) -> str:
     return name.partition(".")[0] or name
 
 
+def home_of(place: str) -> str:
+    """The name of the home whose graph a file holds: `TrimmedTestScene1_graph.json` is `TrimmedTestScene1`."""
+    return suffixless(PurePath(place).name).removesuffix("_graph")
+
+
 def lines(path: Place) -> Iterator[tuple[str, int]]:
     """Each line of a text without its end, and its length; text beyond `LONGEST_LINE` is dropped.
 
-    Bytes that are not text become lone surrogates, which `fault_of` finds; other lines are not affected.
+    A line that is not UTF-8 is read as Windows-1252 if it is that; other bytes that are not text become lone
+    surrogates, which `fault_of` finds; other lines are not affected.
     """
-    import io
-
     with opened(path) as (file, encoding):
         text = io.TextIOWrapper(file, encoding, errors="surrogateescape" if encoding == "utf-8" else "replace")
         while piece := text.readline(LONGEST_LINE + 1):
@@ -150,7 +156,7 @@ def lines(path: Place) -> Iterator[tuple[str, int]]:
             while not ended and (more := text.readline(LONGEST_LINE)):
                 length += len(more)
                 ended = more.endswith("\n")
-            yield kept.rstrip("\n")[:LONGEST_LINE], length - ended
+            yield western(kept.rstrip("\n")[:LONGEST_LINE]), length - ended
 
 
 _PIECE = 1 << 18
@@ -158,9 +164,6 @@ _PIECE = 1 << 18
 
 def pieces(path: Place) -> Iterator[str]:
     """A text as `lines` decodes it, line ends as `\\n`, a quarter of a megabyte at a time."""
-    import codecs
-    import io
-
     with opened(path) as (file, encoding):
         decode = codecs.getincrementaldecoder(encoding)("surrogateescape" if encoding == "utf-8" else "replace")
         decoder = io.IncrementalNewlineDecoder(decode, translate=True)
@@ -181,5 +184,5 @@ def fault_of(text: str, place: str, line: int) -> Diagnostic | None:
         return None
     at = line + text.count("\n", 0, bad.start())
     column = bad.start() - text.rfind("\n", 0, bad.start())
-    message = "a NUL character" if bad[0] == "\x00" else "bytes that are not UTF-8 text"
+    message = "a NUL character" if bad[0] == "\x00" else "bytes that are neither UTF-8 nor Windows-1252 (Latin-1) text"
     return Diagnostic(Code.NOT_TEXT, message, place, at, column, 1, suggestion="save the file as UTF-8 text")

@@ -1,62 +1,131 @@
 """Records of our own schema as JSON: JSON Lines, a list, or a single object."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import PurePath
 from typing import Any
 
+from hearth.datasets.format.ids import current_id
+from hearth.kb.language.plan_lines import header as plan_header
+from hearth.kb.language.plan_lines import is_plan, plan_line
 from hearth.pipelines.readers import plans
+from hearth.pipelines.readers.columns import FieldColumns, guessed
 from hearth.pipelines.readers.document import document, parsed
 from hearth.pipelines.readers.elements import entries
-from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
+from hearth.pipelines.readers.item import Item, fault_of, home_of, lines, record, refused, suffixless
+from hearth.pipelines.readers.release import graphs_of
 from hearth.pipelines.readers.text import header
 from hearth.schemas.blocks import STEP
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.numbers import stored
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.schemas.rows import IngestedRow, QuantityRow
+from hearth.schemas.row_types import IngestedRow, QuantityRow, WrittenGroundingRow
 from hearth.schemas.syntax import normal_name, print_lines
 from hearth.storage.archives import Place
 from hearth.storage.names import leaves
-from hearth.storage.rejects import Reject
+from hearth.storage.rejects import Reject, as_text
 
 NAME = "records"
 
-_WORDS = ("title", "description", "scene", "worker", "platform", "description_id")
+_WORDS = ("title", "description", "scene", "worker", "platform", "style", "description_id")
 _FORM = 'a record is {"title": ..., "description": ..., "steps": ["[Walk] <bed> (1)", ...]}, or has `text` for `steps`'
-_ORIGINS = frozenset({"crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
+_ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
 
 
-def scan(path: Place, place: str) -> Iterator[Item]:
-    """One item for each line that is not blank."""
+def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+    """The items of each line that is not blank."""
     for number, (line, _) in enumerate(lines(path), 1):
         if line.strip():
             fault = fault_of(line, place, number)
             value = Reject((fault,)) if fault else parsed(line, place, number)
-            yield _item(value, place, number, f"{place}:{number}")
+            yield from items(value, place, number, f"{place}:{number}", given)
 
 
-def scan_document(path: Place, place: str) -> Iterator[Item]:
-    """One item: the record of an object."""
-    yield _item(document(path, place), place, 1, place)
+def scan_document(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+    """The items of one value."""
+    value = document(path, place)
+    title = suffixless(PurePath(place).name).replace("_", " ")
+    yield from items({"title": title, "steps": value} if isinstance(value, list) else value, place, 1, place, given)
 
 
-def scan_list(path: Place, place: str) -> Iterator[Item]:
-    """One item for each entry of a list."""
+def scan_list(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+    """The items of each entry of a list."""
     for number, (line, value) in enumerate(entries(path, place), 1):
-        yield _item(value, f"{place}[{number}]", line if isinstance(value, Reject) else 0, f"{place}[{number}]")
+        name = f"{place}[{number}]"
+        yield from items(value, name, line if isinstance(value, Reject) else 0, name, given)
 
 
-def _item(value: Any, place: str, line: int, name: str) -> Item:
+def items(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Iterator[Item]:
+    """One item for each record of a value."""
+    found = list(records_in(value, given)) or [("", value)]
+    for inside, entry in found:
+        yield _item(entry, f"{place}{inside}", line, f"{name}{inside}", given)
+
+
+def records_in(value: Any, given: FieldColumns, depth: int = 3) -> Iterator[tuple[str, Any]]:
+    """The records of a JSON value with their places in it: itself, or those in the lists and objects that it holds.
+
+    An object of programs by their titles holds a record for each.
+    """
+    if not isinstance(value, dict):
+        return
+    if is_record(value, given):
+        yield "", value
+    elif value and all(map(_is_steps, value.values())):
+        for number, (title, steps) in enumerate(value.items(), 1):
+            yield f"[{number}]", {"title": title, "steps" if isinstance(steps, list) else "program": steps}
+    elif depth:
+        for key, part in value.items():
+            for number, entry in enumerate(part if isinstance(part, list) else [part], 1):
+                for inside, record_in_it in records_in(entry, given, depth - 1):
+                    yield f".{as_text(key)}[{number}]{inside}", record_in_it
+
+
+def is_record(value: dict[str, Any], given: FieldColumns) -> bool:
+    """Whether an object has a program or a description, by whatever name."""
+    return not _FIELDS.isdisjoint(_named(value, given))
+
+
+_FIELDS = frozenset({"steps", "text", "program", "description"})
+
+
+def _is_steps(value: Any) -> bool:
+    listed = value.split("\n") if isinstance(value, str) else value
+    if not isinstance(listed, list) or not all(isinstance(step, str) for step in listed):
+        return False
+    return isinstance(value, list) or is_plan(listed) or any(map(STEP.match, listed))
+
+
+def _named(value: dict[str, Any], given: FieldColumns) -> dict[str, Any]:
+    """A record with its fields by our names; those of others are guessed where ours are missing."""
+    texts = [key for key, part in value.items() if isinstance(part, str) or (part and _is_steps(part))]
+    found = guessed(texts, given, exact=True) if texts else {}
+    named = {field: value[name] for field, name in found.items() if field in given or field not in value}
+    if "steps" in value:
+        named.pop("program", None)
+    if "text" not in value or "text" in given.values():
+        return {**value, **named}
+    if "program" in named and not _is_steps(value["text"]):
+        return {**{key: part for key, part in value.items() if key != "text"}, **named}
+    return {**value, **{field: part for field, part in named.items() if field != "program" and found[field] != "text"}}
+
+
+def _item(value: Any, place: str, line: int, name: str, given: FieldColumns) -> Item:
     if isinstance(value, Reject):
         return refused(place, value, line=line)
     if isinstance(value, str):
         return plans.checked(value, 1, f"{plans.NAME}:{name}", name)
+    if isinstance(value, list):
+        value = {"steps": value}
     if not isinstance(value, dict):
         kind = type(value).__name__
         return refused(
             place, Reject.of(Code.BAD_JSON, f"a {kind}, not a record", file=place, line=line, suggestion=_FORM)
         )
-    own = str(value.get("program_id") or value.get("id") or "")
+    value = _named(value, given)
+    own = current_id(str(value.get("program_id") or value.get("id") or ""))
     fault = id_fault(own, place, line)
     if fault:
         return refused(place, fault, line=line)
@@ -78,7 +147,7 @@ def read(item: Item) -> list[IngestedRow | Reject]:
     value: Mapping[str, Any] = item.value
     try:
         row = _row(item, value)
-        return [row] if isinstance(row, Reject) else [row, *_others(item, row, value)]
+        return [row] if isinstance(row, Reject) else [*_grounded(item, row, value), *_others(item, row, value)]
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         message = f"not a record of ours: {error}"
         return [Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)]
@@ -89,30 +158,50 @@ def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
     text, in_sentences = _text(value, words)
     kind = "program" if text else "description"
     if not text and not words["description"]:
-        message = "neither steps nor a description"
+        message = f"neither steps nor a description; its keys are {', '.join(map(as_text, value))[:200] or 'none'}"
         return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
-    title, description = header(text) if text and not in_sentences and "steps" not in value else ("", "")
+    top = header if not in_sentences else plan_header
+    title, description = top(text) if text and "steps" not in value else ("", "")
     origin = _word(value, "origin") or NAME
+    if origin == "crowd" and item.record_id.startswith("written:"):  # the embedded corpus, as 0.1 published it
+        origin, words["worker"], words["platform"] = "written", None, None
     return record(
         item,
         kind,
         words["title"] or title,
         words["description"] or description,
         origin=plans.NAME if in_sentences else origin if origin in _ORIGINS else NAME,
-        description_id=words["description_id"] or "",
+        description_id=current_id(words["description_id"] or ""),
         scene=words["scene"],
         worker=words["worker"],
         platform=words["platform"],
+        style=words["style"],
         rooms=_quantities(value.get("rooms")),
         props=_quantities(value.get("props")),
         text=text or None,
-        line=max(item.line - 1, 0),
+        line=item.line - 1 if item.line else None,
     )
+
+
+def _grounded(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:
+    """The row with the graph in which its program runs, if it has one; a faulty graph is refused alone."""
+    if row["kind"] != "program" or "init_graph" not in value:
+        yield row
+        return
+    home = (_word(value, "home") or home_of(item.place)).removesuffix("_graph")
+    fault, found = id_fault(home, item.place), graphs_of(value, item.place)
+    if fault or isinstance(found, Diagnostic):
+        yield row
+        yield fault or Reject((found,))  # type: ignore[arg-type]
+        return
+    start, final = found
+    grounding: WrittenGroundingRow = {"home": home, "text": row["text"] or "", "start": start, "final": final}
+    yield {**row, "groundings": [grounding]}
 
 
 def _others(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow]:
     """Further descriptions of the same program."""
-    kept: Any = {key: row[key] for key in ("origin", "scene", "worker", "platform", "line")}
+    kept: Any = {key: row[key] for key in ("origin", "scene", "worker", "platform", "style", "line")}
     for number, text in enumerate(value.get("descriptions") or (), 2):
         other = replace(item, record_id=f"{row['program_id']}~{number}")
         yield record(other, "description", row["title"], str(text), **kept)
@@ -128,20 +217,37 @@ def _word(value: Mapping[str, Any], name: str) -> str | None:
 def _text(value: Mapping[str, Any], words: Mapping[str, str | None]) -> tuple[str, bool]:
     """The program's text, and whether it has natural-language steps."""
     steps = value.get("steps")
-    if steps is None:
-        text = _word(value, "text") or _word(value, "program") or ""
-        listed = text.split("\n")
-    elif isinstance(steps, list) and all(isinstance(step, str) for step in steps):
-        listed, text = steps, "\n".join(steps)
-    elif isinstance(steps, list):
-        return "".join(f"{line}\n" for line in print_lines(Program(steps=tuple(map(_step, steps))))), False
-    else:
+    if steps is None and isinstance(value.get("program"), list):
+        steps = value["program"]
+    text = "" if steps is not None else _word(value, "text") or _word(value, "program") or ""
+    listed = steps_of(text) if steps is None else steps
+    if not isinstance(listed, list):
         raise TypeError(f"`steps` is {type(steps).__name__}, not a list")
-    in_sentences = bool(text.strip()) and not any(STEP.match(line) for line in listed)
-    if in_sentences and steps is not None:
-        numbered = [f"Step {number}: {' '.join(step.split())}" for number, step in enumerate(listed, 1)]
+    if not all(isinstance(step, str) for step in listed):
+        return "".join(f"{line}\n" for line in print_lines(Program(steps=tuple(map(_step, listed))))), False
+    text = text if listed == text.split("\n") else "\n".join(listed)
+    in_sentences = bool(text.strip()) and (is_plan(listed) or not any(map(STEP.match, listed)))
+    if in_sentences and (steps is not None or not is_plan(listed)):
+        words_of = (plan_line(step).text or step for step in listed if step.strip())
+        numbered = [f"Step {number}: {' '.join(step.split())}" for number, step in enumerate(words_of, 1)]
         text = "\n".join([f"Task: {words['title'] or 'Untitled'}", words["description"] or "", *numbered])
     return (text.rstrip("\n") + "\n" if text.strip() else ""), in_sentences
+
+
+_QUOTED = re.compile(r"""'((?:[^'\\]|\\.)*+)'|"((?:[^"\\]|\\.)*+)\"""")
+_IN_ONE_LINE = re.compile(
+    r"(?<=[)\]}])[\s,;.]*(?=\[)|(?<=\S)\s+(?=\d{1,3}[.)]\s)|(?<!\s)\s*(?:;|->|→)\s*|(?<=[a-z]\.)\s+(?=[A-Z])"
+)
+
+
+def steps_of(text: str) -> list[str]:
+    """The lines of a text; of a single line its steps: a list, or separated by numbers, `;`, `->`, brackets, stops."""
+    lines = text.strip().split("\n")
+    if len(lines) > 1:
+        return text.split("\n")
+    if lines[0].startswith(('["', "['")):
+        return [re.sub(r"\\(.)", r"\1", one or other) for one, other in _QUOTED.findall(lines[0])]
+    return [step for step in _IN_ONE_LINE.split(lines[0]) if step.strip()]
 
 
 def _step(value: Mapping[str, Any]) -> Step:

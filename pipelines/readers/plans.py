@@ -1,13 +1,13 @@
 """Natural-language steps: numbered text as language models write it, and planning papers' JSON lists of such texts."""
 
-import re
 from collections.abc import Iterator
 
-from hearth.kb.language.plans import NUMBERED, TITLE, header
+from hearth.kb.language.plan_lines import PlanLine, header, plan_line
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, fault_of, lines, record, refused
+from hearth.schemas.blocks import is_sentence
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
@@ -61,33 +61,71 @@ def read(item: Item) -> IngestedRow:
     return record(item, "program", top.title, top.description, text=item.value["text"], line=item.value["line"])
 
 
-def has_numbered_steps(lines: list[str]) -> bool:
-    """Whether a text's first lines are natural-language steps: numbered lines, none of them in brackets."""
-    numbered = [line for line in lines if NUMBERED.match(line)]
-    bracketed = any(re.match(r"\s*(?:\[|<[^<>]*>\s*\[)", line) for line in lines)
-    return bool(numbered) and not bracketed and (len(numbered) > 1 or bool(TITLE.match(lines[0])))
-
-
 def blocks(lines: Iterator[tuple[int, str]], most: int = 1_000_000) -> Iterator[tuple[int, list[str]]]:
     """Split a text into its programs: (number of the first line, lines), cut after `most` characters.
 
-    A program begins with a line that is not numbered after a step, or where the numbers begin again.
+    A program begins where the numbers begin again, or with a line below the steps that is not one of them; not if the
+    numbers go on after it, or if it is a remark at the end.
     """
-    block: list[str] = []
-    first, last, size = 0, 0, 0
-    for number, line in lines:
-        match = NUMBERED.match(line)
-        digits = re.search(r"\d+", match[0]) if match else None
-        count = int(digits[0]) if digits else last + 1
-        new = bool(line.strip()) and (last > 0 if not match else count <= 1 < last)
-        if new and block:
-            yield first, block
-            first, block, last, size = 0, [], 0, 0
-        if (line.strip() or block) and size <= most:
-            first = first or number
-            block.append(line)
-            size += len(line) + 1
-        if match:
-            last = max(count, 1)
-    if block:
-        yield first, block
+    block = _Block()
+    for number, raw in lines:
+        line = plan_line(raw)
+        if line.number is not None and block.ends_before(line):
+            rest = block.split()
+            yield block.first, block.lines
+            block = rest
+        block.add(number, raw, line, most)
+    if block.has_title_below:
+        rest = block.split()
+        yield block.first, block.lines
+        block = rest
+    if block.lines:
+        yield block.first, block.lines
+
+
+class _Block:
+    """The lines of a program so far; `_below` is the index of the first line below its steps, if any."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.numbers: list[int] = []
+        self.has_title_below = False
+        self._last, self._below, self._size = 0, 0, 0
+        self._bulleted, self._by_headings = True, False
+
+    @property
+    def first(self) -> int:
+        return self.numbers[0]
+
+    def add(self, number: int, raw: str, line: PlanLine, most: int) -> None:
+        """Add a line, unless the block is blank or full."""
+        if line.number is not None:
+            self._bulleted = self._bulleted and not line.number
+            self._by_headings = self._by_headings or line.heading
+            is_nested = self._by_headings and not line.heading
+            self._last = self._last if is_nested else max(line.number or self._last, 1)
+            self._below, self.has_title_below = 0, False
+        elif line.text and self._last and not self._below and (line.heading or not line.indent):
+            self._below = len(self.lines)
+            self.has_title_below = line.heading or not is_sentence(line.text)
+        self.has_title_below = self.has_title_below or (self._below > 0 and line.heading)
+        if (raw.strip() or self.lines) and self._size <= most:
+            self.lines.append(raw)
+            self.numbers.append(number)
+            self._size += len(raw) + 1
+
+    def ends_before(self, step: PlanLine) -> bool:
+        """Whether a step belongs to the next program."""
+        if self._by_headings and not step.heading and not self._below:
+            return False
+        if step.number:
+            return step.number <= 1 and (self._last > 1 or self._below > 0)
+        return self._below > 0 and (self._bulleted or step.bracketed)
+
+    def split(self) -> "_Block":
+        """Cut off the lines below the steps, which begin the next program."""
+        rest, at = _Block(), self._below or len(self.lines)
+        rest.lines, rest.numbers = self.lines[at:], self.numbers[at:]
+        self.lines, self.numbers = self.lines[:at], self.numbers[:at]
+        rest._size = sum(map(len, rest.lines))
+        return rest

@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.ids import current_id
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.syntax import print_lines
 from hearth.storage.archives import DamagedError
 from hearth.storage.files import read_json
@@ -23,7 +25,9 @@ COLUMNS = [
     "program_id", "origin", "description_id", "parent_id", "title", "description", "steps", "rooms", "props",
     "worker", "platform",
 ]  # fmt: skip
-DESCRIPTION_COLUMNS = ["description_id", "title", "description", "scene", "origin", "worker", "platform", "programs"]
+DESCRIPTION_COLUMNS = [
+    "description_id", "title", "description", "scene", "origin", "worker", "platform", "style", "programs",
+]  # fmt: skip
 _ROWS = 1_000
 
 
@@ -35,13 +39,13 @@ def names_it(path: Path) -> bool:
 
 def scan(path: Path, place: str) -> Iterator[Item]:
     """One item for each original program, then one for each description without any."""
-    scenes = {row["description_id"]: row["scene"] for row in _rows(path, "descriptions", ["description_id", "scene"])}
+    columns = ["description_id", "scene", "style"]
+    described = {row["description_id"]: row for row in _rows(path, "descriptions", columns)}
     empty = True
     for row in _rows(path, "programs", COLUMNS):
         if row["parent_id"] is None:
             empty = False
-            row["scene"] = scenes.get(row["description_id"])
-            yield _item(row["program_id"], f"{place}/programs", row)
+            yield _item(row["program_id"], f"{place}/programs", {**row, **described.get(row["description_id"], {})})
     for row in _rows(path, "descriptions", DESCRIPTION_COLUMNS):
         if not row.pop("programs"):
             empty = False
@@ -51,6 +55,7 @@ def scan(path: Path, place: str) -> Iterator[Item]:
 
 
 def _item(own: str, place: str, row: Any) -> Item:
+    own = current_id(own)
     fault = ours.id_fault(own, place)
     return refused(place, fault) if fault else Item(own, NAME, place, row)
 
@@ -62,6 +67,8 @@ def _rows(path: Path, table: str, columns: list[str]) -> Iterator[Any]:
     for file in sorted((path / table).glob("*.parquet")):
         try:
             with pq.ParquetFile(file) as source:
+                later = {*earlier(1).get(table, {}).get("lacks", ())} - {*source.schema_arrow.names}
+                columns = [name for name in columns if name not in later]
                 lacking = sorted({*columns} - {*source.schema_arrow.names})
                 if lacking:
                     raise ValueError(f"it lacks the column{'s' * (len(lacking) > 1)} {', '.join(lacking)}")
@@ -100,4 +107,6 @@ def read(item: Item) -> list[IngestedRow | Reject]:
         message = f"not a row of a dataset: {type(error).__name__} {error}"
         suggestion = "copy it again"
         return [Reject.of(Code.DAMAGED_FILE, message, file=item.place, found=item.record_id, suggestion=suggestion)]
-    return [row if isinstance(row, Reject) else {**row, "origin": origin} for row in rows]
+    if origin != "crowd":  # of a crowd's rows `ours` knows those that were written
+        rows = [row if isinstance(row, Reject) else {**row, "origin": origin} for row in rows]
+    return rows

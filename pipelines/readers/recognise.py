@@ -6,14 +6,15 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, text
+from hearth.kb.language.plan_lines import TITLE, is_plan, plan_line
+from hearth.pipelines.readers import crowd, ours, plans, published, release, scenes, sketches, spreadsheets, text
 from hearth.pipelines.readers.document import document, looks_like_json, parsed
 from hearth.pipelines.readers.elements import entries, kinds
 from hearth.pipelines.readers.item import LARGEST_FILE, lines, opened
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, DamagedError, Member, Place, members, refusal_of, size_of
-from hearth.storage.files import walk
+from hearth.storage.files import links_not_followed, walk
 from hearth.storage.rejects import Reject, as_text
 
 _MAGIC: dict[bytes, str] = {
@@ -29,20 +30,18 @@ _MAGIC: dict[bytes, str] = {
     b"\xd0\xcf\x11\xe0": "an old Office document",
 }
 
-_ASIDE = frozenset({".md", ".yaml", ".yml", ".rst"})
-"""Notes and settings, which are not read as data in a folder."""
-
 _PACKED = frozenset({".gz", ".zst"})
 _TABLES = frozenset({".csv", ".tsv"})
 _JSON = frozenset({".json", ".jsonl", ".ndjson"})
-_DATA = _TABLES | _JSON | {"", ".txt", ".text", ".prog"}
-"""Files that are read in an archive; others, such as pictures and notes, are ignored."""
+_YAML = frozenset({".yaml", ".yml"})
+_TEXT = frozenset({"", ".txt", ".text", ".prog"})
+"""Endings of texts that are read as programs even without a step; others, such as notes, need one."""
 
 _LOOKED_AT = 60
 _LONGEST = 100_000
 
 FORMS = (
-    "a release (zip or folder), crowd-sourcing CSV, program text, natural-language steps, JSON or JSON Lines of "
+    "a release (zip or folder), a table (CSV), program text, natural-language steps, JSON or JSON Lines of "
     "records, sketches, a scene graph, or a dataset; packed as .zip, .gz or .zst or not"
 )
 
@@ -81,15 +80,19 @@ def recognise(path: Path, label: str) -> Iterator[Recognised]:
     if all(entry.refusal for entry in found):
         what = [fault.message for entry in found if entry.refusal for fault in entry.refusal.diagnostics]
         kinds = f"; the first is {what[0]}" if what else ""
-        message = f"nothing to read among {len(files)} files{kinds}" if files else "an empty folder"
+        message = f"nothing to read among {len(files)} files{kinds}" if found else "an empty folder"
         raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion=f"give {FORMS}")
     yield from found
 
 
 def _folder(path: Path, label: str, names: list[str]) -> Iterator[Recognised]:
     for name in names:
-        if Path(name).suffix.lower() not in _ASIDE:
-            yield from _file(path / name, f"{label}/{as_text(name)}")
+        yield from _file(path / name, f"{label}/{as_text(name)}")
+    for link in links_not_followed(path):
+        place = f"{label}/{as_text(link.relative_to(path).as_posix())}"
+        message, remedy = "a link to a folder or out of this one: it is not followed", "name its target as a source"
+        reject = Reject.of(Code.UNSUPPORTED_FILE, message, file=place, suggestion=remedy)
+        yield Recognised(link, place, "", reject)
 
 
 def _named_file(path: Path, label: str) -> Iterator[Recognised]:
@@ -129,11 +132,17 @@ def _by_first_lines(path: Place, place: str) -> Recognised:
         return _json(path, place, first)
     suffixes = PurePosixPath(str(getattr(path, "name", path))).suffixes
     suffix = next((part.lower() for part in reversed(suffixes) if part.lower() not in _PACKED), "")
-    if suffix in _TABLES:
-        return _refused(path, place, "a table whose first line names none of a batch's columns", Code.BAD_TABLE)
+    if (suffix in _TABLES and first) or spreadsheets.names_it(line[:10_000]):
+        return Recognised(path, place, spreadsheets.NAME)
     if suffix in _JSON and first:
         return _refused(path, place, "a JSON file that holds neither an object nor a list", Code.BAD_JSON)
-    return Recognised(path, place, plans.NAME if first and plans.has_numbered_steps(first) else text.NAME)
+    if suffix in _YAML:
+        return _refused(path, place, "a YAML file, which holds no programs")
+    if first and is_plan(first):
+        return Recognised(path, place, plans.NAME)
+    if suffix not in _TEXT | _JSON | _TABLES and not any(plan_line(line).bracketed for line in first):
+        return _refused(path, place, "a text without a step")
+    return Recognised(path, place, text.NAME)
 
 
 def _json(path: Place, place: str, first: list[str]) -> Recognised:
@@ -154,12 +163,15 @@ def _json(path: Place, place: str, first: list[str]) -> Recognised:
 
 
 def _form_of_list(path: Place, place: str) -> str:
-    """The reader of a list, by its first entry that can be read; an empty list is a list of records."""
+    """The reader of a list, by its first entry that can be read; an empty list is a list of records.
+
+    Texts of one line are the steps of one program, other texts a plan each.
+    """
     for _, value in entries(path, place):
         if isinstance(value, str):
-            return TEXTS
+            return TEXTS if "\n" in value.strip() or TITLE.match(value) else DOCUMENT
         if not isinstance(value, Reject):
-            return LISTED if isinstance(value, dict) else ""
+            return LISTED if isinstance(value, (dict, list)) else ""
     return LISTED
 
 
@@ -167,9 +179,8 @@ def _form_of(value: Any) -> str:
     if not isinstance(value, dict):
         return ""
     graph = value.get("init_graph", value)
-    if isinstance(graph, dict) and {"nodes", "edges"} <= graph.keys():
-        return scenes.NAME
-    return DOCUMENT if value.keys() & {"steps", "text", "program", "description", "title"} else ""
+    is_graph = isinstance(graph, dict) and {"nodes", "edges"} <= graph.keys()
+    return scenes.NAME if is_graph and not ours.is_record(value, {}) else DOCUMENT
 
 
 TEXTS = "spoken list"
@@ -187,11 +198,15 @@ def _archive(path: Path, place: str) -> Iterator[Recognised]:
         reject = Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion="download it again")
         yield Recognised(path, place, "", reject)
         return
-    if any(release.names_it(info.filename) for info in infos):
-        yield Recognised(path, place, release.NAME)
+    if any(info.filename == "[Content_Types].xml" for info in infos):
+        yield _refused(path, place, "an Office document: save a sheet as CSV, a text as plain text")
         return
-    found = [_member(path, info, f"{place}/{info.filename}") for info in infos if _is_data(info.filename)]
-    if found:
+    is_release = any(release.names_it(info.filename) for info in infos)
+    if is_release:
+        yield Recognised(path, place, release.NAME)
+    others = (info for info in infos if not release.names_it(info.filename) and not _is_hidden(info.filename))
+    found = [_member(path, info, f"{place}/{as_text(info.filename)}") for info in others]
+    if is_release or not all(entry.refusal and entry.refusal.code == Code.UNSUPPORTED_FILE for entry in found):
         yield from found
         return
     example = f", for example `{infos[0].filename}`" if infos else ""
@@ -200,10 +215,8 @@ def _archive(path: Path, place: str) -> Iterator[Recognised]:
     yield Recognised(path, place, "", Reject.of(Code.BAD_ARCHIVE, message, file=place, suggestion=suggestion))
 
 
-def _is_data(name: str) -> bool:
-    path = PurePosixPath(name)
-    hidden = any(part.startswith((".", "__MACOSX")) and part != ".." for part in path.parts)
-    return not hidden and path.suffix.lower() in _DATA
+def _is_hidden(name: str) -> bool:
+    return any(part.startswith((".", "__MACOSX")) and part != ".." for part in PurePosixPath(name).parts)
 
 
 def _member(path: Path, info: zipfile.ZipInfo, place: str) -> Recognised:

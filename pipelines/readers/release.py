@@ -1,7 +1,8 @@
 """The ActivityPrograms release, as a zip or a folder in its own layout; any of its folders may be missing."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -9,16 +10,16 @@ from typing import Any
 import orjson
 
 from hearth.datasets.format.codecs import change_row, node_row
+from hearth.pipelines.readers.graph_pairs import EDGE, pair_of, read_pair
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, record, refused
 from hearth.pipelines.readers.text import header
-from hearth.schemas.change import Parts, difference
+from hearth.schemas.change import Change
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Edge, read_node
+from hearth.schemas.graph import Edge, EdgeColumns, read_node
 from hearth.schemas.numbers import stored
-from hearth.schemas.rows import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
-from hearth.schemas.vocabulary import STATE_ID
+from hearth.schemas.row_types import ChangeRow, ConditionRow, GraphRow, IngestedRow, WrittenGroundingRow
 from hearth.storage.archives import archive, members, refusal_of
 from hearth.storage.files import file_digest, walk
 from hearth.storage.names import leaves
@@ -41,7 +42,6 @@ JsonObject = dict[str, Any]
 """A program's files by folder and home, or the JSON value of one of them."""
 
 _HOME = re.compile(r"(.*?)(_graph)?")
-_EDGE = itemgetter("from_id", "relation_type", "to_id")
 
 
 def names_it(path: str) -> bool:
@@ -139,13 +139,13 @@ def text_of(value: JsonObject, name: str) -> str | Diagnostic:
     return data if isinstance(data, Diagnostic) else decode(data, f"{value['label']}/{name}")
 
 
-def json_of(value: JsonObject, name: str) -> Any:
-    """A member of the release as a JSON value, or its fault."""
+def json_of(value: JsonObject, name: str, loads: Callable[[bytes], Any] = orjson.loads) -> Any:
+    """A member of the release as a JSON value, as `loads` reads it, or its fault."""
     data = _bytes(value, name)
     if isinstance(data, Diagnostic):
         return data
     try:
-        return orjson.loads(data)
+        return loads(data)
     except orjson.JSONDecodeError as error:
         return Diagnostic(Code.BAD_JSON, f"not JSON: {error}", f"{value['label']}/{name}", error.lineno, error.colno)
 
@@ -214,19 +214,27 @@ def _grounding(value: JsonObject, home: str) -> WrittenGroundingRow | Diagnostic
 
 
 def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
-    """The start graph, and the change to the final graph."""
-    data = json_of(value, name)
-    place = f"{value['label']}/{name}"
-    if isinstance(data, Diagnostic):
-        return data
+    return _pair_row(partial(json_of, value, name, read_pair), f"{value['label']}/{name}")
+
+
+def graphs_of(data: Any, place: str) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
+    """The start graph of a pair, and the change to its final graph if there is one."""
+    return _pair_row(partial(pair_of, data), place)
+
+
+def _pair_row(
+    read_it: Callable[[], tuple[JsonObject, Change | None] | Diagnostic], place: str
+) -> tuple[GraphRow, ChangeRow | None] | Diagnostic:
     try:
-        start, final = data["init_graph"], data.get("final_graph")
-        edges = _edges(start)
-        ordered = sorted(edges)
-        sources, relations, targets = _columns(ordered)
+        pair = read_it()
+        if isinstance(pair, Diagnostic):
+            return pair
+        start, change = pair
+        sources, relations, targets = _columns(sorted(_edges(start)))
         nodes = [node_row(read_node(node)) for node in start["nodes"]]
         row: GraphRow = {"nodes": nodes, "sources": sources, "relations": relations, "targets": targets}
-        return row, final and _changed(edges, start, final)
+        _columns(change.added if change else ())
+        return row, None if change is None else change_row(change)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         message = f"not a pair of environment graphs: {type(error).__name__} {error}"
         suggestion = "nodes need id and class_name; edges need from_id, relation_type and to_id"
@@ -235,10 +243,11 @@ def _graphs(value: JsonObject, name: str) -> tuple[GraphRow, ChangeRow | None] |
 
 def _edges(graph: JsonObject) -> set[Edge]:
     """Edges as plain tuples, which equal `Edge` and are made faster."""
-    return set(map(_EDGE, graph["edges"]))
+    edges = graph["edges"]
+    return set(edges.rows() if isinstance(edges, EdgeColumns) else map(EDGE, edges))
 
 
-def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
+def _columns(edges: Sequence[Edge]) -> tuple[list[int], list[str], list[int]]:
     """Edges column by column.
 
     Raises:
@@ -251,17 +260,6 @@ def _columns(edges: list[Edge]) -> tuple[list[int], list[str], list[int]]:
     if edges:
         list(map(stored, (min(sources), max(sources), min(targets), max(targets))))
     return sources, relations, targets
-
-
-def _changed(edges: set[Edge], start: JsonObject, final: JsonObject) -> ChangeRow:
-    """The change to a final graph, in edges and in the states that are simulated."""
-    new = _edges(final)
-    _columns(sorted(new - edges))
-    return change_row(difference(Parts(edges, _states(start)), Parts(new, _states(final))))
-
-
-def _states(graph: JsonObject) -> set[tuple[int, str]]:
-    return {(int(node["id"]), name) for node in graph["nodes"] for name in node.get("states") or () if name in STATE_ID}
 
 
 def _conditions(value: JsonObject) -> list[ConditionRow] | Diagnostic:

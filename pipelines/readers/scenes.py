@@ -1,16 +1,17 @@
 """Scene graphs: a home in the release's layout, without a program."""
 
 from collections.abc import Iterator
-from pathlib import PurePath
 
-from hearth.datasets.format.codecs import graph_row
+from hearth.datasets.format.codecs import graph_of, graph_row
+from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers.document import document
-from hearth.pipelines.readers.item import Item, record, refused, suffixless
+from hearth.pipelines.readers.item import Item, home_of, record, refused
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
-from hearth.schemas.rows import IngestedRow, NodeRow, WrittenGroundingRow
+from hearth.schemas.row_types import IngestedRow, NodeRow, WrittenGroundingRow
 from hearth.schemas.vocabulary import OPPOSITE
+from hearth.simulation.world.home import Home
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 
@@ -36,9 +37,20 @@ def read(item: Item) -> IngestedRow | Reject:
     faults = tuple(_state_faults(graph["nodes"], item.place))
     if faults:
         return Reject(faults)
-    name = suffixless(PurePath(item.place).name)
+    name = home_of(item.place)
     grounding: WrittenGroundingRow = {"home": name, "text": "", "start": graph, "final": None}
     return record(item, "scene", name, "", line=0, groundings=[grounding])
+
+
+def check(row: IngestedRow, known: Knowledge) -> None:
+    """Raise a HearthError if nothing can run in a scene: its graph contradicts itself, or lacks rooms or characters."""
+    start = (row["groundings"] or [])[0]["start"]
+    assert start is not None
+    home = Home.from_graph(graph_of(start), row["title"], known)
+    lacking = [what for what, found in (("a room", home.rooms), ("a character", home.agents)) if not found]
+    if lacking:
+        message = f"no home to sample programs in: it lacks {' and '.join(lacking)}"
+        raise HearthError.of(Code.BAD_GRAPH, message, file=row["place"], suggestion="add it, or leave the graph out")
 
 
 def _state_faults(nodes: list[NodeRow], place: str) -> Iterator[Diagnostic]:

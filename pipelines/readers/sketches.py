@@ -7,7 +7,7 @@ from hearth.pipelines.readers import release
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, record, refused
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.storage.archives import Place
 from hearth.storage.rejects import Reject
 

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 
 from hearth.pipelines.readers.item import Item, fault_of, pieces, record, refused
 from hearth.pipelines.readers.text_blocks import LONGEST_PROGRAM, Block, blocks
+from hearth.schemas.decoding import western
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.rows import IngestedRow
+from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.syntax import MAX_LINE
 from hearth.storage.archives import Place, size_of
 from hearth.storage.rejects import Reject
@@ -33,7 +34,7 @@ def scan(path: Place, place: str) -> Iterator[Item]:
 
 
 def _item(block: Block, record_id: str, place: str) -> Item:
-    first, text, cut = block
+    first, text, cut = block.first, western(block.text), block.cut
     fault = fault_of(text, place, first)
     if fault is None and (cut or len(text) > MAX_LINE):
         fault = _too_long(block, place)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hearth.rendering.arrays import Image
+from hearth.schemas.libraries import library
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import print_step
 
@@ -41,7 +42,7 @@ def contact_sheet(frames: Sequence[tuple[Image, str]], title: str = "", columns:
 
 def write(page: Image, text: str, x: int, y: int, scale: float) -> None:
     """Draw text into a picture; (x, y) is the left end of its baseline."""
-    import cv2
+    cv2 = library("cv2")
 
     plain = text.encode("ascii", "replace").decode()
     cv2.putText(page, plain, (x, y), cv2.FONT_HERSHEY_SIMPLEX, scale, INK, 1, cv2.LINE_AA)
@@ -49,7 +50,7 @@ def write(page: Image, text: str, x: int, y: int, scale: float) -> None:
 
 def fitted(text: str, width: int, scale: float) -> str:
     """The text, truncated with dots to at most `width` pixels."""
-    import cv2
+    cv2 = library("cv2")
 
     while text and cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)[0][0] > width - 4:
         text = text[:-4] + "..." if text.endswith("...") else text[:-3] + "..."

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 
 LEVEL = 1
 """zlib's fastest: four times as fast as the default for a few per cent more bytes."""
@@ -23,7 +24,7 @@ def encode(image: NDArray[Any]) -> bytes:
     Raises:
         HearthError: the array's shape or type has no PNG encoding.
     """
-    import cv2
+    cv2 = library("cv2")
 
     if image.dtype == np.float32 and image.shape[-1] == 2:
         image = _flow_code(image)
@@ -51,7 +52,7 @@ def decode(data: bytes) -> NDArray[Any]:
     Raises:
         HearthError: the data are not a picture.
     """
-    import cv2
+    cv2 = library("cv2")
 
     image: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     if image is None:

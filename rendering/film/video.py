@@ -20,8 +20,9 @@ from hearth.rendering.scene.variation import PLAIN, Variation
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph
+from hearth.schemas.libraries import library
 from hearth.schemas.program import Step
-from hearth.schemas.rows import FilmedStepRow
+from hearth.schemas.row_types import FilmedStepRow
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.storage.names import inside
 
@@ -46,7 +47,7 @@ class Writer:
     """Writes a video file, which gets its name only when it is complete."""
 
     def __init__(self, path: Path, width: int, height: int, fps: float) -> None:
-        import cv2
+        cv2 = library("cv2")
 
         codec = CODECS.get(path.suffix)
         self.path, self.part = path, path.with_name(f".part{path.suffix}")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hearth.rendering.models.mesh import Mesh
-from hearth.rendering.models.paint import LEAF
+from hearth.rendering.models.paint import PAINTS
 from hearth.rendering.models.shapes import quads
 
 
@@ -16,4 +16,5 @@ def leaf(reach: float, rise: float) -> Mesh:
     for k in range(5):
         a, b = (half[k], y[k], z[k]), (half[k + 1], y[k + 1], z[k + 1])
         strips.append([(-a[0], a[1], a[2]), (-b[0], b[1], b[2]), b, a])
-    return quads(np.array(strips, np.float32), LEAF.tinted(("#4f8a3c", "#3f7a44", "#6a9a48")[round(reach * 1000) % 3]))
+    color = ("#4f8a3c", "#3f7a44", "#6a9a48")[round(reach * 1000) % 3]
+    return quads(np.array(strips, np.float32), PAINTS["LEAF"].tinted(color))

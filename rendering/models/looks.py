@@ -2,19 +2,17 @@
 
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from importlib.resources import files
 from typing import Any
 
-import yaml
-
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.models.catalog import RECIPES
 from hearth.rendering.models.look import Look, Recipe, Size
 from hearth.rendering.models.mesh import Mesh
+from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.models.textures import SLOTS
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import derive
+from hearth.schemas.yaml_extent import packaged
 
 FALLBACK = "crate"
 """The recipe of classes without an entry."""
@@ -45,8 +43,7 @@ def looks() -> dict[str, Choice]:
     Raises:
         HearthError: an entry names a recipe that does not exist.
     """
-    text = (files("hearth.rendering.models") / "looks.yaml").read_text(encoding="utf-8")
-    table: dict[str, Any] = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    table: dict[str, Any] = packaged("hearth.rendering.models", "looks.yaml")
     chosen = {
         name: Choice(**(entry if isinstance(entry, dict) else {"recipe": entry})) for name, entry in table.items()
     }

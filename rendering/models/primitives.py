@@ -4,13 +4,12 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeVar
 
-from hearth.rendering.models import paint as paints
 from hearth.rendering.models import shapes
 from hearth.rendering.models.expressions import MATH, Values
 from hearth.rendering.models.leaf import leaf
 from hearth.rendering.models.look import Look, Region, nowhere, over, shelves, top
 from hearth.rendering.models.mesh import Mesh
-from hearth.rendering.models.paint import Paint
+from hearth.rendering.models.paint import PAINTS, Paint
 from hearth.rendering.models.pictures import PAINTINGS, SHOWS
 
 Value = TypeVar("Value")
@@ -47,7 +46,7 @@ FUNCTIONS: Values = {
     "color_of": lambda paint: paint.color,
     "lookup": _lookup,
     "region": Region,
-    **{name: value for name, value in vars(paints).items() if name.isupper()},
+    **PAINTS,
     "PAINTINGS": PAINTINGS,
     "SHOWS": SHOWS,
 }

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera, point_of
 from hearth.rendering.modalities import render
-from hearth.rendering.models.catalog import RECIPES
 from hearth.rendering.models.look import Look, Size
 from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.scene import Scene
+from hearth.schemas.libraries import library
 
 TILE = 128
 LABEL = 14
@@ -63,7 +64,7 @@ def sheet(columns: int = 14, side: int = TILE, quality: str = "fine") -> NDArray
 
 def labelled(image: NDArray[np.uint8], label: str) -> NDArray[np.uint8]:
     """The picture above a line of text."""
-    import cv2
+    cv2 = library("cv2")
 
     strip: NDArray[Any] = np.full((LABEL, image.shape[1], 3), 255, np.uint8)
     cv2.putText(strip, label, (2, 10), cv2.FONT_HERSHEY_SIMPLEX, 0.32, (40, 40, 40), 1, cv2.LINE_AA)

@@ -22,8 +22,6 @@ ARM = 0.85
 """Greatest distance in metres at which hands are used without a step nearer."""
 
 WEARABLE_TOP = ("shirt", "jacket", "dress", "pajamas")
-SEAT_FRONT = 0.12
-"""Distance from the middle of a seat to the hips, metres."""
 
 
 @dataclass(frozen=True, slots=True)

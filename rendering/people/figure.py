@@ -10,6 +10,7 @@ from hearth.rendering.models.paint import Paint
 from hearth.rendering.models.shapes import ball, cushion, rod, upright_to
 from hearth.rendering.people.skeleton import BodyPose, Joints, Vector, joints
 from hearth.schemas.graph import Point
+from hearth.schemas.yaml_extent import packaged
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,16 +41,11 @@ class Body:
 
 
 BODIES: dict[str, Body] = {
-    "ben": Body(),
-    "ana": Body(1.66, 0.92, "#e3b593", "#6b3f24", "#3f8a8a", "#2f3440", "#7a3a3a", "long", "fabric", False, 0.5),
-    "dev": Body(1.78, 1.08, "#9a6a48", "#1d1a1a", "#e0b04a", "#5a5f66", "#e4e0d6", "short", "stripes", False, 0.4),
-    "cleo": Body(1.62, 0.95, "#6f4a34", "#201a1c", "#7a5fa8", "#7a5fa8", "#2a2a2e", "bun", "dots", True, 0.3),
+    name: Body(**fields) for name, fields in packaged("hearth.rendering.people", "bodies.yaml").items()
 }
-"""Bodies by name. To add one: a row here."""
+"""Bodies by name. To add one: a row of `bodies.yaml`."""
 
 STILL = BodyPose()
-
-CHILD = Body(1.2, 0.95, "#e0b08e", "#8a5a30", "#4fa05c", "#4a6f9a", "#c8463c", "short", "stripes", False, 0.4)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hearth.schemas.program import Step
+from hearth.schemas.yaml_extent import packaged
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,56 +31,11 @@ class Gesture:
     asleep: bool = False
 
 
-REACH = Gesture("object", near=True)
-PUT = Gesture("object", near=True, about=1)
 LOOK = Gesture()
-MOUTH = Gesture("mouth")
 STILL = Gesture(gaze="")
-REST = Gesture(gaze="", rests=True)
 
 GESTURES: dict[str, Gesture] = {
-    "Walk": Gesture(stride=0.75),
-    "Run": Gesture(stride=1.0),
-    "Find": LOOK,
-    "LookAt": LOOK,
-    "TurnTo": LOOK,
-    "Watch": LOOK,
-    "PointAt": REACH,
-    "Grab": Gesture("carry", near=True),
-    "PutBack": PUT,
-    "PutIn": PUT,
-    "PutObjBack": REACH,
-    "Drop": LOOK,
-    "Release": LOOK,
-    "Open": REACH,
-    "Close": REACH,
-    "SwitchOn": REACH,
-    "SwitchOff": REACH,
-    "PlugIn": REACH,
-    "PlugOut": REACH,
-    "Touch": REACH,
-    "Push": Gesture("object", both=True, near=True),
-    "Pull": Gesture("object", both=True, near=True),
-    "Move": Gesture("object", both=True, near=True),
-    "Wipe": REACH,
-    "Wash": Gesture("object", both=True, near=True),
-    "Rinse": Gesture("object", both=True, near=True),
-    "Scrub": Gesture("object", both=True, near=True),
-    "Squeeze": Gesture("object", near=True),
-    "Cut": REACH,
-    "Pour": Gesture("second", gaze="second", near=True, about=1),
-    "Type": Gesture("object", both=True, near=True),
-    "Read": Gesture("chest", both=True),
-    "Drink": MOUTH,
-    "Eat": MOUTH,
-    "PutOn": Gesture("chest", both=True, gaze=""),
-    "PutOff": Gesture("chest", both=True, gaze=""),
-    "Greet": Gesture("wave"),
-    "Sit": REST,
-    "Lie": REST,
-    "StandUp": STILL,
-    "Sleep": Gesture(gaze="", asleep=True),
-    "WakeUp": STILL,
+    action: Gesture(**fields) for action, fields in packaged("hearth.rendering.people", "gestures.yaml").items()
 }
 """The gesture of each action; an action without an entry is a gaze at its object."""
 

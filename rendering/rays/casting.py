@@ -15,6 +15,7 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.rays.memory import keep
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 
 SYSTEM_LIBRARIES = "libusb-1.0-0 libgl1 libegl1 libx11-6 libgomp1"
 """Debian packages that open3d is linked against."""
@@ -33,10 +34,7 @@ def engine() -> Any:
     if skipped:
         sys.modules[viewers] = ModuleType(viewers)
     try:
-        import open3d
-    except ModuleNotFoundError as error:
-        remedy = "pip install open3d-cpu (Linux on x86-64, glibc 2.35 or newer)"
-        raise HearthError.of(Code.NOT_RENDERED, "drawing pictures needs open3d", suggestion=remedy) from error
+        open3d = library("open3d")
     except (ImportError, OSError) as error:
         remedy = f"apt-get install -y --no-install-recommends {SYSTEM_LIBRARIES}"
         message = f"open3d is installed, but a system library it needs is not: {error}"

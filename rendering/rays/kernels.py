@@ -10,11 +10,13 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 
 from hearth.rendering.arrays import Floats, Ints
+from hearth.schemas.libraries import library
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+njit = library("numba").njit
 
 FAST = {"contract", "reassoc", "nsz", "arcp", "afn"}
 """LLVM's fast-math flags without those for infinities, which mark rays that hit nothing."""

@@ -7,9 +7,9 @@ from math import cos, radians, sin
 
 from hearth.homes.forms import form
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.models.catalog import RECIPES
 from hearth.rendering.models.look import Look, Size
 from hearth.rendering.models.looks import Model, choice_of, model_of
+from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import SPILL, Daylight, Light, daylight, lamp, window
@@ -18,28 +18,14 @@ from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+from hearth.schemas.yaml_extent import packaged
 
 UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts")
 """Categories that are not drawn as objects; characters are drawn as figures."""
 
 BUILDING = ("floor", "wall", "ceiling")
 
-LIQUIDS = {
-    "water": "#a9d2e6",
-    "coffee": "#4a2c1a",
-    "tea": "#a8662c",
-    "milk": "#f4f1ea",
-    "juice": "#e8922e",
-    "wine": "#6b1d2e",
-    "beer": "#d8a23a",
-    "alcohol": "#b87a34",
-    "soup": "#c88a3a",
-    "sauce": "#a8342e",
-    "oil": "#d8c04a",
-    "dish_soap": "#8fd0c0",
-    "cleaning_solution": "#9fc8d8",
-    "milkshake": "#e9c3cc",
-}
+LIQUIDS: dict[str, str] = packaged("hearth.rendering.scene", "liquids.yaml")
 """Classes that fill the vessel that they are INSIDE, and their colours."""
 
 SURFACE = 0.004

@@ -7,7 +7,7 @@ from typing import cast
 from hearth.rendering.cameras.camera import Camera
 from hearth.schemas.graph import Box, EnvironmentGraph
 from hearth.schemas.rng import derive
-from hearth.schemas.rows import VariationRow
+from hearth.schemas.row_types import VariationRow
 
 HOURS = (7.5, 18.5)
 """Range of the random hour of the day."""

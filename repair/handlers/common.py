@@ -1,16 +1,18 @@
 """What the handlers share: the context they are given, and the edits they answer with."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from hearth.grounding.failure_context import FailureContext
 from hearth.grounding.preconditions.postconditions import Postconditions
+from hearth.repair.circumstances import RESTING
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.states import LYING, SITTING
+from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,13 +23,18 @@ class RepairContext(FailureContext):
         rules: what the execution goes by.
         goal: what the program has to reach (thesis eq. A.1).
         nodes: the nodes of the objects that the goal names.
-        missed: the facts of the goal that do not hold, where the program ran to its end.
+        missed: the facts of the goal that do not hold, where the program ran to its end; or of the circumstances of a
+            step that is done in others.
+        wanted: the circumstances of each step; None for one that a repair inserted. Empty where they are unknown.
+        worlds: the world before each tick that was done, and the last one.
     """
 
     rules: Rules
     goal: Postconditions = ()
     nodes: Mapping[Key, int] = field(default_factory=dict)
     missed: Postconditions = ()
+    wanted: Sequence[Postconditions | None] = ()
+    worlds: Sequence[World] = ()
 
     @property
     def step(self) -> Step:
@@ -85,6 +92,25 @@ class RepairContext(FailureContext):
     def does(self, action: str, *objects: ObjectRef) -> Step:
         """A new step of the same character."""
         return Step(action, objects, self.failure.agent)
+
+    @property
+    def posture(self) -> frozenset[str]:
+        """Actions that leave a seat or a place, or take a seat."""
+        return self.group("rests") | self.group("rises") | self.group("walks")
+
+    def is_inserted(self, number: int) -> bool:
+        """Whether a repair has inserted a step, which may be done in any circumstances."""
+        return bool(self.wanted) and self.wanted[number] is None
+
+    def rests_at(self, number: int) -> bool | None:
+        """Whether the original does a step sitting or lying; None where that is unknown, or the step inserted."""
+        known = self.wanted[number] if self.wanted else None
+        return None if known is None else any(f.name in RESTING and not f.negated for f in known)
+
+    def world_before(self, number: int) -> World:
+        """The world before the tick of a step that was done, or before the failing one."""
+        ticks = sum(not step.joins for step in self.program.steps[1 : number + 1])
+        return self.worlds[ticks] if number < self.at else self.world
 
     def seat_taken(self) -> tuple[int, str, ObjectRef] | None:
         """Where, how and on what the program itself has made the character rest: (number of the step, "Sit", couch)."""

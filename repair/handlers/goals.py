@@ -1,6 +1,8 @@
-"""The program runs, but what it was for is not reached: bring that about at the end (thesis eq. A.1)."""
+"""The program runs, but what it was for is not reached (thesis eq. A.1), or a step is done in other circumstances."""
 
-from hearth.repair.handlers.common import Edit, RepairContext, Splice
+from hearth.repair.handlers.common import Edit, RepairContext, Splice, before
+from hearth.repair.handlers.posture import places_to_rest
+from hearth.schemas.failures import Code
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -13,6 +15,22 @@ def goal_lost(context: RepairContext) -> Edit | None:
         if steps:
             return Edit("goal_lost", (Splice(len(context.program.steps), 0, steps),))
     return None
+
+
+def circumstances_lost(context: RepairContext) -> Edit | None:
+    """Bring about what the step was done in: get up, then see to things, then take the seat."""
+    for fact in sorted(context.missed, key=lambda fact: (not fact.negated, _rank(fact))):
+        steps = _undone(context, fact) if fact.negated else _steps(context, fact)
+        if steps:
+            return before(context, "circumstances_lost", *steps)
+    return None
+
+
+def _undone(context: RepairContext, fact: Literal[Key]) -> tuple[Step, ...]:
+    """Let go of what is held, else get up."""
+    if fact.name == HOLDS and fact.target is not None:
+        return (context.does("Release", context.ref(context.world.home.index[context.nodes[fact.target]])),)
+    return (context.does("StandUp"),)
 
 
 def _rank(fact: Literal[Key]) -> tuple[bool, bool, bool]:
@@ -52,9 +70,14 @@ def _of_character(context: RepairContext, fact: Literal[Key]) -> tuple[Step, ...
     """Rest on the seat of the goal, take what it holds, or go to the room where it ends."""
     agent = fact.subject[1] - 1
     target = fact.target
+    aimed = context.goal if context.failure.code is Code.GOAL_LOST else context.wanted[context.at] or ()
     if fact.name in ("SITTING", "LYING", "ON"):
-        seats = [f.target for f in context.goal if f.name == "ON" and f.subject == fact.subject]
+        seats = [f.target for f in aimed if f.name == "ON" and f.subject == fact.subject]
         target = seats[0] if seats else None
+        if target is None and aimed is not context.goal:
+            action = context.knowledge.achiever(fact.name)
+            places = (context.ref(index) for rest, index in places_to_rest(context) if rest == action)
+            return next(((Step("Walk", (place,), agent), Step(action, (place,), agent)) for place in places), ())
     if target is None or target not in context.nodes:
         return ()
     thing = context.ref(context.world.home.index[context.nodes[target]])
@@ -63,5 +86,5 @@ def _of_character(context: RepairContext, fact: Literal[Key]) -> tuple[Step, ...
         return (walk, Step("Grab", (thing,), agent))
     if fact.name == "INSIDE":
         return (walk,)
-    lying = any(f.name == "LYING" and f.subject == fact.subject for f in context.goal)
+    lying = any(f.name == "LYING" and f.subject == fact.subject and not f.negated for f in aimed)
     return (walk, Step("Lie" if lying else "Sit", (thing,), agent))

@@ -1,9 +1,9 @@
 """Not close, not in the room, a closed door on the way: the character goes where it has to be."""
 
-from hearth.repair.handlers.common import Edit, RepairContext, Splice, around, before
+from hearth.repair.handlers.common import Edit, RepairContext, before
+from hearth.repair.handlers.seats import brought, done_before_seat, stays
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.world import rows
 
 
 def not_close(context: RepairContext) -> Edit | None:
@@ -25,28 +25,25 @@ def door_closed(context: RepairContext) -> Edit | None:
     return before(context, "door_closed", context.does("Walk", door), opened)
 
 
-def walked_to(context: RepairContext, name: str, target: ObjectRef, *there: Step) -> Edit:
+def walked_to(context: RepairContext, name: str, target: ObjectRef, *there: Step) -> Edit | None:
     """Walk to something first, and do more there.
 
-    Who sits or lies gets up for it. If the program had the character take that seat, it returns to it when what has to
-    be done beside the target is done; where the seat is too small to be taken twice (who has sat on it stays ON it, as
-    in the release), it is only taken then.
+    Who sits or lies gets up for it, unless the program goes on in that seat. Then a step that the original does there
+    is done with what can be brought to the seat; what repairs have inserted, and any step of which the circumstances
+    are unknown, is done before the seat is taken.
     """
     walk = context.does("Walk", target)
     if not context.resting:
         return before(context, name, walk, *there)
-    going = (context.does("StandUp"), walk, *there)
-    seat = context.seat_taken()
+    rests = context.rests_at(context.at)
+    if rests and context.step.action not in context.posture:
+        return brought(context, name)
     last = _end_of_errand(context, target)
-    if seat is None or context.step.action in _posture(context) or _leaves_anyway(context, last):
-        return before(context, name, *going)
-    number, action, place = seat
-    back = context.does("Walk", place)
-    index = context.world.home.index[place.node] if place.node is not None else -1
-    if rows.bearing(context.world, index).bit_count() < context.world.home.limit(index, action == "Lie"):
-        return around(context, name, going, last, (back, context.does(action, place)))
-    later = around(context, name, (walk, *there), last, (back, context.program.steps[number]))
-    return Edit(name, (Splice(number, 1), *later.splices))
+    if rests is None and context.step.action not in context.posture and stays(context, last):
+        edit = done_before_seat(context, name, last, walk, *there)
+        if edit is not None:
+            return edit
+    return before(context, name, context.does("StandUp"), walk, *there)
 
 
 def _end_of_errand(context: RepairContext, target: ObjectRef) -> int:
@@ -56,24 +53,13 @@ def _end_of_errand(context: RepairContext, target: ObjectRef) -> int:
         step = context.program.steps[number]
         if step.agent != context.failure.agent:
             continue
-        if step.action in _posture(context) or target not in step.objects or not _needs_to_be_close(context, step):
+        mine = target in step.objects and context.is_inserted(number) == context.is_inserted(context.at)
+        if step.action in context.posture or not mine or not _needs_to_be_close(context, step):
             break
         last = number
     return last
 
 
-def _posture(context: RepairContext) -> frozenset[str]:
-    """Actions that leave a seat or a place, or take a seat."""
-    return context.group("rests") | context.group("rises") | context.group("walks")
-
-
 def _needs_to_be_close(context: RepairContext, step: Step) -> bool:
     action = context.knowledge.actions.get(step.action)
     return action is not None and any(check.code is Code.NOT_CLOSE for check in action.preconditions)
-
-
-def _leaves_anyway(context: RepairContext, last: int) -> bool:
-    """Whether the character's next step gets up or walks away."""
-    later = (s for s in context.program.steps[last + 1 :] if s.agent == context.failure.agent)
-    following = next(later, None)
-    return following is not None and following.action in _posture(context)

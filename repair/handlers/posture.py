@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before, removed
+from hearth.repair.handlers.seats import done_before_seat, stays
 from hearth.simulation.holds import PETS
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
@@ -22,7 +23,7 @@ def not_resting(context: RepairContext) -> Edit | None:
     """Leave out standing up when one stands; lie or sit down before sleeping or waking up."""
     if context.step.action == "StandUp":
         return removed(context, "not_sitting_to_stand")
-    place = next(_places_to_rest(context), None)
+    place = next(places_to_rest(context), None)
     if place is None:
         return None
     action, index = place
@@ -48,18 +49,23 @@ def occupied(context: RepairContext) -> Edit | None:
     return before(context, "occupied", *steps)
 
 
-def _resting(context: RepairContext, action: str, name: str) -> Edit:
+def _resting(context: RepairContext, action: str, name: str) -> Edit | None:
     same = context.step.action == action and context.agent.on >> context.index() & 1
     if same:
         return removed(context, f"{name}_to_{action.lower()}")
+    last = context.at
+    while last + 1 < len(context.program.steps) and context.is_inserted(last + 1):
+        last += 1
+    if context.is_inserted(context.at) and stays(context, last):
+        return done_before_seat(context, f"{name}_to_walk", last)
     return before(context, f"{name}_to_walk", context.does("StandUp"))
 
 
-def _places_to_rest(context: RepairContext) -> Iterator[tuple[str, int]]:
+def places_to_rest(context: RepairContext) -> Iterator[tuple[str, int]]:
     """Beds to lie on, then seats, with room on them: the program's own first, then the nearest."""
     home = context.world.home
     named = {ref.node for ref in context.program.objects()}
-    for action in ("Lie", "Sit"):
+    for action in sorted(context.knowledge.group("rests")):
         able = [i for i in indices(home.able(action)) if _has_room(context, i, action)]
         able = sorted(context.by_distance(able), key=lambda i: home.ids[i] not in named)
         yield from ((action, i) for i in able)

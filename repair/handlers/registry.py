@@ -5,6 +5,7 @@ from hearth.repair.handlers.common import Handler, leaving_out
 from hearth.schemas.failures import Code
 
 HANDLERS: dict[Code, Handler] = {
+    Code.CIRCUMSTANCES_LOST: goals.circumstances_lost,
     Code.CONFLICT: agents.conflict,
     Code.DOOR_CLOSED: locomotion.door_closed,
     Code.GOAL_LOST: goals.goal_lost,
@@ -53,6 +54,7 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
         Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
+        Code.BAD_ARGUMENT,
     }
 )  # fmt: skip
 """Codes of reading, checking, grounding, repairing itself, scoring and publishing: no run of a program ends in them."""

@@ -67,8 +67,8 @@ ALREADY_SO = {Code.NOT_SITTING_OR_LYING: "rises", Code.NOT_WORN: "dresses", Code
 """Failures that imply that the effect of a group of actions already holds."""
 
 
-PUTS: dict[str, Callable[[World, int], int]] = {"PutBack": rows.on, "PutIn": rows.inside}
-"""Actions that put one object on or in another, and the row with the result; repeated, they are additional steps."""
+PLACED: dict[str, Callable[[World, int], int]] = {"ON": rows.on, "INSIDE": rows.inside}
+"""Where a thing may be put, and the row with the result; repeated, such actions are additional steps."""
 
 First = tuple[int, ErrorClass, Code]
 
@@ -199,7 +199,7 @@ def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
 
 def _is_put(step: Step, world: World) -> bool:
     """Whether the object of a put is already at its destination."""
-    read = PUTS.get(step.action)
+    read = PLACED.get(world.home.knowledge.relation_of(step.action))
     if read is None:
         return False
     o, s = (world.home.index[ref.node] for ref in step.objects if ref.node is not None)

@@ -1,8 +1,7 @@
-"""Goal satisfaction of a final world (thesis 6.3, tables B.1, C.2)."""
+"""The goal that an execution achieves, which others are asked to reach (thesis 6.3, tables B.1, C.2)."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge
@@ -10,7 +9,6 @@ from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATES
 from hearth.scoring.metrics.final_graph import nodes_of
 from hearth.scoring.signature import signature
-from hearth.simulation.holds import candidates
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import INSIDE, NOTHING, ON
 from hearth.simulation.world.world import World
@@ -19,47 +17,6 @@ SIGNATURE = signature("goal", level="program", empty=1)
 
 LASTING = ("ON", "INSIDE", *HANDS)
 """Relations of goals made from an execution; CLOSE and FACING describe only the character's position."""
-
-
-@dataclass(frozen=True, slots=True)
-class Satisfaction:
-    """Satisfaction of a goal.
-
-    Attributes:
-        counts: of each literal, the number of times that it holds, and the required number.
-    """
-
-    counts: tuple[tuple[Literal[Name], int, int], ...]
-
-    @property
-    def satisfied(self) -> bool:
-        """Whether every count is reached; True for an empty goal."""
-        return all(found >= wanted for _, found, wanted in self.counts)
-
-    @property
-    def fraction(self) -> float:
-        """The satisfied share of the required counts, from 0 to 1; 1 for an empty goal."""
-        wanted = sum(count for _, _, count in self.counts)
-        return sum(min(found, count) for _, found, count in self.counts) / wanted if wanted else 1.0
-
-    @property
-    def unmet(self) -> tuple[tuple[Literal[Name], int], ...]:
-        """The missing literals, with counts."""
-        return tuple((literal, wanted - found) for literal, found, wanted in self.counts if found < wanted)
-
-
-def satisfaction(goal: Goal, final: World) -> Satisfaction:
-    """Count how often each literal of a goal holds; a literal about absent objects never holds.
-
-    Args:
-        goal: counted literals.
-        final: the world to check.
-    """
-    return Satisfaction(tuple((literal, _count(literal, final), wanted) for literal, wanted in goal))
-
-
-def _count(literal: Literal[Name], world: World) -> int:
-    return sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
 
 
 def goal_of(start: World, final: World) -> Goal:

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
-from hearth.schemas.program import ObjectRef
+from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.lines import Line, Lines
 from hearth.scoring.signature import signature
 
@@ -19,6 +19,9 @@ Level = Literal["step", "action", "object"]
 """The compared items: whole instructions, their actions only, or their objects only (first, then second)."""
 
 LEVELS: tuple[Level, ...] = get_args(Level)
+
+By = Literal["class", "number", "node"]
+"""What identifies an object."""
 
 Sequences = list[list[int]]
 
@@ -38,7 +41,7 @@ class LcsScore(NamedTuple):
 
 def lcs_signature(level: str = "step", instances: bool = False) -> str:
     """The signature of a score by this module."""
-    return signature("lcs", norm="max", level=level, **({"instances": "yes"} if instances else {}))
+    return signature("lcs", norm="max", level=level, **({"instances": "named"} if instances else {}))
 
 
 def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[Hashable]:
@@ -48,16 +51,15 @@ def items(lines: Lines, level: Level = "step", instances: bool = False) -> list[
     `instances` is set; then an object is identified by its node if bound, else by its number. Modifiers are ignored.
     The agent is part of a step, except the first. A line that does not parse is one item at every level.
     """
-    return _levels(lines, instances)[LEVELS.index(level)]
+    return _levels(lines, "node" if instances else "class")[LEVELS.index(level)]
 
 
 def similarity(predicted: Lines, reference: Lines, level: Level = "step", instances: bool = False) -> float:
-    """|LCS| / max(|predicted|, |reference|), from 0 to 1; two empty sequences score 1 (eq. 4.1)."""
-    from rapidfuzz.distance import LCSseq
+    """|LCS| / max(|predicted|, |reference|), from 0 to 1; two empty sequences score 1 (eq. 4.1).
 
-    (a,), (b,) = _encode([items(predicted, level, instances)], [items(reference, level, instances)])
-    longest = max(len(a), len(b))
-    return LCSseq.similarity(a, b) / longest if longest else 1.0
+    Of two programs one of which names no node, instances are compared by number.
+    """
+    return score(predicted, reference, instances)[LEVELS.index(level)]
 
 
 def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsScore:
@@ -69,29 +71,37 @@ def score(predicted: Lines, reference: Lines, instances: bool = False) -> LcsSco
         >>> lcs.score(read(["[Walk] <sofa> (1)", "[Sit] <sofa> (1)"]), read(["[Walk] <sofa> (1)", "[Lie] <sofa> (1)"]))
         LcsScore(step=0.5, action=0.5, object=1.0)
     """
-    return LcsScore(*(similarity(predicted, reference, level, instances) for level in LEVELS))
+    return score_pairs([(predicted, reference)], instances)[0]
 
 
 def score_pairs(pairs: Iterable[tuple[Lines, Lines]], instances: bool = False) -> list[LcsScore]:
     """The scores of many pairs, in order; equal to `score` of each, but faster."""
     pairs = list(pairs)
-    sides = [[_levels(pair[side], instances) for pair in pairs] for side in (0, 1)]
+    by = [_identity(*pair) if instances else "class" for pair in pairs]
+    sides = [[_levels(pair[side], how) for pair, how in zip(pairs, by, strict=True)] for side in (0, 1)]
     columns = [_pairwise(*([found[level] for found in side] for side in sides)) for level in range(len(LEVELS))]
     return [LcsScore(*row) for row in zip(*columns, strict=True)]
 
 
-def _levels(lines: Lines, instances: bool) -> list[list[Hashable]]:
+def _identity(*programs: Lines) -> By:
+    """What identifies the instances of some programs: nodes, if all of them name any."""
+    steps = ([line for line in lines if isinstance(line, Step)] for lines in programs)
+    named = all(any(ref.node is not None for step in found for ref in step.objects) for found in steps)
+    return "node" if named else "number"
+
+
+def _levels(lines: Lines, by: By) -> list[list[Hashable]]:
     """The items of every level."""
-    found = [_items(line, instances) for line in lines]
+    found = [_items(line, by) for line in lines]
     return [[item for each in found for item in each[place]] for place in range(len(LEVELS))]
 
 
 @lru_cache(maxsize=65_536)
-def _items(line: Line, instances: bool) -> tuple[tuple[Hashable, ...], ...]:
+def _items(line: Line, by: By) -> tuple[tuple[Hashable, ...], ...]:
     """The items of a line at every level."""
     if isinstance(line, str):
         return ((("text", line.casefold()),),) * len(LEVELS)
-    objects = tuple([_named(ref, instances) for ref in line.objects])
+    objects = tuple([_named(ref, by) for ref in line.objects])
     action = _plain(line.action)
     return ((action, *objects, line.agent),), (action,), objects
 
@@ -145,11 +155,11 @@ def _encode(*sides: Sequence[Sequence[Hashable]]) -> tuple[Sequences, ...]:
     return tuple([[codes[item] for item in sequence] for sequence in side] for side in sides)
 
 
-def _named(ref: ObjectRef, instances: bool) -> Hashable:
+def _named(ref: ObjectRef, by: By) -> Hashable:
     name = _plain(ref.name)
-    if not instances:
+    if by == "class":
         return name
-    return (name, "node", ref.node) if ref.node is not None else (name, "instance", ref.instance)
+    return (name, by, ref.node) if by == "node" and ref.node is not None else (name, "number", ref.instance)
 
 
 @lru_cache(maxsize=65_536)

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph import Edge, EdgeColumns, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
@@ -149,18 +149,21 @@ def _states(nodes: Sequence[Any]) -> tuple[int, ...]:
     return tuple(states)
 
 
-def read_edges(edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw], nodes: Nodes) -> Edges:
+def read_edges(
+    edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw] | EdgeColumns, nodes: Nodes
+) -> Edges:
     """Edges of a graph or of the release's JSON.
 
     Raises:
         HearthError: BAD_GRAPH.
     """
     try:
-        columns = _columns(edges)
-        if 0 < len(nodes.ids) <= LARGEST_MATRIX and len(columns[0]) > FEW_EDGES:
-            tables, others = _by_matrix(columns, nodes)
+        given = edges if isinstance(edges, EdgeColumns) else _columns(edges)
+        if 0 < len(nodes.ids) <= LARGEST_MATRIX and len(given[0]) > FEW_EDGES:
+            tables, others = _by_matrix(given, nodes)
         else:
-            tables, others = _one_by_one(columns, nodes)
+            named = _columns(list(given.rows())) if isinstance(given, EdgeColumns) else given
+            tables, others = _one_by_one(named, nodes)
     except (KeyError, TypeError, ValueError) as error:
         raise bad_graph(f"an edge lacks a field or has a wrong one: {type(error).__name__} {error}") from error
     agent_rows = _part_characters(tables, nodes, others)
@@ -194,14 +197,16 @@ _BACKWARD = (1, 3, 4, 6, 10, 10, 10, 10)
 """Which table holds its inverse."""
 
 
-def _by_matrix(columns: Columns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
+def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
     """The ten tables, all scattered into one array of booleans and packed at once."""
     import numpy as np
 
     n = len(nodes.ids)
     width = (n + 7) // 8
     a, b = _positions(columns[0], nodes), _positions(columns[2], nodes)
-    relation = np.fromiter(map(RELATION_ID.get, columns[1], repeat(_OTHER)), np.int64, len(columns[1]))
+    relation: Any = columns[1]
+    if not isinstance(relation, np.ndarray):
+        relation = np.fromiter(map(RELATION_ID.get, relation, repeat(_OTHER)), np.int64, len(relation))
     known = (a >= 0) & (b >= 0)
     others = [_edge(columns, i) for i in np.flatnonzero(known & (relation == _OTHER)).tolist()]
     if not known.all():
@@ -258,7 +263,7 @@ def _one_by_one(columns: Columns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
     return tables, others
 
 
-def _edge(columns: Columns, i: int) -> Raw:
+def _edge(columns: Columns | EdgeColumns, i: int) -> Raw:
     return columns[0][i], columns[1][i], columns[2][i]
 
 

@@ -7,7 +7,8 @@ from functools import cached_property
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.graph import Edge, EnvironmentGraph, Node, read_node
+from hearth.schemas.arguments import explained
+from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed
 from hearth.simulation.world.bits import mask_of
@@ -57,7 +58,7 @@ class Home:
     def __init__(
         self,
         nodes: Iterable[Mapping[str, Any]] | Iterable[Node],
-        edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw],
+        edges: Sequence[Mapping[str, Any]] | Sequence[Edge] | Sequence[Raw] | EdgeColumns,
         name: str,
         knowledge: Knowledge,
     ) -> None:
@@ -76,6 +77,7 @@ class Home:
         self.direct_room = Memo(self._direct_room)
 
     @classmethod
+    @explained
     def from_release(cls, data: Mapping[str, Any], name: str, knowledge: Knowledge) -> Home:
         """A home straight from the release's JSON, without an `EnvironmentGraph` between.
 
@@ -83,12 +85,14 @@ class Home:
             HearthError: BAD_GRAPH (see `building`).
         """
         try:
-            nodes, edges = list(data["nodes"]), list(data["edges"])
+            nodes, edges = list(data["nodes"]), data["edges"]
+            edges = edges if isinstance(edges, EdgeColumns) else list(edges)
         except (KeyError, TypeError) as error:
             raise building.bad_graph(f"no environment graph: {type(error).__name__} {error}") from error
         return cls(nodes, edges, name, knowledge)
 
     @classmethod
+    @explained
     def from_graph(cls, graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Home:
         """A home from a graph.
 
@@ -107,6 +111,7 @@ class Home:
     def __repr__(self) -> str:
         return f"Home({self.name!r}, {len(self.index)} nodes)"
 
+    @explained
     def node(self, index: int) -> Node:
         """The node as it was given, in the states of the start."""
         given = self.nodes[index]
@@ -144,6 +149,7 @@ class Home:
             "FACING": (self.facing, self.faced),
         }
 
+    @explained
     def able(self, action: str, position: int = 0) -> int:
         """The nodes that an action's argument may be, by the knowledge's requirement for it."""
         try:
@@ -194,13 +200,15 @@ class Home:
         """All nodes that something is INSIDE at the start."""
         return mask_of(i for i, row in enumerate(self.contents) if row)
 
+    @explained
     def instances(self, name: str) -> int:
         """What a class name stands for: the nodes of that class, else those of the first of its other names that the
-        home knows.
+        home knows; of a room that the home lacks, the room that serves as it.
         """
         names = (name, *self.knowledge.same_class(name))
         return next((mask for each in names if (mask := self.by_class.get(each, 0))), 0)
 
+    @explained
     def limit(self, index: int, lying: bool = False) -> int:
         """How many things may be ON a seat before one may sit, or on a bed before one may lie."""
         name = self.classes[index]

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent, replaced
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.change import encode
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import NOTHING
 from hearth.simulation.world.nodes import with_states
 from hearth.simulation.world.state import WorldState
+from hearth.simulation.world.world_change import encode
 
 
 class World(WorldState):
@@ -33,29 +34,35 @@ class World(WorldState):
     _key: tuple[object, ...]
 
     @classmethod
+    @explained
     def start(cls, home: Home) -> World:
         """The home as it is given."""
         return cls(home, home.states, tuple(home.agent_rows), NOTHING)
 
+    @explained
     def with_agent(self, number: int, agent: Agent) -> World:
         """The same world with one agent's edges replaced."""
         agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)
         return World(self.home, self.states, agents, self.moved)
 
+    @explained
     def has_state(self, node_id: int, state: str) -> bool:
         """Whether a node is in a state."""
         return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
 
+    @explained
     def graph(self, among: int = -1) -> EnvironmentGraph:
         """The graph, rebuilt, or the part of it among these nodes: nodes in id order, edges sorted."""
         home = self.home
         nodes = tuple(with_states(home.node(i), i, self.states) for i in indices(among & home.everything))
         return EnvironmentGraph(nodes, tuple(sorted(self.edges(among))))
 
+    @explained
     def edges(self, among: int = -1) -> list[Edge]:
         """Every edge (among these nodes), each once, in no particular order."""
         return list(rows.edges(self, among))
 
+    @explained
     def changes(self, since: World) -> Change:
         """What is different from an earlier world of the same home; cost follows what differs."""
         return encode(since, self)

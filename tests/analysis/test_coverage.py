@@ -13,8 +13,8 @@ from hearth.schemas.failures import Code
 
 PROGRAMS = {
     "tea": "Tea\nA cup.\n\n\n[Walk] <kitchen> (1)\n[Walk] <cup> (1)\n[Grab] <cup> (1)\n",
-    "late": "Television\nOn at last.\n\n\n[Walk] <television> (1)\n[TurnTo] <television> (1)\n"
-    "[Watch] <television> (1)\n[SwitchOn] <television> (1)\n",
+    "late": "Television\nWithout power.\n\n\n[Walk] <television> (1)\n[TurnTo] <television> (1)\n"
+    "[PlugOut] <television> (1)\n[SwitchOn] <television> (1)\n",
     "flying": "Flying\nUp.\n\n\n[Fly] <cup> (1)\n",
 }
 

@@ -13,7 +13,7 @@ WATCHING = (
     "Watch TV\nSit.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n"
     "[Watch] <television> (1)\n"
 )
-LATE = "Watch TV\nSit.\n\n\n[Walk] <television> (1)\n[TurnTo] <television> (1)\n[Watch] <television> (1)\n" \
+LATE = "Watch TV\nSit.\n\n\n[Walk] <television> (1)\n[TurnTo] <television> (1)\n[PlugOut] <television> (1)\n" \
     "[SwitchOn] <television> (1)\n"  # fmt: skip
 
 
@@ -42,7 +42,7 @@ def test_two_steps_at_odds_are_shown(tmp_path):
     result = run("conditions", tmp_path / "late.txt", "--json")
     assert result.exit_code == 1
     assert [step["line"] for step in json.loads(result.stdout)["steps"]] == [7, 8]
-    assert "step 3, line 7: [Watch]" in run("conditions", tmp_path / "late.txt").stdout
+    assert "step 3, line 7: [PlugOut]" in run("conditions", tmp_path / "late.txt").stdout
 
 
 def test_samples_of_one_program_differ(watching):
@@ -91,11 +91,24 @@ def test_one_environment_is_drawn_for_a_program_a_goal_or_nothing(watching, tmp_
     goal = json.loads(run("sample", "--goal", "ON(plate, kitchen_table): 9", "--json").stdout)["goal"]
     assert goal[0]["wanted"] == 9 > goal[0]["met"]
     assert json.loads(run("sample", "--seed", 7, "--json").stdout)["goal"] == []
+    goals = ("--goal", "OPEN(fridge) then PUTIN(milk, fridge)", "--goal", "LOOKAT or WATCH", "--goal", "CLEAN(stove)")
+    found = json.loads(run("sample", *goals, "--json").stdout)["goal"]
+    assert [(row["predicate"], row["wanted"], row["met"]) for row in found] == [
+        ("CLEAN(stove)", 1, 0),
+        ("(OPEN(fridge)) then ([PutIn](milk, fridge))", 1, 0),
+        ("([LookAt]) or ([Watch])", 1, 0),
+    ]
 
 
 @pytest.mark.parametrize(
     ("goal", "code"),
-    [("ON plate", "SYNTAX"), ("ON(plate, kitchen_table): 12", "NO_PLACE"), ("ON(plte, sofa)", "UNKNOWN_OBJECT")],
+    [
+        ("ON plate", "UNKNOWN_ACTION"),
+        ("ON(plate", "SYNTAX"),
+        ("ON(plate, kitchen_table): 12", "NO_PLACE"),
+        ("ON(plte, sofa)", "UNKNOWN_OBJECT"),
+        ("@none.txt", "MISSING_FILE"),
+    ],
 )
 def test_goals_that_cannot_be_are_refused(goal, code):
     done = run("sample", "--goal", goal, "--json")

@@ -35,6 +35,25 @@ def test_run_prints_the_binding_and_what_each_step_changed(tmp_path):
     assert "Done: 5 ticks." in result.output
 
 
+@pytest.mark.parametrize(
+    ("goal", "status", "words"),
+    [
+        ("SITTING(agent) and (LOOKAT or WATCH)", 0, "Goal: reached."),
+        ("ON(television) then SITTING(agent)", 0, "Goal: reached."),
+        ("SITTING(agent) then ON(television)", 1, "Goal: not reached; unmet: (SITTING(agent)) then (ON(television))."),
+        ("WATCH(televison)", 1, "did you mean `television`?"),
+    ],
+)
+def test_run_asks_whether_a_goal_is_reached(tmp_path, goal, status, words):
+    (tmp_path / "tv.txt").write_text(WATCH)
+    (tmp_path / "goal.txt").write_text(goal)
+    for given in (goal, f"@{tmp_path / 'goal.txt'}"):
+        result = call("run", tmp_path / "tv.txt", "--goal", given)
+        assert (result.exit_code, words in result.output) == (status, True), result.output
+        found = json.loads(call("run", tmp_path / "tv.txt", "--goal", given, "--json").stdout)
+        assert "errors" in found or found["goal"]["reached"] == (status == 0)
+
+
 def test_explain_names_the_edges_that_checks_held_by(tmp_path):
     file = tmp_path / "tv.txt"
     file.write_text(WATCH)

@@ -216,7 +216,7 @@ def test_damaged_tables_raise_our_error_only(copy, damage, table):
 
 
 @pytest.mark.parametrize("content", ["[]", '{"stage": "publish"}', '{"stage": "publish", "format": "x", "files": 1}',
-                                     '{"stage": "publish", "format": 1, "files": []}'])  # fmt: skip
+                                     '{"stage": "publish", "format": 2, "files": []}'])  # fmt: skip
 def test_manifests_that_are_none(copy, content):
     (copy / "manifest.json").write_text(content)
     with pytest.raises(HearthError):

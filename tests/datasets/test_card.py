@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import shutil
+from dataclasses import replace
+
 import orjson
 import pytest
 import yaml
 
 import hearth
-from hearth.schemas.tables import TABLES
+from hearth.pipelines.engine.runner import run_stage
+from hearth.pipelines.engine.stages import stage
+from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of, nested
 from hearth.storage.files import file_digest
+from hearth.storage.partitions import read_rows
 
 
 @pytest.fixture(scope="module")
@@ -17,25 +23,60 @@ def folder(made):
 
 
 @pytest.fixture(scope="module")
-def programs(folder):
-    return list(hearth.load(folder))
+def parted(made, tmp_path_factory):
+    """The same, with a seed by which each part of the split has programs."""
+    out = shutil.copytree(made.out, tmp_path_factory.mktemp("parted") / "out")
+    run_stage(stage("publish"), replace(made.settings, out=str(out), seed=3))
+    return out / "publish"
+
+
+def by_split(folder):
+    """Split -> the ids of its programs; None for those that are in none."""
+    found = {}
+    for name, split in hearth.load(folder).rows("SELECT program_id, split FROM programs")[1]:
+        found.setdefault(split, set()).add(name)
+    return found
+
+
+def configs(folder):
+    header = yaml.safe_load((folder / "README.md").read_text().split("---")[1])
+    return {config["config_name"]: config for config in header["configs"]}
+
+
+def test_files_of_a_split_have_the_programs_of_that_split(parted):
+    found, expected = configs(parted), by_split(parted)
+    assert set(expected) >= {"train", "validation", "test"}
+    assert [name for name, config in found.items() if config.get("default")] == ["programs"]
+    files = {each["split"]: each["path"] for each in found["programs"]["data_files"]}
+    assert set(files) == {"train", "validation", "test"}
+    for split, pattern in files.items():
+        rows = [row for path in parted.glob(pattern) for row in read_rows(path, ["program_id", "split"])]
+        assert {row["program_id"] for row in rows} == expected[split] and {row["split"] for row in rows} == {split}
+    assert ("programs_left_out" in found) == (None in expected)
+
+
+def test_no_table_is_called_train(parted):
+    found = configs(parted)
+    assert {name for name in found if name != "programs_left_out"} == {
+        table for table in TABLES if hearth.load(parted).rows(f"SELECT count(*) FROM {table}")[1] != [(0,)]
+    }
+    assert {each["split"] for name in found if name != "programs" for each in found[name]["data_files"]} == {"rows"}
 
 
 def test_the_card_names_every_table_and_column(folder):
     text = (folder / "README.md").read_text()
-    header = yaml.safe_load(text.split("---")[1])
-    assert {config["config_name"] for config in header["configs"]} == set(TABLES)
     for table, schema in TABLES.items():
         section = text.split(f"\n### {table} (")[1].split("\n##")[0]
-        assert all(f"| `{name}` |" in section for name in schema.names)
+        assert comment_of(schema) in section
+        assert all(f"| `{path}` |" in section for column in schema for path, _ in nested(column))
     assert "(random split:" in text
 
 
 def test_the_card_s_funnel_is_the_ledger_s(folder):
     rows = hearth.load(folder).rows("SELECT stage, records_in, records_through, records_rejected FROM ledger")[1]
     text = (folder / "README.md").read_text()
-    for stage, came, went, refused in rows:
-        assert f"| {stage} | {came:,} | {went:,} | {refused:,} |" in text
+    for name, came, went, refused in rows:
+        assert f"| {name} | {came:,} | {went:,} | {refused:,} |" in text
 
 
 def test_croissant_has_the_hash_of_every_part(folder):
@@ -48,21 +89,55 @@ def test_croissant_has_the_hash_of_every_part(folder):
     assert [each["name"] for each in described["recordSet"]] == list(TABLES)
 
 
-@pytest.mark.slow
-def test_mlcroissant_validates_and_loads_it(folder, programs):
-    croissant = pytest.importorskip(
-        "mlcroissant", reason="mlcroissant is not installed: pip install mlcroissant[parquet]"
-    )
-    dataset = croissant.Dataset(folder / "croissant.json")
-    assert not dataset.metadata.ctx.issues.errors
-    found = {row["programs/program_id"].decode() for row in dataset.records("programs")}
-    assert found == set(programs)
-    assert sum(1 for _ in dataset.records("ledger")) == 6
+def described(fields):
+    """Id -> field, of fields and those within them."""
+    return {each["@id"]: each for field in fields for each in (field, *described(field.get("subField", ())).values())}
 
 
-@pytest.mark.slow
-def test_datasets_loads_the_folder(folder, programs, tmp_path):
-    datasets = pytest.importorskip("datasets", reason="datasets is not installed: pip install datasets")
-    loaded = datasets.load_dataset(str(folder), "programs", cache_dir=str(tmp_path))
-    assert set(loaded["train"]["program_id"]) == set(programs)
+def test_croissant_describes_every_column_within_columns_keys_and_references(folder):
+    sets = {each["@id"]: each for each in orjson.loads((folder / "croissant.json").read_bytes())["recordSet"]}
+    for table, schema in TABLES.items():
+        fields = described(sets[table]["field"])
+        every = {
+            f"{table}/{path.replace('[]', '').replace('.', '/')}": at
+            for column in schema
+            for path, at in nested(column)
+        }
+        assert {name: field["description"] for name, field in fields.items()} == {
+            name: comment_of(at) for name, at in every.items()
+        }
+        assert all(("dataType" in field) != ("subField" in field) for field in fields.values())
+        keys = {each["@id"] for each in sets[table]["key"]}
+        assert keys <= set(fields) and keys == {f"{table}/{column}" for column in KEYS[table] if column != "keep"}
+        found = {
+            (table, name.split("/")[1], field["references"]["fileSet"]["@id"], field["references"]["extract"]["column"])
+            for name, field in fields.items()
+            if "references" in field
+        }
+        assert found == {(of, column, f"{other}-files", key) for of, column, other, key in REFERENCES if of == table}
+
+
+@pytest.mark.tools
+def test_mlcroissant_validates_it_and_reads_programs_with_their_steps(parted):
+    croissant = pytest.importorskip("mlcroissant", reason="mlcroissant is not installed")
+    dataset, ds = croissant.Dataset(parted / "croissant.json"), hearth.load(parted)
+    assert not dataset.metadata.ctx.issues.errors and not dataset.metadata.ctx.issues.warnings
+    found = {row["programs/program_id"].decode(): row["programs/steps"] for row in dataset.records("programs")}
+    assert set(found) == set(ds)
+    for name, steps in found.items():
+        actions = [step["programs/steps/action"].decode() for step in steps]
+        assert actions == [step["action"] for step in ds[name].row["steps"]]
+    for table in [name for name in TABLES if name != "programs"]:  # it reads nothing a second time
+        assert [(sum(1 for _ in dataset.records(table)),)] == ds.rows(f"SELECT count(*) FROM {table}")[1], table
+
+
+@pytest.mark.tools
+def test_load_dataset_gives_the_splits_as_splits(parted, tmp_path):
+    library = pytest.importorskip("datasets.load", reason="the library `datasets` is not installed")
+    loaded = library.load_dataset(str(parted), cache_dir=str(tmp_path))
+    expected = {split: ids for split, ids in by_split(parted).items() if split}
+    assert {split: set(rows["program_id"]) for split, rows in loaded.items()} == expected
     assert loaded["train"][0]["steps"][0]["action"]
+    for name in configs(parted).keys() - {"programs"}:
+        (split,) = library.load_dataset(str(parted), name, cache_dir=str(tmp_path))
+        assert split == "rows"

@@ -24,10 +24,11 @@ from hearth.grounding.environments.sampling import sample
 from hearth.kb.loading.load import default
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.stage import Job
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
-from hearth.schemas.rows import DifferenceRow
+from hearth.schemas.row_types import DifferenceRow
 from hearth.schemas.syntax import parse_program
 from hearth.schemas.tables import struct
 from hearth.simulation.world.home import Home
@@ -123,7 +124,7 @@ def case_of(homes, text, seed=0):
             "description": "",
             "steps": step_rows(environment.program),
             "environment": environment_of(environment, homes.edges("cabin")),
-            **run_row(execution, "default"),
+            **run_row(execution),
         }
     )
 
@@ -165,9 +166,9 @@ def test_what_does_not_replay_is_reported(homes, damage):
 def test_publishing_refuses_what_does_not_replay(homes, made):
     from hearth.pipelines import publish
 
-    case = copy.deepcopy(made.rows("sample")[0])
-    context = publish.Context(Homes(made.settings), 0)
-    assert [table for table, _ in publish.process(case, context)][:1] == ["programs"]
+    case = {**copy.deepcopy(made.rows("sample")[0]), "split": "test"}
+    context = publish.Context(Job(publish.STAGE, made.settings))
+    assert [table for table, _ in publish.process(case, context)][:1] == ["programs.test"]
     break_count(case)
     refused = publish.process(case, context)
     assert refused.code == "REPLAY_DIFFERS"

@@ -44,11 +44,12 @@ def test_the_program_as_text(ds):
     assert TELEVISION not in ids
 
 
-def test_graphs_are_the_engines_at_every_tick(made, ds):
-    homes = Homes(made.settings)
+def test_graphs_are_the_engines_at_every_tick(made):
+    homes, ds = Homes(made.settings), hearth.load(made.out, failures=True)
     for execution_id, case in cases(made).items():
         execution = rerun(case, homes)
         run = next(run for run in ds[case["program_id"]].runs if run.row["execution_id"] == execution_id)
+        assert run.executable == case["executable"]
         for tick, world in enumerate(execution.worlds):
             expected = world.graph()
             graph = run.graph(tick)
@@ -184,7 +185,7 @@ def test_a_dataset_can_only_be_read(ds, query):
 )
 def test_no_query_replaces_a_table(made, tmp_path, query):
     folder = shutil.copytree(made.out / "publish", tmp_path / "copy")
-    part = folder / "programs/part-00000.parquet"
+    part = next((folder / "programs").glob("*.parquet"))
     before = part.read_bytes()
     with pytest.raises(HearthError):
         Dataset.open(folder).rows(query.format(part))
@@ -238,7 +239,7 @@ def test_no_dataset_and_a_newer_one(made, tmp_path):
     with pytest.raises(HearthError, match="no dataset here"):
         hearth.load(tmp_path)
     folder = shutil.copytree(made.out / "publish", tmp_path / "newer")
-    text = (folder / "manifest.json").read_text().replace('"format": 1', '"format": 99')
+    text = (folder / "manifest.json").read_text().replace('"format": 2', '"format": 99')
     (folder / "manifest.json").write_text(text)
     with pytest.raises(HearthError, match="format 99"):
         hearth.load(folder)
@@ -251,6 +252,14 @@ def test_the_manifest_has_the_digest_of_every_file(made):
     assert set(files) == there - {"manifest.json", "timing.json", "catalog.duckdb"}
     for name, entry in files.items():
         assert file_digest(folder / name) == entry["sha256"]
+
+
+def test_a_place_is_a_file_and_the_line_where_the_record_begins(ds, inputs):
+    for name, place, title in ds.rows("SELECT program_id, place, title FROM programs WHERE origin <> 'augmented'")[1]:
+        file, _, line = place.rpartition(":")
+        (path,) = (path for path in inputs.rglob("*.*") if path.as_posix().endswith(file))
+        text = path.read_text().splitlines()[int(line) - 1]
+        assert title in text and (name.partition(":")[2] in text) == name.startswith("crowd:"), place
 
 
 def test_nothing_refers_to_what_is_not_there(ds):
@@ -267,7 +276,8 @@ def test_nothing_refers_to_what_is_not_there(ds):
         assert ds.rows(query)[1] == [(0,)], (table, column)
 
 
-def test_relations_counted_from_differences(ds):
+def test_relations_counted_from_differences(made):
+    ds = hearth.load(made.out, failures=True)
     found = dict(ds.rows("SELECT relation, edges FROM start_relations WHERE edges > 0")[1])
     runs = [run for program_id in ds for run in ds[program_id].runs]
     assert found == Counter(edge.relation for run in runs for edge in run.start.edges)

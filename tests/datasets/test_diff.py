@@ -8,9 +8,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from hearth.datasets.diff import KEYS, compare
+from hearth.datasets.diff import compare
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.tables import TABLES
+from hearth.schemas.tables import KEYS, TABLES
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import hearth
 from hearth.datasets.export.batches import Wanted
 from hearth.datasets.export.formats import export
 from hearth.datasets.export.planning import STEP, agreement, chosen, dispensable, executed, helpful, solve
-from hearth.datasets.export.planning_domain import OMITTED, TO_DOOR, planning_domain
+from hearth.datasets.export.planning_domain import TO_DOOR, planning_domain
 from hearth.datasets.export.problems import Task, object_names, problem, tasks
 from hearth.kb.loading.load import default
 from hearth.schemas.graph import Edge
@@ -47,7 +47,8 @@ def test_every_execution_that_changes_something_gets_a_problem(ds, tmp_path):
     assert number == len(list((tmp_path / "out/problems").glob("*.pddl"))) > 0
     text = (tmp_path / "out/domain.pddl").read_text()
     executed = {action.name for action in default().actions.values() if action.executed}
-    assert {line.split()[1] for line in text.splitlines() if "(:action" in line} == (executed - OMITTED) | {TO_DOOR}
+    planned = executed - default().group("unplanned") | {TO_DOOR}
+    assert {line.split()[1] for line in text.splitlines() if "(:action" in line} == planned
 
 
 def test_a_goal_is_what_the_execution_changed(ds, task):
@@ -90,7 +91,11 @@ def test_plans_are_judged_by_the_engine(task):
     assert useless.ran and not useless.reached
     impossible = executed(task, "SOLVED", (Step("Open", (ObjectRef("nothing", 1, task.objects[0]),)),))
     assert not impossible.ran and impossible.failure
-    assert "Walk" in helpful(task) and not set(helpful(task)) & {*dispensable(default()), *OMITTED, "Watch"}
+    assert "Walk" in helpful(task) and not set(helpful(task)) & {
+        *dispensable(default()),
+        *default().group("unplanned"),
+        "Watch",
+    }
 
 
 @pytest.mark.tools

@@ -6,8 +6,20 @@ import orjson
 import pytest
 
 import hearth
-from hearth.datasets.format.splits import Similarity, SplitProgram, groups, leakage, parts, roots, summary
-from hearth.pipelines.engine.final_tables import _programs_for_splits
+from hearth.datasets.format.splits import (
+    PARTS,
+    RULES,
+    Similarity,
+    SplitProgram,
+    by_activity,
+    groups,
+    leakage,
+    parts,
+    roots,
+    summary,
+)
+from hearth.pipelines.engine.split_assignment import assignment
+from hearth.storage.partitions import read_rows
 
 LONG = "take the milk out of the fridge and put it on the table"
 
@@ -61,7 +73,7 @@ def test_leakage_is_counted_by_kind():
 def many():
     programs, runs = [], []
     for number in range(60):
-        part = "test" if number % 3 == 0 else "train"
+        part = PARTS[2 - number % 3] if number % 10 else "train"
         name = f"p{number:02}"
         steps = f"s{number // 2} t{number // 2} u"
         programs += [program(name, steps, part=part), program(f"{name}+1", f"w{number}", part=part, root=name)]
@@ -72,8 +84,8 @@ def many():
 def test_no_split_leaks_where_random_rows_would():
     programs, runs = many()
     rows = list(parts(programs, runs, 3, Similarity(programs)))
-    assert len(rows) == 3 * len(runs)
-    found = summary(programs, rows, 3, Similarity(programs))["splits"]
+    assert len(rows) == len(RULES) * len(runs)
+    found = summary(programs, runs, rows, 3, Similarity(programs))["splits"]
     for split in found.values():
         assert split["leakage"]["programs"] > 0
         assert {split["leakage"][kind] for kind in ("siblings", "steps", "texts")} == {0}
@@ -88,9 +100,41 @@ def test_homes_are_where_the_rules_say():
         found.setdefault((row["split"], row["part"]), set()).add(home[row["execution_id"]])
     assert found["homes_1_4", "train"] == found["homes_1_4", "test_seen"] == {1, 2, 3, 4}
     assert (found["homes_1_4", "validation"], found["homes_1_4", "test_unseen"]) == ({5}, {5, 6})
+    assert found["activities", "train"] == found["activities", "test"] == {*range(1, 8)}
     assert (found["homes_1_5", "train"], found["homes_1_5", "test"]) == ({1, 2, 3, 4, 5}, {6, 7})
-    (out,) = found["activities", "test_held_out_home"]
-    assert found["activities", "train"] == found["activities", "test_seen_home"] == {*range(1, 8)} - {out}
+    (out,) = found["held_out_home", "test_held_out_home"]
+    for part in ("train", "validation", "test_seen_home"):
+        assert found["held_out_home", part] == {*range(1, 8)} - {out}
+
+
+def test_homes_are_named():
+    programs, runs = many()
+    found = summary(programs, runs, [], 3, Similarity(programs))
+    assert found["homes"] == [f"h{number}" for number in range(1, 8)] and found["held_out"] in found["homes"]
+    assert "homes 1-5 (h1, h2, h3, h4, h5), tested in 6-7 (h6, h7)" in found["splits"]["homes_1_5"]["rule"]
+    assert found["held_out"] in found["splits"]["held_out_home"]["rule"]
+
+
+def test_a_program_has_one_part_wherever_it_runs_unless_a_split_is_by_execution():
+    programs, runs = many()
+    found = {}
+    for row in parts(programs, runs, 3, Similarity(programs)):
+        found.setdefault(row["split"], {}).setdefault(row["program_id"], set()).add(row["part"])
+    several = {split for split, of in found.items() if any(len(each - {None}) > 1 for each in of.values())}
+    assert several == {"held_out_home"} == {split for split, rule in RULES.items() if rule.startswith("by execution")}
+
+
+def test_of_near_duplicates_those_in_the_latest_part_stay():
+    programs = [
+        program("p1", "a b c d e f g h i j", part="train"),
+        program("p1+1", "z", part="train", root="p1"),
+        program("p2", "a b c d e f g h i k", part="validation"),
+        program("p3", "a b c d e f g h i l", part="test"),
+        program("p4", "q r s", part="train"),
+        program("p5", "t u v", part="validation"),
+    ]
+    found = by_activity(programs, Similarity(programs))
+    assert found == {"p1": None, "p1+1": None, "p2": None, "p3": "test", "p4": "train", "p5": "validation"}
 
 
 def test_the_deal_does_not_depend_on_order():
@@ -101,11 +145,14 @@ def test_the_deal_does_not_depend_on_order():
 
 
 def test_steps_read_by_columns_are_those_of_the_rows(made):
-    folder = made.out / "publish"
-    found = {each.program_id: each.steps for each in _programs_for_splits(folder)}
-    for row in hearth.load(made.out).sql("SELECT program_id, steps FROM programs").to_arrow_table().to_pylist():
+    files = [path for stage in ("augment", "sample") for path in (made.out / stage).glob("part-*.parquet")]
+    known = assignment(files, made.settings.seed)
+    found = {each.program_id: each.steps for each in known.programs}
+    assert len(found) == len(known.programs)
+    for row in hearth.load(made.out).sql("SELECT program_id, split, steps FROM programs").to_arrow_table().to_pylist():
         names = [" ".join((step["action"], *(ref["name"] for ref in step["objects"]))) for step in row["steps"]]
         assert [step.strip() for step in found.pop(row["program_id"])] == names
+        assert row["split"] == known.part_of[row["program_id"]]
     assert not found
 
 
@@ -116,11 +163,21 @@ def ds(made):
 
 def test_every_run_has_its_part_in_every_split(ds):
     _, found = ds.rows("SELECT count(*), count(DISTINCT execution_id), count(DISTINCT split) FROM splits")
-    runs = ds.rows("SELECT count(*) FROM executions")[1][0][0]
-    assert found == [(3 * runs, runs, 3)]
+    runs = ds.rows("SELECT count(*) FROM executions WHERE executable")[1][0][0]
+    assert found == [(len(RULES) * runs, runs, len(RULES))]
+
+
+def test_programs_split_is_the_part_by_activity_and_that_of_its_file(ds):
+    query = """SELECT count(*) FROM splits s JOIN programs p USING (program_id)
+        WHERE s.split = 'activities' AND s.part IS DISTINCT FROM p.split"""
+    assert ds.rows(query)[1] == [(0,)]
+    for path in (ds.folder / "programs").glob("*.parquet"):
+        share = path.name.split(".")[1]
+        found = {row["split"] for row in read_rows(path, ["split"])}
+        assert found <= {None if share == "left_out" else share}
 
 
 def test_leakage_is_published(ds):
     program = orjson.loads((ds.folder / "splits.json").read_bytes())
-    assert set(program["splits"]) == {"activities", "homes_1_4", "homes_1_5"}
+    assert set(program["splits"]) == set(RULES)
     assert all(split["leakage"]["siblings"] == 0 for split in program["splits"].values())

@@ -1,5 +1,7 @@
 """Counters are bound so that all steps can run."""
 
+import pytest
+
 from hearth.grounding.binding import Binding, bind
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
@@ -65,3 +67,22 @@ def test_without_a_binding_the_step_and_its_reason_are_told(knowledge):
 def test_a_room_that_the_home_lacks_has_a_stand_in(knowledge):
     found = bind(program("[Walk] <kids_bedroom> (1)"), world(knowledge))
     assert isinstance(found, Binding) and found.nodes == {("kids_bedroom", 1): 2}
+
+
+ROOMS = (Node(1, "dining_room", "Rooms"), Node(2, "bedroom", "Rooms"), Node(3, "bedroom", "Rooms"))
+
+
+@pytest.mark.parametrize(
+    ("rooms", "nodes"),
+    [
+        (["kitchen (1)", "dining_room (1)"], [1, 1]),
+        (["dining_room (1)", "kitchen (1)"], [1, 1]),
+        (["bedroom (1)", "bedroom (2)", "kids_bedroom (1)"], [2, 3, 3]),
+        (["kitchen (1)", "kitchen (2)"], None),
+    ],
+)
+def test_a_room_may_serve_as_another_too(knowledge, rooms, nodes):
+    world = World.start(Home((*ROOMS, Node(9, "character", "Characters")), [Edge(9, "INSIDE", 2)], "flat", knowledge))
+    lines = "".join(f"[Walk] <{room.replace(' ', '> ')}\n" for room in rooms)
+    found = bind(parse_program(f"Rooms\n\n\n\n{lines}")[0], world)
+    assert (list(found.nodes.values()) if isinstance(found, Binding) else None) == nodes

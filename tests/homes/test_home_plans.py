@@ -68,6 +68,20 @@ def test_each_mistake_has_its_code(text, code):
     assert code in {fault.code for fault in faults_of(text)}
 
 
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        (plan([], size="[900, 3]"), "over 100 m"),
+        (plan([]).replace("- name", "- {name: far, class: bedroom, at: [0, 700], size: [3, 3]}\n- name"), "100 m"),
+        (plan([f"bench: {{wall: west, on: [{', '.join(['cup'] * 1_000)}]}}"]), "over 1,000 entries"),
+        (plan([]).replace("doors", "- {name: hall, at: [9, 9], size: [3, 3]}\n" * 60 + "doors"), "61 rooms"),
+    ],
+)
+def test_a_plan_of_absurd_size_is_refused_before_it_is_arranged(text, named):
+    (fault,) = faults_of(text)
+    assert fault.code is Code.FILE_TOO_LARGE and named in fault.message
+
+
 def test_furniture_may_not_wall_in_other_furniture():
     walled = ["fridge: {corner: southwest}", "table: {spot: [1.0, 1.45], width: 2.0, depth: 1.0}",
               "bookshelf: {spot: [1.2, 0.5], width: 0.8, facing: west}"]  # fmt: skip

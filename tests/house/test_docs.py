@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from hearth import cli
+from hearth.datasets.format.catalog import comments
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.schemas.tables import TABLES
+from hearth.schemas.tables import TABLES, nested
 
 
 @pytest.fixture(scope="module")
@@ -31,8 +32,24 @@ def test_actions_objects_tables_and_failures_are_there(pages):
     known = default()
     assert all(f"`{name}`" in pages.actions() for name in known.actions)
     assert all(f"`{name}`" in pages.objects() for name in known.objects)
-    assert all(f"## {name}\n" in pages.tables() for name in TABLES)
+    assert all(f"## {name}\n" in pages.tables() for name in (*TABLES, "steps", "ticks", "start_relations"))
     assert all(f"`{code}`" in pages.failures() for code in Code)
+
+
+@pytest.mark.parametrize("name", ["tables.md", "pictures/tables.svg"])
+def test_the_page_of_the_tables_is_current(pages, name):
+    kept = Path(__file__).resolve().parents[2] / "docs" / name
+    assert kept.read_text("utf-8") == pages.WRITTEN[name](), "write it with: python docs/hooks/pages.py"
+
+
+def test_the_page_of_the_tables_has_all_that_has_a_comment(pages):
+    text = pages.tables()
+    for table, schema in TABLES.items():
+        section = text.split(f"\n## {table}\n")[1].split("\n## ")[0]
+        assert all(f"| `{path}` |" in section for column in schema for path, _ in nested(column))
+    commented = [words.split()[3:] for words in comments() if words.startswith("COMMENT ON MACRO")]
+    assert commented and all(f"`{words[words[0] == 'TABLE']}(" in text for words in commented)
+    assert ">repairs</text>" in pages.diagram() and pages.diagram().count("<path") > 10
 
 
 def test_every_module_has_a_page_and_a_line(pages):

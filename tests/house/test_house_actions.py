@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TABLES = ("simulation/actions/", "simulation/motion/moves.py", "rendering/people/gestures.py")
 """The table of actions, that of the moves by metres, and the gesture of each action."""
 
-MANY = 3
+MANY = 2
 
 
 def listed(source: str, names: set[str]) -> Iterator[tuple[int, list[str]]]:
@@ -50,7 +50,7 @@ def test_no_code_lists_actions(knowledge):
 @pytest.mark.parametrize(
     "source",
     [
-        '{"Walk", "Run", "Find"}',
+        '{"Walk", "Run"}',
         'frozenset({"Walk", "Run", "Find"})',
         '("Walk", "Run", *more, "Find")',
         '{"Walk": 1, "Run": 2, **more, "Find": 3}',
@@ -61,6 +61,6 @@ def test_a_list_of_actions_is_seen(source, knowledge):
     assert list(listed(source, set(knowledge.actions)))
 
 
-@pytest.mark.parametrize("source", ['("Walk", "Run")', '("walk", "run", "find")', 'f("Walk", "Run", "Find")'])
+@pytest.mark.parametrize("source", ['("Walk",)', '("walk", "run", "find")', 'f("Walk", "Run", "Find")'])
 def test_other_lists_are_let_pass(source, knowledge):
     assert not list(listed(source, set(knowledge.actions)))

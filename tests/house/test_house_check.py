@@ -41,8 +41,9 @@ def test_every_file_is_reported_though_others_can_not_be_read(tmp_path):
     result = check(picture, tmp_path, empty, tmp_path / "gone.txt", good, "--json")
     report = json.loads(result.stdout)
     codes = [[fault["code"] for fault in each["faults"]] for each in report["files"]]
-    assert codes == [["NOT_TEXT"], ["UNSUPPORTED_FILE"], ["EMPTY"], ["MISSING_FILE"], []]
-    assert (result.exit_code, report["faults"], report["files"][-1]["steps"]) == (1, 4, 1)
+    assert codes == [["UNSUPPORTED_FILE"], ["UNSUPPORTED_FILE", "EMPTY"], ["EMPTY"], ["MISSING_FILE"], []]
+    assert [each["steps"] for each in report["files"]] == [0, 1, 0, 0, 1]
+    assert (result.exit_code, report["faults"]) == (1, 5)
 
 
 def test_clean_programs_are_status_0():
@@ -71,9 +72,10 @@ def test_a_user_may_bring_knowledge(tmp_path):
     assert "none" in result.output and "Traceback" not in result.output
 
 
-def test_affordances_are_checked_when_asked_for():
-    program = "Eat\n\n\n[Eat] <television> (1)\n"
-    assert check("-", input=program).exit_code == 0
-    result = check("-", "--affordances", input=program)
-    assert result.exit_code == 1
-    assert "error[NOT_AFFORDED]" in result.output
+def test_affordances_are_checked_unless_refused():
+    program = "Shower\n\n\n[Grab] <shower> (1)\n"
+    for given in ((), ("--affordances",)):
+        result = check("-", *given, input=program)
+        assert result.exit_code == 1 and "error[NOT_AFFORDED]: [Grab] can't be done to `shower`" in result.stdout
+        assert ":4:9" in result.stdout
+    assert check("-", "--no-affordances", input=program).exit_code == 0

@@ -1,15 +1,19 @@
 """The command line as a whole: help with examples, JSON everywhere, errors without tracebacks, exit statuses."""
 
+import importlib
 import json
 import subprocess
 import sys
+from inspect import signature
 from pathlib import Path
+from typing import Annotated, get_origin
 
 import pytest
 import typer
 from typer.testing import CliRunner
 
 from hearth import __version__, cli
+from hearth.commands import options
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -40,6 +44,27 @@ def test_help_shows_an_example_and_json(words):
     assert f"python cli.py {' '.join(words)}" in result.output.partition("Example")[2], "no example of this command"
     assert "--json" in result.output or words in DOCUMENTS
     assert "\b" not in result.output
+
+
+def test_every_parameter_has_its_entry_and_every_entry_its_parameter():
+    """Entries of `commands/options.yaml` that nothing asks for are left over; parameters without one have no help."""
+    functions = {}
+    for name, entry in cli.COMMANDS_BY_NAME.items():
+        module, attribute = entry.place.split(":")
+        cli.load(name)
+        found = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
+        each = [one.callback for one in found.registered_commands] if isinstance(found, typer.Typer) else [found]
+        functions.update({(module, function.__name__): function for function in each})
+    used = set()
+    for (module, function), command in functions.items():
+        for parameter in signature(command).parameters.values():
+            if parameter.annotation is not typer.Context and parameter.kind is not parameter.VAR_KEYWORD:
+                places = (module, f"{function}.{parameter.name}"), (module, parameter.name), ("shared", parameter.name)
+                found = [(of, key) for of, key in places if key in options._table().get(of, {})]
+                assert found, f"{module}.{function}: `{parameter.name}` has no entry in commands/options.yaml"
+                assert get_origin(parameter.annotation) is Annotated
+                used.add(found[0])
+    assert used == {(of, key) for of, entries in options._table().items() for key in entries}
 
 
 def test_help_has_a_line_for_every_command():

@@ -195,7 +195,8 @@ def test_limits_rooms_and_defaults(knowledge):
     assert knowledge.has("sofa", "SITTABLE") and knowledge.has("bed", "LIEABLE")
     assert not knowledge.has("table", "SITTABLE")
     assert len(knowledge.rooms) == 8 and knowledge.is_room("Home Office") and not knowledge.is_room("bed")
-    assert knowledge.room_standins["kitchen"] == "dining_room" and knowledge.room_standins["dining_room"] == "kitchen"
+    assert knowledge.stand_ins("kitchen") == ("dining_room",) and knowledge.stand_ins("dining_room") == ("kitchen",)
+    assert knowledge.stand_ins("entrance_hall") == ("living_room", "home_office")
     assert knowledge.default_states("fridge") == ("CLEAN", "CLOSED", "OFF", "PLUGGED_IN")
     assert knowledge.default_states("floor_lamp") == ("CLEAN", "ON")
     assert knowledge.default_states("door") == ("CLEAN", "OPEN")

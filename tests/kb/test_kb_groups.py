@@ -51,6 +51,16 @@ def test_what_brings_a_state_about(knowledge):
     assert knowledge.state_of("Close") == "CLOSED" and knowledge.state_of("Sit") == ""
 
 
+def test_where_a_thing_is_put(knowledge):
+    found = {name: knowledge.relation_of(name) for name in knowledge.actions if knowledge.relation_of(name)}
+    assert found == {"PutBack": "ON", "PutIn": "INSIDE"}
+
+
+def test_what_is_needed_in_hand_without_being_named(knowledge):
+    found = {name: knowledge.tool_of(name) for name in knowledge.actions if knowledge.tool_of(name) is not None}
+    assert found == {"Cut": "knife", "Wipe": ""}
+
+
 def test_an_overlay_without_groups_keeps_ours(tmp_path, knowledge):
     (tmp_path / "actions.yaml").write_text(OPEN_ANEW)
     laid = load(overlay=tmp_path)

@@ -117,3 +117,15 @@ def test_what_is_not_the_release_is_bad_input(knowledge, tmp_path):
     (tmp_path / "properties_data.json").write_text("[1]")
     with pytest.raises(HearthError, match="not the release's file"):
         compare(knowledge, tmp_path)
+
+
+def test_a_room_that_stands_in_for_another_is_no_place(knowledge):
+    served = [("Walk", ["dining_room"]), ("Open", ["dishwasher"]), ("Touch", ["washing_machine"]), ("Grab", ["cup"])]
+    found = proposed([served] * 3, knowledge)
+    assert [key[1] for key in found if key[0] == "found"] == ["cup"]
+    named = [("Walk", ["kitchen"]), ("Grab", ["cup"])]
+    found = proposed([served, named] * 3, knowledge)
+    assert {key[1:] for key in found if key[0] == "found"} == {
+        ("cup", "found_in", "dining_room"), ("cup", "found_in", "kitchen"),
+        ("washing_machine", "found_in", "dining_room"),
+    }  # fmt: skip

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from hearth.kb.language.phrases import parses, say
-from hearth.kb.tools import views
+from hearth.kb.tools import graph_and_tables
 from hearth.kb.tools.action_table import action_table
 from hearth.kb.tools.export import export
 from hearth.kb.tools.find import Query, find
@@ -93,8 +93,8 @@ def test_a_chain_joins_and_an_unknown_name_is_named(knowledge):
 
 
 def test_the_graph_holds_what_the_tables_hold(knowledge):
-    graph = views.graph(knowledge)
-    tables = views.tables(knowledge)
+    graph = graph_and_tables.graph(knowledge)
+    tables = graph_and_tables.tables(knowledge)
     relations = [data["relation"] for _, _, data in graph.edges(data=True)]
     assert sum(relation in ("ON", "IN", "NEARBY") for relation in relations) == len(tables["placements"])
     assert sum(relation.startswith("takes_") for relation in relations) == len(tables["affordances"])
@@ -104,7 +104,7 @@ def test_the_graph_holds_what_the_tables_hold(knowledge):
 
 
 def test_the_database_answers(knowledge):
-    with views.connect(knowledge) as database:
+    with graph_and_tables.connect(knowledge) as database:
         sql = "SELECT count(*) FROM actions WHERE executed"
         assert database.execute(sql).fetchone() == (sum(action.executed for action in knowledge.actions.values()),)
         sql = """
@@ -113,7 +113,7 @@ def test_the_database_answers(knowledge):
         """
         assert [row[0] for row in database.execute(sql).fetchall()] == ["juice", "milk"]
         names = {row[0] for row in database.execute("SELECT table_name FROM duckdb_tables()").fetchall()}
-    assert names == set(views.tables(knowledge))
+    assert names == set(graph_and_tables.tables(knowledge))
 
 
 def test_steps_are_phrases_that_parse(knowledge):

@@ -57,6 +57,8 @@ class Plain:
         agents = sorted(self.characters())
         if isinstance(term, tuple) and term[0] == "character" and 0 < term[1] <= len(agents):
             return {agents[term[1] - 1]}
+        if isinstance(term, tuple) and term not in binding and self.knowledge.is_room(term[0]):
+            return {node for node in self.meant(term[0], {}) if self.now.is_room(node)}
         if isinstance(term, int | tuple) or term in binding:
             return {term if isinstance(term, int) else binding.get(term)} & {*self.now.nodes()}
         if term == "agent":

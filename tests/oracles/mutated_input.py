@@ -21,7 +21,7 @@ from hearth.pipelines.ingest import items, read
 from hearth.pipelines.readers.recognise import recognise
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng
-from hearth.schemas.rows import IngestedRow, ProgramRow, Row, StepRow
+from hearth.schemas.row_types import IngestedRow, ProgramRow, Row, StepRow
 from hearth.storage.rejects import Reject
 
 _PROGRAM = "Watch TV\nFrom the sofa.\n\n\n[Walk] <television> (1)\n[SwitchOn] <television> (1)\n[Special] <yawn>\n"
@@ -128,6 +128,9 @@ SEEDS: dict[str, Callable[[], bytes]] = {
     ),
     "records.json": lambda: json.dumps([{"title": "T", "steps": [{"action": "Sleep", "objects": []}]}]).encode(),
     "sketches.json": lambda: json.dumps({"answer": [[0, 1]], "represent": [1], "input": [_SKETCH]}).encode(),
+    "sheet.csv": 'Task;Text;Plan\nNap;"On ""it""";"[Walk] <bed> (1)\n[Sleep]"\nRest;;Walk to bed; Sleep\n'.encode,
+    "plan.md": "Sure!\n\n# Nap\n1. **Walk** to bed\n   - It is soft.\n2. [Sleep]\n\nEnjoy!\n# Tea\n- Find cup\n".encode,
+    "others.json": lambda: b'{"data": [{"task": "Nap", "plan": ["Walk to bed", "Sleep"]}], "by": {"Nap": ["[Sleep]"]}}',
     "scene.json": lambda: json.dumps(_GRAPH).encode(),
     "packed.txt.gz": lambda: gzip.compress(_GOOD.encode(), mtime=0),
     "packed.txt.zst": lambda: _zstd(_GOOD.encode()),

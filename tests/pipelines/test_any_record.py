@@ -182,8 +182,8 @@ def test_a_file_whose_name_is_not_text(built, write, name):
 
 
 def test_a_reader_that_breaks_while_it_looks_for_records(built, write, monkeypatch):
-    def scan(path, place):
-        yield ours._item(GOOD, place, 1, place)
+    def scan(path, place, columns):
+        yield from ours.items(GOOD, place, 1, place, columns)
         raise IndexError("a fault of the reader")
 
     monkeypatch.setitem(ingest.SCANNERS, ours.NAME, scan)
@@ -196,10 +196,10 @@ def test_a_reader_that_breaks_while_it_looks_for_records(built, write, monkeypat
 @pytest.mark.parametrize("value", [{"a": "\ud800"}, {"a": object()}, {"a": 2**70}, {"a": {1: 2}}],
                          ids=("surrogate", "object", "large", "key"))  # fmt: skip
 def test_an_item_that_cannot_be_stored(built, write, monkeypatch, value):
-    def scan(path, place):
-        yield ours._item(GOOD, place, 1, "one")
-        yield ours._item({**GOOD, **value}, place, 2, "two")
-        yield ours._item({**GOOD, "title": "Read"}, place, 3, "three")
+    def scan(path, place, columns):
+        yield from ours.items(GOOD, place, 1, "one", columns)
+        yield from ours.items({**GOOD, **value}, place, 2, "two", columns)
+        yield from ours.items({**GOOD, "title": "Read"}, place, 3, "three", columns)
 
     monkeypatch.setitem(ingest.SCANNERS, ours.NAME, scan)
     titles, refused = ingested(built, write("a.jsonl", json.dumps(GOOD) + "\n" + json.dumps(GOOD)))

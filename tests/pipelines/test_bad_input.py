@@ -56,6 +56,17 @@ def test_among_others_it_is_a_reject(write, tmp_path):
     assert counts["codes"] == {"BAD_ARCHIVE": 1, "EMPTY": 1, "NOT_TEXT": 1, "UNSUPPORTED_FILE": 1}
 
 
+def test_a_link_to_a_folder_says_so(write, tmp_path):
+    folder = write("mix/tv.txt", PROGRAM).parent
+    other = write("other/tv.txt", PROGRAM).parent
+    (folder / "more").symlink_to(other)
+    counts = json.loads(ingest(tmp_path, folder).stdout)["stages"]["ingest"]
+    assert (counts["records_in"], counts["through"], counts["codes"]) == (2, 1, {"UNSUPPORTED_FILE": 1})
+    (folder / "tv.txt").unlink()
+    (fault,) = json.loads(ingest(tmp_path, folder).stdout)["errors"]
+    assert "a link to a folder" in fault["message"]
+
+
 def test_strict_makes_rejects_fatal(write, tmp_path):
     folder = write("mix/empty.txt", b"").parent
     write("mix/tv.txt", PROGRAM)

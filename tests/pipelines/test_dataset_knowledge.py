@@ -108,7 +108,7 @@ def test_it_runs_again_as_it_did(moved):
 
 def test_its_programs_are_perfect(moved, tmp_path):
     ds = hearth.load(moved)
-    names = [name for (name,) in ds.rows("SELECT execution_id FROM executions")[1]]
+    names = [name for (name,) in ds.rows("SELECT execution_id FROM executions WHERE executable")[1]]
     of = dict(ds.rows("SELECT execution_id, program_id FROM executions")[1])
     rows = [{"id": name, "predicted": list(print_lines(ds[of[name]].program))} for name in names]
     (tmp_path / "mine.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))

@@ -65,7 +65,9 @@ def augment(folder):
             "execution_id": row["execution_id"],
             "parent_id": row["parent_id"],
             "steps": list(print_lines(program_of(row))),
-            "perturbations": [one["kind"] for one in row["perturbations"]],
+            "outcome": row["outcome"],
+            "failure": row["failure"] and row["failure"]["code"],
+            "perturbations": [[one["kind"], one["attempts"]] for one in row["perturbations"]],
             "repairs": [
                 [one["failure"]["code"], one["handler"], one["before"], one["after"]] for one in row["repairs"]
             ],
@@ -125,12 +127,15 @@ def test_the_ledger_adds_up_from_stage_to_stage(out):
 def test_augment_keeps_sketches_and_failed_attempts(out):
     programs = {row["program_id"]: row for row in [*read(out / "sample"), *read(out / "augment")]}
     sketches = {row["program_id"]: row for row in read(out / "publish" / "sketches")}
-    assert set(sketches) >= {row["program_id"] for row in read(out / "augment")}
+    augmented = read(out / "augment")
+    assert set(sketches) >= {row["program_id"] for row in augmented}
     for row in sketches.values():
         assert len(row["keep"]) == len(programs[row["program_id"]]["steps"]) and sum(row["keep"]) == len(row["steps"])
         parent = programs[row["program_id"]]["parent_id"]
         assert row["origin"] == ("inherited" if parent else "inferred")
         assert not parent or set(row["steps"]) <= set(sketches[parent]["steps"])
     repairs = read(out / "publish" / "repairs")
-    assert len([row for row in repairs if row["outcome"] != "REPAIRED"]) == len(read(out / "augment" / "attempts"))
-    assert all(row["parent_id"] in programs for row in repairs)
+    assert len(repairs) == sum(len(row["repairs"]) for row in augmented)
+    assert {(row["environment_id"], row["outcome"]) for row in repairs} == {
+        (row["environment_id"], row["outcome"]) for row in augmented if row["parent_id"] is None
+    }

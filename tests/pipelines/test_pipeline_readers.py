@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import zipfile
 
 import pytest
 
+from hearth.datasets.format.ids import current_id
+from hearth.pipelines.build import corpus
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers import crowd
@@ -57,13 +60,12 @@ def test_a_file_may_hold_several_programs(write):
     assert second["text"].count("[") == 2
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le-bom"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"])
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_encodings_and_line_ends_that_editors_write(write, encoding, end):
-    text = PROGRAM.replace("\n", end)
-    data = b"\xff\xfe" + text.encode("utf-16-le") if encoding == "utf-16-le-bom" else text.encode(encoding)
-    (row,) = rows(read(write("tv.txt", data)))
-    assert row["text"].rstrip("\n") == PROGRAM.rstrip("\n")
+    program = PROGRAM.replace("sofa", "café’s sofa")
+    (row,) = rows(read(write("tv.txt", program.replace("\n", end).encode(encoding))))
+    assert row["text"].rstrip("\n") == program.rstrip("\n")
 
 
 @pytest.mark.parametrize(
@@ -72,8 +74,8 @@ def test_encodings_and_line_ends_that_editors_write(write, encoding, end):
         ("empty", b"", "EMPTY", 0),
         ("blank", b"\n  \n\n", "EMPTY", 0),
         ("nul", b"Watch TV\n\n[Walk] <tv>\x00 (1)\n", "NOT_TEXT", 3),
-        ("latin-1", b"Caf\xe9\n\n[Walk] <kitchen> (1)\n", "NOT_TEXT", 1),
-        ("utf-16 without a mark", "Watch TV\n".encode("utf-16-le"), "NOT_TEXT", 1),
+        ("latin-2", b"Wst\xf3\xb3\xbf\n\n[Walk] <kitchen> (1)\n", "NOT_TEXT", 1),
+        ("two encodings", b"Caf\xc3\xa9\n\n[Walk] <caf\xe9> (1)\n", "NOT_TEXT", 3),
         ("long", b"Watch TV\n\n[Walk] <" + b"x" * 10_000_000 + b"> (1)\n", "LINE_TOO_LONG", 3),
     ],
 )
@@ -170,7 +172,7 @@ def test_a_broken_row_costs_no_other_row(write, bad):
 
 
 def test_a_row_that_is_not_text_costs_no_other_row(write):
-    data = batch(answer(1), answer(2, "Caf\xe9"), answer(3, worker="W2")).encode("latin-1")
+    data = batch(answer(1), answer(2, "Caf\xe9\xff"), answer(3, worker="W2")).encode("latin-1")
     found = read(write("d.csv", data))
     assert [row["program_id"] for row in rows(found)] == ["crowd:D1", "crowd:D3"]
     assert faults(found) == [("NOT_TEXT", "d.csv", 3)]
@@ -184,6 +186,47 @@ def test_programs_of_the_second_stage(write):
     assert row["rooms"] == [{"name": "living_room", "quantity": 1}]
     assert row["props"] == [{"name": "remote_control", "quantity": 2}, {"name": "television", "quantity": 1}]
     assert (row["platform"], row["line"], row["place"]) == ("AMT", 1, "p.csv")
+    assert (row["origin"], row["style"], len(row["worker"])) == ("crowd", None, 16)
+
+
+WRITTEN = f"Origin,Writer,Style,{HEADER.replace('WorkerId,', '')}"
+
+
+def test_what_says_that_it_is_written_has_no_worker(write):
+    text = batch(f"written,w1,terse,{answer(1, worker='x').replace(',x', '')}", header=WRITTEN)
+    programs = ",".join(["Origin", *crowd.PROGRAMS, "Platform"])
+    line = 'written,P1,W1,Approved,D1,Sleep,Go to bed.,bedroom*1,bed*1,"[Lie] <bed> (1)",AMT'
+    described, program = rows(read(write("d.csv", text), write("p.csv", batch(line, header=programs))))
+    for row in (described, program):
+        assert (row["origin"], row["description_id"]) == ("written", "written:D1")
+        assert (row["worker"], row["platform"]) == (None, None)
+    assert (described["style"], program["program_id"], program["style"]) == ("terse", "written:P1", None)
+
+
+def test_an_answer_of_an_unknown_origin_is_refused_alone(write):
+    lines = [f"{origin},w1,,{answer(n).replace(',W1', '')}" for n, origin in enumerate(("", "writen", "crowd"), 1)]
+    found = read(write("d.csv", batch(*lines, header=WRITTEN)))
+    assert [row["program_id"] for row in rows(found)] == ["crowd:D1", "crowd:D3"]
+    assert faults(found) == [("BAD_TABLE", "d.csv", 3)]
+    assert "an origin that no answer has: `writen`" in found[1][1].diagnostics[0].message
+
+
+def test_the_embedded_corpus_says_that_it_is_written():
+    found = rows(read(*corpus()))
+    assert len(found) > 800
+    assert {(row["origin"], row["worker"], row["platform"]) for row in found} == {("written", None, None)}
+    assert all(current_id(row["program_id"].replace("written:", "crowd:")) == row["program_id"] for row in found)
+
+
+def test_records_of_the_embedded_corpus_as_version_0_1_had_them(write):
+    old = {"program_id": "crowd:3P0001A2SM5", "description_id": "crowd:3D0001FLP5E", "origin": "crowd", "worker": "x",
+           "platform": "AMT", "title": "Sleep", "steps": ["[Lie] <bed> (1)"]}  # fmt: skip
+    theirs = {**old, "program_id": "crowd:P1", "description_id": "crowd:3D0001FLP5EXX"}
+    ours, others = rows(read(write("a.jsonl", f"{json.dumps(old)}\n{json.dumps(theirs)}\n")))
+    assert (ours["program_id"], ours["description_id"]) == ("written:3P0001A2SM5", "written:3D0001FLP5E")
+    assert (ours["origin"], ours["worker"], ours["platform"]) == ("written", None, None)
+    assert (others["program_id"], others["description_id"]) == ("crowd:P1", "crowd:3D0001FLP5EXX")
+    assert (others["origin"], others["worker"], others["platform"]) == ("crowd", "x", "AMT")
 
 
 # The release

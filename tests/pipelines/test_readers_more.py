@@ -153,7 +153,7 @@ def test_packed_files_are_read_in_place(write, tmp_path):
         archive.writestr("b.jsonl", json.dumps(RECORD) + "\n")
         archive.writestr("cat.jpg", b"\xff\xd8\xff")
     rows = read(path)
-    assert codes(rows) == ["program", "program"]
+    assert codes(rows) == ["program", "program", "UNSUPPORTED_FILE"]
     assert rows[0]["place"] == "all.zip/deep/a.txt"
 
 

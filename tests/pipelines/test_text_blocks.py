@@ -1,5 +1,8 @@
 """Text is cut into programs by pieces exactly as line by line; what came before is known again in little memory."""
 
+import zipfile
+
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -90,6 +93,30 @@ def test_ids_of_text_are_known_again_whichever_comes_first():
     other = Repeated()
     assert [item.reader for item in other.first(records[:1], "records", "b.jsonl")] == ["records"]
     assert [item.reader for item in other.first(texts, "text", "a.txt")] == ["refused", "text"]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("milk.txt", "Fetch milk\n\n[Walk] <kitchen> (1)\n[Open] <fridge> (1)\n"),
+        ("milk.jsonl", '{"title": "Fetch milk", "steps": ["[Walk] <kitchen> (1)"]}\n'),
+    ],
+)
+def test_a_text_in_a_folder_and_in_an_archive_of_it_is_one_duplicate(built, write, tmp_path, name, content, order):
+    folder = write(f"corpus/{name}", content).parent
+    with zipfile.ZipFile(tmp_path / "corpus.zip", "w") as archive:
+        archive.writestr(name, content)
+    made = built(*[folder, tmp_path / "corpus.zip"][::order])
+    made.run("ingest")
+    assert len(made.rows("ingest")) == 1
+    assert [code for _, code in made.codes("ingest")] == ["DUPLICATE"]
+
+
+def test_a_program_that_stands_twice_in_a_file_was_written_twice(built, write):
+    made = built(write("milk.txt", "Fetch milk\n\n[Walk] <kitchen> (1)\n\nFetch milk\n\n[Walk] <kitchen> (1)\n"))
+    made.run("ingest")
+    assert (len(made.rows("ingest")), made.codes("ingest")) == (2, [])
 
 
 def test_only_recent_answers_are_kept_to_compare_with():

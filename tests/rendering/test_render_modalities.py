@@ -162,24 +162,19 @@ def test_an_empty_scene_is_sky():
 
 
 def test_without_open3d_it_is_said_what_to_install(monkeypatch):
-    import builtins
+    import sys
 
     from hearth.rendering.rays import casting
 
-    real = builtins.__import__
+    def broken(name):
+        raise OSError("libusb")
 
-    def missing(error):
-        def load(name, *rest):
-            if name == "open3d":
-                raise error
-            return real(name, *rest)
-
-        return load
-
-    for error, remedy in ((ModuleNotFoundError("open3d"), "pip install"), (OSError("libusb"), "libusb-1.0-0")):
-        casting.engine.cache_clear()
-        monkeypatch.setattr(builtins, "__import__", missing(error))
-        with pytest.raises(HearthError, match=remedy):
-            casting.engine()
-        monkeypatch.undo()
+    casting.engine.cache_clear()
+    monkeypatch.setitem(sys.modules, "open3d", None)
+    with pytest.raises(HearthError, match=r"pip install '\.\[pictures\]'"):
+        casting.engine()
+    monkeypatch.setattr(casting, "library", broken)
+    with pytest.raises(HearthError, match=r"libusb-1\.0-0"):
+        casting.engine()
+    monkeypatch.undo()
     casting.engine.cache_clear()

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import yaml
 
-from hearth.rendering.models import catalog, pictures
-from hearth.rendering.models.catalog import ENTRY, FAMILIES, RECIPES
+from hearth.rendering.models import pictures, recipes
 from hearth.rendering.models.expressions import MATH, Scope, text_of
 from hearth.rendering.models.interpreter import Interpreter
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model, draw
 from hearth.rendering.models.mesh import join
 from hearth.rendering.models.primitives import KNOWN, names_of
+from hearth.rendering.models.recipes import ENTRY, FAMILIES, RECIPES
 from hearth.schemas.diagnostics import HearthError
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "models.json"
@@ -60,12 +60,12 @@ def test_every_entry_has_a_name_of_its_own_and_is_compiled():
     found = [
         entry
         for family in FAMILIES
-        for entry in ENTRY.findall(text_of(catalog.PACKAGE, family))
+        for entry in ENTRY.findall(text_of(recipes.PACKAGE, family))
         if entry[0] != "shared"
     ]
     assert sorted(name for name, _ in found) == sorted({name for name, _ in found})
     assert [name for name, takes in found if not takes] == list(RECIPES)
-    assert all(catalog._drawn(name) for name, _ in found)
+    assert all(recipes._drawn(name) for name, _ in found)
 
 
 def test_no_key_is_written_twice():
@@ -78,7 +78,7 @@ def test_no_key_is_written_twice():
                 keys(each)
 
     for family in FAMILIES:
-        keys(yaml.compose(text_of(catalog.PACKAGE, family), yaml.BaseLoader))
+        keys(yaml.compose(text_of(recipes.PACKAGE, family), yaml.BaseLoader))
     keys(yaml.compose(text_of(pictures.PACKAGE, pictures.FILE), yaml.BaseLoader))
 
 
@@ -89,7 +89,7 @@ def test_a_model_that_does_not_exist_is_a_missing_key():
 
 
 def drawn(entry, find=lambda name: None):
-    scope = catalog._scope("seats.yaml", "stool", KNOWN)
+    scope = recipes._scope("seats.yaml", "stool", KNOWN)
     return Interpreter(find).definition(entry, "", {}, scope)(names_of(Look((1.0, 1.0, 1.0))), (), {})
 
 
@@ -121,7 +121,7 @@ def test_a_fault_names_file_model_and_expression(entry, message):
 
 
 def test_a_shape_gets_what_it_takes():
-    leg = Interpreter(lambda name: None).definition(BOX, "w, h, d=0.5", {}, catalog._scope("seats.yaml", "leg", KNOWN))
+    leg = Interpreter(lambda name: None).definition(BOX, "w, h, d=0.5", {}, recipes._scope("seats.yaml", "leg", KNOWN))
     low, high = drawn({"leg": ["2", "3"]}, {"leg": leg}.get).bounds()
     assert np.allclose(high - low, (2, 3, 0.5))
     with pytest.raises(HearthError, match=re.escape("leg: takes (w, h, d); given 1 and ()")):

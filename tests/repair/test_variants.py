@@ -14,6 +14,7 @@ from hearth.grounding.preconditions.postconditions import nodes_of, reached
 from hearth.homes import library
 from hearth.kb import grammar
 from hearth.kb.loading.load import default
+from hearth.repair.circumstances import circumstances, lost
 from hearth.repair.loop import TRIES, repair
 from hearth.repair.variants import Augmented, Options, augment
 from hearth.schemas.failures import Code, Failure
@@ -87,8 +88,10 @@ def check_minimal(program, found: Augmented, pair, nodes) -> None:
             continue
         rest = pair.program.with_steps(s for n, s in enumerate(pair.program.steps) if n != number)
         execution = run(pair.environment.world, rest)
+        sources = [source for n, source in enumerate(pair.sources) if n != number]
         if execution.failure is None and [agent.held for agent in execution.final.agents] == hands:
-            assert not reached(found.goal, nodes, execution.final), f"{step} is not needed"
+            kept = lost(pair.environment.program, circumstances(found.execution), sources, execution) is None
+            assert not (kept and reached(found.goal, nodes, execution.final)), f"{step} is not needed"
 
 
 def test_the_same_seed_gives_the_same_and_another_seed_another():
@@ -149,4 +152,4 @@ def test_nearly_all_pairs_of_the_release_are_repaired(number, real_data):
             found.append(augment(program, place, 0, name, Options(3)))
     share, pairs = share_repaired([one for one in found if isinstance(one, Augmented)])
     assert pairs > 100
-    assert share >= 0.98
+    assert share >= 0.97  # what can't be done in the seat any more is refused

@@ -13,7 +13,7 @@ WORD = st.text("abz09", min_size=1, max_size=3)
 NAME = st.lists(WORD, min_size=1, max_size=3).map("_".join)
 ACTION = st.lists(st.sampled_from(["Put", "Back", "Walk", "Zz", "Aspecial"]), min_size=1, max_size=3).map("".join)
 NUMBER = st.integers(0, 999_999_999)
-REF = st.builds(ObjectRef, NAME, NUMBER, st.none() | NUMBER)
+REF = st.builds(ObjectRef, NAME, NUMBER.filter(bool)) | st.builds(ObjectRef, NAME, NUMBER, NUMBER)
 MODIFIER = st.tuples(st.text("az", min_size=1, max_size=3), st.text("aZ09.,:=-", min_size=1, max_size=4))
 LINE = st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=20).map(
     lambda text: f"x{text}".rstrip()

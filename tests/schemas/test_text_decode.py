@@ -9,10 +9,11 @@ from hearth.schemas.failures import Code
 TEXT = "Café\n“Sit”\n\n[Walk] <bed> (1)\n"
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"])
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_encodings_and_line_ends(encoding, end):
-    assert decode(TEXT.replace("\n", end).encode(encoding)) == TEXT
+    text = f"Tea, then: {TEXT}" if encoding.endswith("e") else TEXT
+    assert decode(text.replace("\n", end).encode(encoding)) == text
 
 
 @pytest.mark.parametrize(
@@ -20,7 +21,9 @@ def test_encodings_and_line_ends(encoding, end):
     [
         (b"one\ntwo\n\xff\xfe\xfd", 3),
         (b"\x89PNG\r\n\x1a\n", 1),
-        ("Café".encode("latin-1"), 1),
+        ("Café: é".encode() + "é".encode("latin-1"), 1),
+        ("Чай\n".encode("koi8-r"), 1),
+        ("one\nテレビ".encode("shift-jis"), 2),
         (b"one\ntw\x00o\n", 2),
         (b"\xff\xfeo", 1),
         (b"PK\x03\x04\x00\x00", 1),

@@ -15,9 +15,11 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import print_lines
+from hearth.scoring import baselines as yardsticks
 from hearth.scoring.baselines import (
     BASELINES,
     BY_SKETCH,
+    BY_START,
     Example,
     baselines,
     nearest_description,
@@ -25,8 +27,8 @@ from hearth.scoring.baselines import (
     random_retrieval,
     random_sampling,
 )
-from hearth.scoring.dataset_scores import chosen, read_line, score_dataset
-from hearth.scoring.evaluate import summarise
+from hearth.scoring.dataset_scores import chosen, read_line, score_dataset, score_steps
+from hearth.scoring.evaluate import Options, summarise
 from hearth.scoring.metrics.parsability import parsability
 
 
@@ -164,11 +166,39 @@ def test_the_nearest_sketch_and_of_equals_the_nearest_start():
     assert nearest_sketch(train, test, 0, default()) == [walk("bed"), walk("book"), walk("cup")]
 
 
+IDLE = ("empty program", "random legal steps", "sketch alone", "nearest sketch")
+"""What plans nothing: no step, legal ones, those given, and a copy of the nearest program of another activity."""
+
+
+@pytest.mark.parametrize("tested", [0, 1])
+def test_no_score_is_won_by_doing_nothing(ds, monkeypatch, tested):
+    of = dict(ds.rows("SELECT execution_id, activity_id FROM executions JOIN programs USING (program_id)")[1])
+    half = sorted(set(of.values()))[tested::2]
+    every = yardsticks._examples(ds, "activities", "", False)
+    parts = {part: [each for each in every if (of[each.execution_id] in half) == (part == "test")]
+             for part in ("train", "test")}  # fmt: skip
+    monkeypatch.setattr(yardsticks, "_examples", lambda _ds, _split, part, _originals: parts[part])
+    monkeypatch.setattr(yardsticks, "BASELINES", {})
+    found = {each.baseline: each for each in baselines(ds)}
+    assert {*found} == {*IDLE, "planner"} and found["planner"].executable > 0.8
+    for name in IDLE:
+        for score in ("f1", "f1_state", "goal", "goal_fraction", "step", "step_instances"):
+            assert getattr(found[name], score) < getattr(found["planner"], score), (name, score)
+
+
+def test_an_empty_program_scores_almost_nothing(ds):
+    nothing = [(name, ()) for name in chosen(ds)]
+    assert summarise(score_steps(ds, nothing)).means["f1"].mean <= 0.05
+    # With the objects of either program, it looked as good as many that plan.
+    wide = Options(match="best", scope="either")
+    assert summarise(score_steps(ds, nothing, wide)).means["f1"].mean > 0.5
+
+
 @pytest.mark.tools
 def test_baselines_of_a_dataset(ds):
     pytest.importorskip("sklearn", reason="not installed: pip install scikit-learn")
     found = baselines(ds)
     if found:
-        assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH}
+        assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH, *BY_START}
         assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:])
     assert baselines(ds, "nothing") == []

@@ -58,6 +58,36 @@ def test_the_environment_may_stand_in_the_row(score, tmp_path):
     assert json.loads(score("program", "rows.jsonl", "--json").stdout)["mean"]["executable"]["mean"] == 1
 
 
+@pytest.mark.parametrize("text", [
+    "[Walk] <sofa> (1)\n[Sit] <sofa> (1)", "1. Walk to the sofa\n2. Sit on the sofa.",
+    "Step 1: walk to the sofa\nStep 2: sit on the sofa",
+])  # fmt: skip
+def test_lcs_reads_what_program_reads(score, tmp_path, text):
+    row = {"id": "a", "predicted": text, "reference": "[Walk] <sofa> (1)\n[Sit] <sofa> (1)"}
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row))
+    whole = json.loads(score("program", "rows.jsonl", "--json").stdout)["scores"][0]
+    found = json.loads(score("lcs", "rows.jsonl", "--json").stdout)["scores"][0]
+    assert (found["step"], found["unread"]) == (whole["lcs_step"], 0) == (1, 0)
+
+
+def test_what_is_not_read_is_counted_or_refused(score, tmp_path):
+    row = {"id": "a", "predicted": "sit = robot.sit(sofa)", "reference": "[Sit] <sofa> (1)"}
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row))
+    assert "1 with lines that are not steps" in score("lcs", "rows.jsonl").stdout
+    found = json.loads(score("lcs", "rows.jsonl", "--json").stdout)
+    assert (found["unread"], found["scores"][0]["unread"], found["scores"][0]["step"]) == (1, 1, 0)
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row | {"reference": "robot.sit(sofa)"}))
+    for command in ("lcs", "program"):
+        refused = score(command, "rows.jsonl")
+        assert refused.exit_code == 1 and "`reference` of id `a` is text without a step" in refused.output
+
+
+@pytest.mark.parametrize("command", ["program", "dataset", "graphs"])
+def test_the_help_shows_the_published_reading_as_the_default(score, command):
+    words = " ".join(score(command, "--help").stdout.split())
+    assert "[default: swap1]" in words and "[default: own]" in words
+
+
 @pytest.mark.parametrize("one", ["sofa", "couch"])
 @pytest.mark.parametrize("other", ["sofa", "couch", "settee"])
 def test_a_goal_is_reached_whatever_the_thing_is_called(score, tmp_path, one, other):
@@ -87,6 +117,19 @@ def test_bad_input_is_one_clear_error(score, tmp_path, args, status, said):
     assert found.exit_code == status, found.output
     assert said in found.output
     assert "Traceback" not in found.output
+
+
+def test_a_row_may_have_a_goal_of_its_own(score, tmp_path):
+    row = {"predicted": "[Walk] <cup> (1.20)\n[Grab] <cup> (1.20)", "reference": "[Walk] <cup> (1.20)"}
+    record = {"actions": ["GRAB|TOUCH"], "goal": [{"from_id": 9, "relation_type": "HOLDS_RH", "to_id": 20}]}
+    goals = [{"goal": "GRAB(cup) then HOLDS(agent, cup)"}, {"goal": "OPEN(fridge) or WALK: 2"}, {"vh_goal": record}]
+    lines = (json.dumps({"id": number, **row, **goal}) for number, goal in enumerate([*goals, {}]))
+    (tmp_path / "rows.jsonl").write_text("\n".join(lines))
+    found = json.loads(score("program", "rows.jsonl", "--graph", "flat.json", "--json").stdout)["scores"]
+    assert [each["goal"] for each in found] == [1, 0, 1, 1]
+    (tmp_path / "rows.jsonl").write_text(json.dumps({"id": "a", **row, "goal": "GRAB(cup) then SHINY(cup)"}))
+    refused = score("program", "rows.jsonl", "--graph", "flat.json").output
+    assert "SHINY is not a known state" in refused and "goal of `a`, row 1:1:16" in refused
 
 
 @pytest.mark.parametrize("command", ["lcs", "program", "graphs"])

@@ -3,8 +3,9 @@ import pytest
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.schemas.syntax import parse_program
-from hearth.scoring.metrics.goals import goal_of, satisfaction
+from hearth.scoring.metrics.goals import goal_of
 from hearth.simulation.engine import run
+from hearth.simulation.goals import Progress
 
 BOTH_CUPS = """[Walk] <cup> (1.20)
 [Grab] <cup> (1.20)
@@ -34,19 +35,19 @@ def ran(world, text):
     ],
 )
 def test_counts_distinct_subjects(world, predicate, wanted, found):
-    result = satisfaction(Goal.of((predicate, wanted)), ran(world, BOTH_CUPS))
-    assert result.counts == ((predicate, found, wanted),)
+    result = Progress.at(Goal.of((predicate, wanted)), ran(world, BOTH_CUPS))
+    assert result.counts == (found,)
     assert result.satisfied == (found >= wanted)
-    assert result.unmet == (() if found >= wanted else ((predicate, wanted - found),))
+    assert result.unmet().counts == (() if found >= wanted else ((predicate, wanted - found),))
 
 
 def test_fraction_does_not_count_more_than_is_wanted(world):
     goal = Goal.of(Literal.of("CLEAN", "cup"), (Literal.of("ON", "cup", "table"), 3))
-    assert satisfaction(goal, ran(world, BOTH_CUPS)).fraction == 2 / 4
+    assert Progress.at(goal, ran(world, BOTH_CUPS)).fraction == 2 / 4
 
 
 def test_an_empty_goal_is_reached(world):
-    result = satisfaction(Goal.of(), world)
+    result = Progress.at(Goal.of(), world)
     assert (result.satisfied, result.fraction) == (True, 1.0)
 
 
@@ -57,15 +58,15 @@ def test_what_an_execution_achieved(world):
         ("ON(cup, table)", 1),
         ("OPEN(fridge)", 1),
     ]
-    assert not satisfaction(goal, world).satisfied
+    assert not Progress.at(goal, world).satisfied
 
 
 def test_a_goal_is_reached_by_the_execution_it_was_made_of(world):
     final = ran(world, BOTH_CUPS)
-    assert satisfaction(goal_of(world, final), final).satisfied
+    assert Progress.at(goal_of(world, final), final).satisfied
 
 
 def test_holding_two_things_counts_both(world):
     final = ran(world, "\n".join(BOTH_CUPS.splitlines()[:3]))
     assert goal_of(world, final) == Goal.of((Literal.of("HOLDS", "agent", "cup"), 2))
-    assert satisfaction(goal_of(world, final), final).satisfied
+    assert Progress.at(goal_of(world, final), final).satisfied

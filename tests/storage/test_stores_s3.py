@@ -59,7 +59,7 @@ def test_built_verified_and_queried(run, bucket, made, engine):
     bucket.put(str(made.settings.sources[1]), "homes/in/evening.txt")
     sources = [made.settings.sources[0], "s3://homes/in/evening.txt", made.settings.sources[2]]
     run("build", *sources, "--out", "s3://homes/evening", *homes, "--workers", "2", "--engine", engine)
-    files = ("publish/programs/part-00000.parquet", "publish/manifest.json", "sample/part-00002.parquet")
+    files = ("publish/programs/part-00000.train.parquet", "publish/manifest.json", "sample/part-00002.parquet")
     for name in files:
         assert bucket.cat(f"homes/evening/{name}") == (made.out / name).read_bytes(), name
     assert not bucket.exists("homes/evening/.lock")
@@ -67,8 +67,8 @@ def test_built_verified_and_queried(run, bucket, made, engine):
     assert str(len(made.rows("publish/programs"))) in run(
         "query", "s3://homes/evening", "SELECT count(*) AS programs FROM programs"
     )
-    bucket.pipe_file("homes/evening/publish/programs/part-00000.parquet", b"damaged")
-    assert "programs/part-00000.parquet" in run("verify", "s3://homes/evening", status=1)
+    bucket.pipe_file("homes/evening/publish/programs/part-00000.train.parquet", b"damaged")
+    assert "programs/part-00000.train.parquet" in run("verify", "s3://homes/evening", status=1)
 
 
 def test_a_missing_bucket_is_reported(run, made):

@@ -6,8 +6,8 @@ from types import UnionType
 import pyarrow as pa
 import pytest
 
-from hearth.schemas import rows, tables
-from hearth.schemas.rows import Arrow, Long
+from hearth.schemas import row_types, tables
+from hearth.schemas.row_types import Arrow, Long
 
 SCHEMAS = {
     **{name: value for name, value in vars(tables).items() if isinstance(value, pa.Schema) and name.isupper()},
@@ -46,14 +46,13 @@ def fits(value, hint):
 @pytest.mark.parametrize(
     ("row", "schema"),
     [
-        (rows.IngestedRow, tables.INGESTED),
-        (rows.ValidatedRow, tables.VALIDATED),
-        (rows.CaseRow, tables.CASE),
-        (rows.TriedRow, tables.TRIED),
-        (rows.SketchRow, tables.SKETCHED),
-        (rows.RenderedRow, tables.RENDERED),
-        (rows.FilmedRow, tables.FILMED),
-        (rows.RejectedRow, tables.REJECTED),
+        (row_types.IngestedRow, tables.INGESTED),
+        (row_types.ValidatedRow, tables.VALIDATED),
+        (row_types.CaseRow, tables.CASE),
+        (row_types.SketchRow, tables.SKETCHED),
+        (row_types.RenderedRow, tables.RENDERED),
+        (row_types.FilmedRow, tables.FILMED),
+        (row_types.RejectedRow, tables.REJECTED),
     ],
     ids=lambda each: getattr(each, "__name__", ""),
 )

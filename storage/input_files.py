@@ -3,6 +3,9 @@
 import os
 import stat
 import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +51,23 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
             return _limited(file.read(largest + 1), str(path), largest)
     finally:
         os.close(descriptor)
+
+
+@contextmanager
+def placed(path: Path) -> Iterator[Path]:
+    """The path itself of a file or folder; else a temporary file with what standard input or a shell's pipe holds.
+
+    Raises:
+        HearthError: as of `read_input`.
+    """
+    if path.is_file() or path.is_dir():
+        yield path
+        return
+    data = read_input(path)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "input"
+        copy.write_bytes(data)
+        yield copy
 
 
 def _limited(data: bytes, name: str, largest: int) -> bytes:

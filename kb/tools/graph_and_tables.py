@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.reasons import Reasons
-from hearth.schemas.rows import Row
+from hearth.schemas.row_types import Row
 
 if TYPE_CHECKING:
     import duckdb

@@ -1,6 +1,7 @@
 """Where in a room a thing may stand: free of others, of what is used from its front, of doors and windows."""
 
 from collections.abc import Iterator, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -35,6 +36,7 @@ class Obstacles:
         self._solids = solids
         self._kept = kept
         self._openings = openings
+        self._taken = cache(self._in_the_way)
 
     def free(self, spots: Sequence[Stand], shaped: Form, front: float) -> np.ndarray:
         """Bool (spots): whether a thing of that shape, with `front` metres before it, may stand there."""
@@ -44,24 +46,27 @@ class Obstacles:
             return found
         # All spots of a shape are at one height.
         low = spots[0][2]
-        found &= ~_meets(rects, self._in_the_way(low, low + shaped.size[1]))
-        if front:
+        if found.any():
+            found &= ~_meets(rects, self._taken(low, low + shaped.size[1]))
+        if front and found.any():
             zones = np.array([before(rect, yaw, front) for rect, yaw, _ in spots])
             found &= _within(zones, self._inner, 0.05)
             found &= ~_meets(zones, [footprint(t.box) for t in self._solids if bottom(t.box) < LOW])
         yaws = np.array([yaw for _, yaw, _ in spots])
         for hole, deep in self._holes(low, low + shaped.size[1]):
+            if not found.any():
+                break
             high = hole.window is not None and low + shaped.size[1] > hole.y0 + SILL
             there = _meets(rects, [deep])
             found &= ~(there & (high | ((shaped.mount == "wall") & (yaws == facing_from(hole.wall)))))
         return found
 
-    def _in_the_way(self, low: float, high: float) -> list[Rect]:
+    def _in_the_way(self, low: float, high: float) -> np.ndarray:
         """The floor that is taken for something of that height."""
         taken = [footprint(t.box) for t in self._solids if bottom(t.box) < high and low < top(t.box)]
         if low < LOW:
             taken += [before(footprint(t.box), t.yaw or 0.0, t.front) for t in self._solids if t.front]
-        return [*taken, *(self._kept if low < HEAD else ())]
+        return np.array([*taken, *(self._kept if low < HEAD else ())], float).reshape(-1, 4)
 
     def _holes(self, low: float, high: float) -> Iterator[tuple[Opening, Rect]]:
         """What opens in the walls at that height, with the floor before it."""
@@ -75,9 +80,9 @@ def _within(rects: np.ndarray, room: Rect, slack: float) -> np.ndarray:
     return np.asarray((rects[:, :2] >= low).all(axis=1) & (rects[:, 2:] <= high).all(axis=1))
 
 
-def _meets(rects: np.ndarray, others: Sequence[Rect]) -> np.ndarray:
+def _meets(rects: np.ndarray, others: Sequence[Rect] | np.ndarray) -> np.ndarray:
     """Bool (rects): whether each meets any of the others."""
-    taken = np.array(others, float).reshape(-1, 4)
+    taken = np.asarray(others, float).reshape(-1, 4)
     lows, highs = rects[:, None, :2], rects[:, None, 2:]
     apart = np.any((lows >= taken[None, :, 2:] - TOUCH) | (taken[None, :, :2] >= highs - TOUCH), axis=2)
     return np.asarray(np.any(~apart, axis=1))

@@ -14,7 +14,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.scoring import environments
 from hearth.scoring.predictions import Pair
-from hearth.storage.inputs import read_input
+from hearth.storage.input_files import read_input
 
 CLI = Path(__file__).resolve().parents[2] / "cli.py"
 

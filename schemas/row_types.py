@@ -39,146 +39,146 @@ Seed = Annotated[int, Arrow("uint64")]
 class PointRow(TypedDict):
     """Metres."""
 
-    x: float
-    y: float
-    z: float
+    x: Annotated[float, "metres to the east"]
+    y: Annotated[float, "metres up"]
+    z: Annotated[float, "metres to the north"]
 
 
 class BoxRow(TypedDict):
     """A box parallel to the axes."""
 
-    center: PointRow
-    size: PointRow
+    center: Annotated[PointRow, "its middle, metres"]
+    size: Annotated[PointRow, "its whole extent, metres"]
 
 
 class NodeRow(TypedDict):
     """A node of a graph."""
 
-    id: int
-    class_name: str
-    category: str
-    properties: list[str]
-    states: list[str]
-    prefab: str | None
-    box: BoxRow | None
-    yaw: float | None
+    id: Annotated[int, "number of the node, unique in its graph"]
+    class_name: Annotated[str, "class of the object, as in `vocabulary`"]
+    category: Annotated[str, "kind of object: Rooms, Furniture, Props, ..."]
+    properties: Annotated[list[str], "what may be done with it: CAN_OPEN, GRABBABLE, ..."]
+    states: Annotated[list[str], "states that it is in: OPEN, OFF, CLEAN, ..."]
+    prefab: Annotated[str | None, "the model that draws it; null without one"]
+    box: Annotated[BoxRow | None, "where it is; null where the home has no geometry"]
+    yaw: Annotated[float | None, "the way it faces, degrees about the vertical; null where unknown"]
 
 
 class EdgeRow(TypedDict):
     """An edge of a graph."""
 
-    source: int
-    relation: str
-    target: int
+    source: Annotated[int, "node id"]
+    relation: Annotated[str, "ON, INSIDE, CLOSE, FACING, BETWEEN, HOLDS_RH or HOLDS_LH"]
+    target: Annotated[int, "node id"]
 
 
 class NodeStateRow(TypedDict):
     """A state that a node is in."""
 
-    node: int
-    state: str
+    node: Annotated[int, "node id"]
+    state: Annotated[str, "the state"]
 
 
 class ChangeRow(TypedDict):
     """What differs between two worlds over the same nodes."""
 
-    added: list[EdgeRow]
-    removed: list[EdgeRow]
-    set_states: list[NodeStateRow]
-    cleared_states: list[NodeStateRow]
+    added: Annotated[list[EdgeRow], "edges that were not there before"]
+    removed: Annotated[list[EdgeRow], "edges that were there before"]
+    set_states: Annotated[list[NodeStateRow], "states that nodes came into"]
+    cleared_states: Annotated[list[NodeStateRow], "states that nodes were in before"]
 
 
 class GraphRow(TypedDict):
     """A whole graph; edges column by column, since there are thousands. Only ingest keeps whole graphs."""
 
-    nodes: list[NodeRow]
-    sources: list[int]
-    relations: list[str]
-    targets: list[int]
+    nodes: Annotated[list[NodeRow], "its nodes"]
+    sources: Annotated[list[int], "node id of each edge's source"]
+    relations: Annotated[list[str], "relation of each edge"]
+    targets: Annotated[list[int], "node id of each edge's target"]
 
 
 class ArgumentRow(TypedDict):
     """An object of a program."""
 
-    name: str
-    instance: int
+    name: Annotated[str, "class of the object"]
+    instance: Annotated[int, "distinguishes objects of one class in a program, from 1"]
 
 
 class ConditionRow(TypedDict):
     """A precondition; `step` and `hard` are null where they came with the program."""
 
-    name: str
-    objects: list[ArgumentRow]
-    step: int | None
-    hard: bool | None
+    name: Annotated[str, "the condition, a literal's name"]
+    objects: Annotated[list[ArgumentRow], "what it is about"]
+    step: Annotated[int | None, "the step that needs it, from 0; null where it came with the program"]
+    hard: Annotated[bool | None, "whether the step fails without it; null likewise"]
 
 
 class BindingRow(TypedDict):
     """The node that an object of a program is."""
 
-    name: str
-    instance: int
-    node: int
+    name: Annotated[str, "class of the program's object"]
+    instance: Annotated[int, "its instance in the program"]
+    node: Annotated[int, "node id in the environment"]
 
 
 class ModifierRow(TypedDict):
     """An adverb of a step."""
 
-    name: str
-    value: str
+    name: Annotated[str, "kind of modifier"]
+    value: Annotated[str, "its value"]
 
 
 class StepRow(TypedDict):
     """A step of a program, unbound."""
 
-    agent: int
-    action: str
-    objects: list[ArgumentRow]
-    joins: bool
-    modifiers: list[ModifierRow]
-    line: int
+    agent: Annotated[int, "who does it, from 0"]
+    action: Annotated[str, "name of the action, as in `vocabulary`"]
+    objects: Annotated[list[ArgumentRow], "what it is done to, in the order of the action's roles"]
+    joins: Annotated[bool, "whether it is done in the same tick as the step before"]
+    modifiers: Annotated[list[ModifierRow], "how it is done"]
+    line: Annotated[int, "line of the source; 0 where it has none"]
 
 
 class QuantityRow(TypedDict):
-    """A room or an object that a worker declared."""
+    """A room or an object, declared beside a program."""
 
-    name: str
-    quantity: int
+    name: Annotated[str, "class of the object, or of the room"]
+    quantity: Annotated[int, "how many"]
 
 
 class FailureRow(TypedDict):
     """Why an instruction could not be done."""
 
-    code: str
-    tick: int
-    agent: int
-    action: str
-    objects: list[int]
-    names: list[str]
-    expected: str
-    actual: str
+    code: Annotated[str, "why, a failure of `vocabulary`"]
+    tick: Annotated[int, "the tick, from 0"]
+    agent: Annotated[int, "whose instruction it was"]
+    action: Annotated[str, "name of the action"]
+    objects: Annotated[list[int], "node ids of its objects"]
+    names: Annotated[list[str], "classes of its objects"]
+    expected: Annotated[str, "what had to hold"]
+    actual: Annotated[str, "what held instead"]
 
 
 class WarningRow(TypedDict):
     """A fault that does not stop a program."""
 
-    code: str
-    line: int
-    column: int
-    found: str
-    message: str
-    suggestion: str
+    code: Annotated[str, "kind of fault"]
+    line: Annotated[int, "line of the source, from 1"]
+    column: Annotated[int, "column, from 1; 0 when unknown"]
+    found: Annotated[str, "the words in question"]
+    message: Annotated[str, "the fault"]
+    suggestion: Annotated[str, "the remedy, if one is known"]
 
 
 class InstructionRow(TypedDict):
     """Which step an agent does in a tick."""
 
-    agent: int
-    step: int
+    agent: Annotated[int, "who"]
+    step: Annotated[int, "the program's step, from 0"]
 
 
 class _Instructed(TypedDict):
-    instructions: list[InstructionRow]
+    instructions: Annotated[list[InstructionRow], "which steps were done in it"]
 
 
 class TickRow(_Instructed, ChangeRow):
@@ -186,8 +186,8 @@ class TickRow(_Instructed, ChangeRow):
 
 
 class _NodesDiffer(TypedDict):
-    added_nodes: list[NodeRow]
-    removed_nodes: list[int]
+    added_nodes: Annotated[list[NodeRow], "nodes that the home does not have"]
+    removed_nodes: Annotated[list[int], "ids of the home's nodes that are not there; their edges are not there either"]
 
 
 class DifferenceRow(_NodesDiffer, ChangeRow):
@@ -195,78 +195,83 @@ class DifferenceRow(_NodesDiffer, ChangeRow):
 
 
 class PerturbationRow(TypedDict):
-    """A condition that was dropped or swapped."""
+    """A change of the preconditions that an environment was made for."""
 
-    kind: str
-    condition: ConditionRow
+    perturbation_id: Annotated[str, "the environment and the perturbation's number, from 0"]
+    kind: Annotated[str, "container, door, dirty, ...: see `repair.perturb`"]
+    dropped: Annotated[list[ConditionRow] | None, "preconditions that no longer hold; null before format 2"]
+    added: Annotated[list[ConditionRow] | None, "conditions that hold instead; null before format 2"]
+    attempts: Annotated[list[int] | None, "the repairs of its failures, by their `attempt`; null before format 2"]
+    failure: Annotated[FailureRow | None, "the first failure that it caused; null where it caused none"]
 
 
 class RepairRow(TypedDict):
     """One repair; successful when the failure it is for did not come back at once."""
 
-    attempt: int
-    step: int
-    failure: FailureRow
-    handler: str
-    before: list[str]
-    after: list[str]
-    successful: bool
+    perturbation_id: Annotated[str | None, "the perturbation that its failure comes of; null where that is unclear"]
+    attempt: Annotated[int, "number of the repair of its program, from 0"]
+    step: Annotated[int, "the step that failed, from 0"]
+    failure: Annotated[FailureRow, "why it failed"]
+    handler: Annotated[str, "name of the repair, or of the handler that gave up"]
+    before: Annotated[list[str], "the steps of the program before it, as text"]
+    after: Annotated[list[str], "the steps after it; empty where nothing could be done"]
+    successful: Annotated[bool, "whether the failure did not come back at once"]
 
 
 class PinholeRow(TypedDict):
     """Intrinsics of a camera, pixels."""
 
-    fx: float
-    fy: float
-    cx: float
-    cy: float
+    fx: Annotated[float, "focal length, horizontally"]
+    fy: Annotated[float, "focal length, vertically"]
+    cx: Annotated[float, "principal point, from the left"]
+    cy: Annotated[float, "principal point, from above"]
 
 
 class FilmedStepRow(TypedDict):
     """When a film shows a tick."""
 
-    tick: int
-    steps: list[str]
-    start: float
-    end: float
-    cameras: list[str]
-    visible: float | None
+    tick: Annotated[int, "the tick, from 0"]
+    steps: Annotated[list[str], "its steps, as text"]
+    start: Annotated[float, "seconds from the film's start"]
+    end: Annotated[float, "seconds likewise"]
+    cameras: Annotated[list[str], "cameras that show it"]
+    visible: Annotated[float | None, "share of the objects it names that are seen; null where it names none"]
 
 
 class TrackRow(TypedDict):
     """A film's camera from a picture on."""
 
-    frame: int
-    tick: int
-    camera: str
-    intrinsics: PinholeRow
-    pose: list[float]
+    frame: Annotated[int, "first picture of this camera, from 0"]
+    tick: Annotated[int, "the tick that it shows"]
+    camera: Annotated[str, "name of the camera"]
+    intrinsics: Annotated[PinholeRow, "of the camera, pixels"]
+    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
 
 
 class VariationRow(TypedDict):
     """What was drawn by chance for a film."""
 
-    seed: Long
-    hour: float
-    speed: float
-    jitter: float
-    scatter: float
-    wander: bool
+    seed: Annotated[Long, "of the chances below"]
+    hour: Annotated[float, "time of day"]
+    speed: Annotated[float, "factor of the characters' speed"]
+    jitter: Annotated[float, "greatest offset of cameras, metres"]
+    scatter: Annotated[float, "greatest offset of small things, metres"]
+    wander: Annotated[bool, "whether characters begin at a random spot of their room"]
 
 
 class CodeRow(TypedDict):
     """How many records were refused for a reason."""
 
-    code: str
-    count: Long
+    code: Annotated[str, "why"]
+    count: Annotated[Long, "how many records"]
 
 
 class ScriptRow(TypedDict):
     """What rows with a program have in common."""
 
-    title: str
-    description: str
-    steps: list[StepRow]
+    title: Annotated[str, "name of the activity"]
+    description: Annotated[str, "what is done, in sentences"]
+    steps: Annotated[list[StepRow], "the program"]
 
 
 # What the stages pass on
@@ -276,17 +281,18 @@ class NamedRow(TypedDict):
     """Where a program comes from, with its title, description and declarations."""
 
     program_id: Annotated[str, "stable id of the program"]
-    origin: Annotated[str, "crowd, release, text, spoken, records, sketches, scenes, synthetic or augmented"]
+    origin: Annotated[str, "written, crowd, release, text, spoken, records, sketches, scenes, synthetic or augmented"]
     source: Annotated[str, "the source it came from, as named in the manifest"]
-    place: Annotated[str, "file and line inside the source"]
+    place: Annotated[str, "file inside the source"]
+    line: Annotated[int | None, "file line of the text's first line, less one; null where there are no lines"]
     description_id: Annotated[str, "the description it was written for"]
     title: Annotated[str, "name of the activity as written"]
     description: Annotated[str, "what is done, in sentences"]
-    scene: Annotated[str | None, "room the worker was shown"]
-    worker: Annotated[str | None, "salted hash of the worker's id"]
-    platform: Annotated[str | None, "crowd-sourcing platform"]
-    rooms: Annotated[list[QuantityRow] | None, "rooms declared by the worker"]
-    props: Annotated[list[QuantityRow] | None, "objects declared by the worker"]
+    scene: Annotated[str | None, "room in which the activity was to start"]
+    worker: Annotated[str | None, "salted hash of a crowd worker's id; null where a text was written, not collected"]
+    platform: Annotated[str | None, "crowd-sourcing platform; likewise"]
+    rooms: Annotated[list[QuantityRow] | None, "rooms declared beside the program"]
+    props: Annotated[list[QuantityRow] | None, "objects declared beside the program"]
 
 
 class _Kind(TypedDict):
@@ -296,17 +302,17 @@ class _Kind(TypedDict):
 class WrittenGroundingRow(TypedDict):
     """A program as it was grounded in a home."""
 
-    home: str
-    text: str
-    start: GraphRow | None
-    final: ChangeRow | None
+    home: Annotated[str, "the home's name"]
+    text: Annotated[str, "the program with node ids"]
+    start: Annotated[GraphRow | None, "the graph before it, where one came with it"]
+    final: Annotated[ChangeRow | None, "what the stored final graph changes"]
 
 
 class IngestedRow(_Kind, NamedRow):
     """What `ingest` reads."""
 
+    style: Annotated[str | None, "the voice in which a text was written, where its source says"]
     text: Annotated[str | None, "the program as collected; null for a description"]
-    line: Annotated[int | None, "file line of the text's first line, less one"]
     groundings: Annotated[
         list[WrittenGroundingRow] | None,
         "the program as grounded in a home, with the start graph and what the stored final graph changes",
@@ -318,11 +324,11 @@ class IngestedRow(_Kind, NamedRow):
 class GroundingRow(TypedDict):
     """A program as it was grounded in a home, checked."""
 
-    home: str
-    steps: list[StepRow]
-    bindings: list[BindingRow]
-    start: GraphRow | None
-    final: ChangeRow | None
+    home: Annotated[str, "the home's name"]
+    steps: Annotated[list[StepRow], "the program's steps"]
+    bindings: Annotated[list[BindingRow], "program objects to node ids"]
+    start: Annotated[GraphRow | None, "the graph before it, where one came with it"]
+    final: Annotated[ChangeRow | None, "what the stored final graph changes"]
 
 
 class ValidatedRow(NamedRow):
@@ -340,7 +346,7 @@ class RunRow(TypedDict):
     rules: Annotated[str, "named options of the engine: default or replay"]
     bindings: Annotated[list[BindingRow], "program objects to graph nodes"]
     ticks: Annotated[list[TickRow], "what each tick did and changed"]
-    executable: Annotated[bool, "ran to its end"]
+    executable: Annotated[bool, "ran to its end; false for originals in perturbed environments in which they fail"]
     failure: Annotated[FailureRow | None, "why it stopped; null when it ran to its end"]
 
 
@@ -360,19 +366,11 @@ class CaseRow(_Prepared, RunRow):
     """A program in an environment, run: what `sample` and `augment` write, and `render` and `publish` read."""
 
     reproduces: Annotated[bool | None, "ends in the final graph stored with it; null when none was"]
-    perturbations: Annotated[list[PerturbationRow], "which conditions were dropped or swapped"]
-    repairs: Annotated[list[RepairRow], "how it was made to run again"]
-
-
-class _Tried(TypedDict):
-    parent_id: str | None
-    home: str
-    perturbations: list[PerturbationRow]
-    outcome: Annotated[str, "REPAIRED, or why no program came of repairing: DUPLICATE, NO_HANDLER, LOOP, ..."]
-
-
-class TriedRow(_Tried, RepairRow):
-    """A repair that gave no program of its own: what `augment` writes besides."""
+    perturbations: Annotated[
+        list[PerturbationRow], "how its environment was perturbed; empty for originals in their own"
+    ]
+    outcome: Annotated[str | None, "REPAIRED, or why no program came of repairing; null where nothing was perturbed"]
+    repairs: Annotated[list[RepairRow], "how it was repaired, or was tried to be"]
 
 
 class SketchRow(TypedDict):
@@ -457,17 +455,17 @@ class VersionsRow(TypedDict):
 
 
 class ActivityRow(TypedDict):
-    """A row of `activities`."""
+    """An activity: what is done at home, by its title."""
 
     activity_id: Annotated[str, "the title in lower case, words joined by underscores"]
     title: Annotated[str, "the commonest spelling"]
-    scenes: Annotated[list[str], "rooms its workers were shown"]
+    scenes: Annotated[list[str], "rooms in which its descriptions were to start"]
     descriptions: Annotated[int, "how many descriptions"]
     programs: Annotated[int, "how many programs, augmented ones included"]
 
 
 class DescriptionRow(TypedDict):
-    """A row of `descriptions`."""
+    """A description: an account of an activity in sentences."""
 
     description_id: Annotated[str, "stable id"]
     activity_id: Annotated[str, "the activity described"]
@@ -478,11 +476,12 @@ class DescriptionRow(TypedDict):
     source: str
     worker: str | None
     platform: str | None
+    style: str | None
     programs: Annotated[int, "how many programs were written for it"]
 
 
 class ProgramRow(TypedDict):
-    """A row of `programs`."""
+    """A program: an activity as steps, with its description and origin; augmented ones name their parent."""
 
     program_id: str
     activity_id: Annotated[str, "the activity it carries out"]
@@ -490,10 +489,12 @@ class ProgramRow(TypedDict):
     parent_id: str | None
     origin: str
     source: str
-    place: str
+    place: Annotated[
+        str, "file and line inside the source, as `file:line`; without a line for entries of lists and tables"
+    ]
     title: str
     description: str
-    split: Annotated[str, "train or test, by activity; `splits` leaves out of train what nearly equals a test"]
+    split: Annotated[str | None, "its part in the split `activities`; null where a near duplicate is in a later part"]
     steps: list[StepRow]
     rooms: list[QuantityRow] | None
     props: list[QuantityRow] | None
@@ -503,7 +504,7 @@ class ProgramRow(TypedDict):
 
 
 class HomeRow(TypedDict):
-    """A row of `homes`."""
+    """A home that environments are made from."""
 
     home: Annotated[str, "its name"]
     origin: Annotated[str, "catalog, or derived from what the stored start graphs share"]
@@ -518,11 +519,11 @@ class _InHome(TypedDict):
 
 
 class HomeNodeRow(_InHome, NodeRow):
-    """A row of `home_nodes`."""
+    """A node of a home's graph: a room, a thing, a character, or a part of the building."""
 
 
 class HomeEdgeRow(_InHome, EdgeRow):
-    """A row of `home_edges`."""
+    """An edge of a home's graph."""
 
 
 class _PreparedFor(TypedDict):
@@ -533,7 +534,7 @@ class _PreparedFor(TypedDict):
 
 
 class EnvironmentRow(_PreparedFor, DifferenceRow):
-    """A row of `environments`."""
+    """An environment: a home prepared for a program, as what differs from the home."""
 
     conditions: list[ConditionRow]
 
@@ -546,7 +547,7 @@ class _Execution(TypedDict):
 
 
 class ExecutionRow(_Execution, RunRow):
-    """A row of `executions`."""
+    """An execution: a program run in an environment, tick by tick."""
 
     reproduces: bool | None
 
@@ -557,39 +558,46 @@ class StoredRunRow(ExecutionRow):
     environment: EnvironmentRow
 
 
-class _RepairOf(TypedDict):
+class _Tried(TypedDict):
     program_id: Annotated[str | None, "the repaired program; null where no program came of it"]
-    execution_id: str | None
-    environment_id: str | None
+    execution_id: Annotated[str | None, "the run of the repaired program"]
+    environment_id: Annotated[str | None, "the perturbed environment"]
+    parent_id: Annotated[str | None, "the program whose preconditions were perturbed"]
+    home: Annotated[str, "the home"]
+    outcome: Annotated[str, "REPAIRED, or why no program came of repairing: DUPLICATE, NO_HANDLER, LOOP, ..."]
 
 
-class RepairedRow(_RepairOf, TriedRow):
-    """A row of `repairs`."""
+class RepairedRow(_Tried, RepairRow):
+    """A repair, tried when a program failed in a perturbed environment."""
+
+
+class PerturbedRow(_Tried, PerturbationRow):
+    """A perturbation of the environment of a program, with what it caused."""
 
 
 class SplitRow(TypedDict):
-    """A row of `splits`."""
+    """The part that an execution has in a split."""
 
-    split: Annotated[str, "activities, homes_1_4 or homes_1_5; splits.json says what they mean"]
+    split: Annotated[str, "activities, held_out_home, homes_1_4 or homes_1_5; splits.json says what they mean"]
     execution_id: Annotated[str, "the execution"]
     program_id: Annotated[str, "its program"]
-    part: Annotated[str, "train, validation, test...; none where the split has no place for it"]
+    part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]
 
 
 class FrameRow(RenderedRow):
-    """A row of `frames`."""
+    """A picture of an execution."""
 
     home: Annotated[str, "where it was filmed"]
 
 
 class VideoRow(FilmedRow):
-    """A row of `videos`."""
+    """A film of an execution."""
 
     home: Annotated[str, "where it was filmed"]
 
 
 class NameRow(TypedDict):
-    """A row of `vocabulary`."""
+    """A name with its stable number."""
 
     kind: Annotated[str, "action, class, state, property, relation, edge_type or failure"]
     id: Annotated[int, "stable number within its kind"]
@@ -599,9 +607,10 @@ class NameRow(TypedDict):
 
 
 class LedgerRow(TypedDict):
-    """A row of `ledger`: `records_in = records_through + records_rejected`."""
+    """What became of a stage's records: `records_in = records_through + records_rejected`."""
 
     stage: Annotated[str, "the stage"]
+    record: Annotated[str, "what its records are; the rows of other kinds go on as they are"]
     order: Annotated[int, "place in the pipeline, from 0"]
     records_in: Annotated[Long, "records read"]
     records_through: Annotated[Long, "records that gave at least one row"]

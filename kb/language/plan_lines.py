@@ -1,0 +1,123 @@
+"""The lines of a plan as language models write it: Markdown undone, and each line a step, a heading or plain text."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from hearth.schemas.blocks import is_sentence
+
+_NUMBERED = re.compile(
+    r"(?:[-*+•–]\s+)?(?:step\s*\d{1,4}\s*[.:)\]–-]?|\(?\d{1,4}\s*[.:)\]])\s+(?=\S)|[-*+•–]\s+(?=\S)", re.IGNORECASE
+)
+_SYMBOLS = re.compile(r"(?:[^\w\s\[\]<>(){}|*+•'\"’“‘…–-])+\s*")
+_KEYCAP = str.maketrans({"\ufe0f": "", "\u20e3": "."})
+_BRACKETED = re.compile(r"(?:<[^<>]*>\s*)?\[\s*[a-z]", re.IGNORECASE)
+_DIGITS = re.compile(r"\d+")
+_CHECKBOX = re.compile(r"\[[ xX]\]\s+")
+
+TITLE = re.compile(r"\s*(?:task|title|activity|goal|plan)\s*:\s*", re.IGNORECASE)
+"""The optional beginning of a title's line."""
+
+_LAYOUT = re.compile(r"\s*(?:`{3}|~{3}|(?:[-*_=]\s*){3,}$)")
+"""A line that begins or ends a code block, or a horizontal rule."""
+
+_QUOTE = re.compile(r"\s*(?:>\s?)+")
+_HEADING = re.compile(r"\s*#{1,6}\s+(?=\S)")
+_EMPHASIS = re.compile(r"\*{1,3}(?=\S)|(?<=\S)\*{1,3}|`+|(?<!\w)_{1,3}(?=\S)|(?<=\S)_{1,3}(?!\w)")
+_ANSWER = re.compile(r"(?:sure|certainly|of course|okay|ok|absolutely|here(?:['’]s| is| are))\b", re.IGNORECASE)
+_ASKED = re.compile(r".*\b(?:plan|steps|program|guide|instructions|how)\s+(?:for|to)\s+(\S.*)", re.IGNORECASE)
+_USUAL = re.compile(
+    r"(?:steps|plan|instructions|program|procedure|method|directions|step-by-step plan):?", re.IGNORECASE
+)
+"""Headings that every plan may have, and so are not its title."""
+
+
+class PlanLine(NamedTuple):
+    """A line without its Markdown.
+
+    Attributes:
+        text: the line, or a step's words.
+        number: a step's number, 0 if it has none; None if the line is not a step.
+        indent: characters before it.
+        heading: whether Markdown marks it as a heading, or `Task:` does.
+    """
+
+    text: str
+    number: int | None = None
+    indent: int = 0
+    heading: bool = False
+
+    @property
+    def bracketed(self) -> bool:
+        """Whether it is a step in the syntax of programs, `[Walk] <kitchen> (1)`."""
+        return self.number is not None and _BRACKETED.match(self.text) is not None
+
+
+def plan_line(raw: str) -> PlanLine:
+    """Read a line; one of layout alone, or a heading such as `Steps:`, is empty."""
+    if _LAYOUT.match(raw):
+        return PlanLine("")
+    quote = _QUOTE.match(raw)
+    line = raw[quote.end() :] if quote else raw
+    indent = len(line) - len(line.lstrip())
+    marked = _HEADING.match(line)
+    text = " ".join(_EMPHASIS.sub("", line[marked.end() :].rstrip("# ") if marked else line).split())
+    symbols = _SYMBOLS.match(text := text.translate(_KEYCAP))
+    text = text[symbols.end() :] if symbols else text
+    step = _NUMBERED.match(text)
+    if step:
+        digits, words = _DIGITS.search(step[0]), _CHECKBOX.sub("", text[step.end() :], count=1)
+        return PlanLine(words, int(digits[0]) if digits else 0, indent, marked is not None)
+    if _USUAL.fullmatch(text):
+        return PlanLine("")
+    heading = marked is not None or TITLE.match(text) is not None
+    return PlanLine(text, 0 if _BRACKETED.match(text) else None, indent, heading)
+
+
+class Header(NamedTuple):
+    """The text above the steps."""
+
+    title: str
+    description: str
+
+
+def header(text: str) -> Header:
+    """Title and description: the lines before the first step.
+
+    The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
+    first; lines before it belong to no description.
+    """
+    lines = list(map(plan_line, text.split("\n")))
+    is_ordered = ordered(lines)
+    first = next((number for number, line in enumerate(lines) if is_step(line, is_ordered)), len(lines))
+    found = [line for line in lines[:first] if line.text]
+    ranks = [
+        (TITLE.match(line.text) is None, not line.heading, is_sentence(line.text), number)
+        for number, line in enumerate(found)
+    ]
+    if not ranks:
+        return Header("", "")
+    at = min(ranks)[-1]
+    title, asked = TITLE.sub("", found[at].text, count=1), _ASKED.match(found[at].text)
+    if asked and _ANSWER.match(title):
+        title = asked[1].rstrip(" :.!")
+    return Header(title, "\n".join(line.text for line in found[at + 1 :]))
+
+
+def ordered(lines: Sequence[PlanLine]) -> bool:
+    """Whether a plan has numbered steps; its bullets then only explain them."""
+    return any(line.number for line in lines)
+
+
+def is_step(line: PlanLine, is_ordered: bool) -> bool:
+    """Whether a line is a step of its own in a plan that is numbered or not."""
+    return bool(line.number or line.bracketed) if is_ordered else line.number is not None
+
+
+def is_plan(lines: Sequence[str]) -> bool:
+    """Whether a text's first lines are a plan: numbered or bulleted steps, or a program among Markdown."""
+    found = list(map(plan_line, lines))
+    if any(line.number == 0 and _BRACKETED.match(raw.strip()) for line, raw in zip(found, lines, strict=True)):
+        return any(_LAYOUT.match(raw) or _HEADING.match(raw) for raw in lines)
+    steps = sum(line.number is not None for line in found)
+    return steps > 1 or (steps == 1 and TITLE.match(lines[0]) is not None)

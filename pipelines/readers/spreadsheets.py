@@ -1,0 +1,63 @@
+"""Tables of people's own: a program or a description a row, in columns that are given or guessed."""
+
+from collections.abc import Iterator
+
+from hearth.pipelines.readers import ours
+from hearth.pipelines.readers.columns import FieldColumns, guessed
+from hearth.pipelines.readers.delimited import Layout, Rows, layout_of, row_fault
+from hearth.pipelines.readers.item import Item, refused
+from hearth.schemas.failures import Code
+from hearth.storage.archives import Place
+from hearth.storage.rejects import Reject
+
+NAME = "spreadsheet"
+
+
+def names_it(line: str) -> bool:
+    """Whether a first line names the columns of such a table; a file called `.csv` is one whatever it says."""
+    columns = layout_of(line).columns
+    return len(columns) > 1 and {"program", "description"} & guessed(columns, {}, exact=True).keys() != set()
+
+
+def columns_of(path: Place, given: FieldColumns) -> dict[str, str]:
+    """The column of each field that a table has."""
+    return guessed(_begun(Rows(path))[1].columns, given)
+
+
+def _begun(rows: Rows) -> tuple[int, Layout]:
+    """The number and layout of the first line with text; Excel's `sep=;` before it names the delimiter."""
+    delimiter = ""
+    for number, line in rows:
+        if line.lower().startswith("sep=") and len(line) == len("sep=;"):
+            delimiter = line[-1]
+        elif line.strip():
+            return number, layout_of(line, delimiter)
+    return 1, Layout((), ",")
+
+
+def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
+    """One item for each row with text; `ours` reads it as a record."""
+    rows = Rows(path)
+    first, layout = _begun(rows)
+    columns = guessed(layout.columns, given)
+    if not {"program", "description"} & columns.keys():
+        message = "a table without a column of programs or descriptions that is known by its name"
+        names = [*layout.columns, "...", "..."]
+        suggestion = f"name them, as in `--columns title={names[0]},program={names[1]}`"
+        found = ", ".join(layout.columns)[:200]
+        fault = Reject.of(Code.BAD_TABLE, message, file=place, line=first, found=found, suggestion=suggestion)
+        yield refused(place, fault)
+        return
+    empty = True
+    for line, raw, cells in rows.parsed(layout):
+        full = cells and [*cells, *[""] * (len(layout.columns) - len(cells))]
+        wrong = row_fault(line, raw, full, layout, place)
+        if wrong or (full and any(full)):
+            empty = False
+        if wrong:
+            yield refused(place, Reject((wrong,)), line=line)
+        elif full and any(full):
+            values = {field: full[layout.columns.index(name)] for field, name in columns.items()}
+            yield from ours.items(values, place, line, f"{place}:{line}", {})
+    if empty:
+        yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))

@@ -1,0 +1,53 @@
+"""Libraries that only parts of Hearth need: each is of an extra of the package, and imported where it is used."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from typing import Any
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+EXTRAS = {
+    "dask": ("dask", "distributed"),
+    "pictures": ("cv2", "matplotlib", "numba", "open3d"),
+    "plan": ("unified_planning",),
+    "remote": ("fsspec",),
+}
+"""The modules of each extra of pyproject.toml."""
+
+
+def library(module: str) -> Any:
+    """Import a module of an extra's library.
+
+    Raises:
+        HearthError: MISSING_FILE, if the library is not installed.
+    """
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        name = str(error.name).partition(".")[0]
+        extra = next((extra for extra, modules in EXTRAS.items() if name in modules), None)
+        if extra is None:
+            raise
+        raise HearthError.of(Code.MISSING_FILE, f"this needs {name}, which is not installed",
+                             suggestion=remedy(extra)) from error  # fmt: skip
+
+
+def remedy(extra: str) -> str:
+    """How to install an extra."""
+    command = f"`pip install '.[{extra}]'` in Hearth's folder"
+    return f"run `make setup`, or {command}" if extra == "pictures" else f"run {command}"
+
+
+def lacking(extra: str) -> list[str]:
+    """The modules of an extra that are not installed, found without importing them."""
+    return [name for name in EXTRAS[extra] if not _found(name)]
+
+
+def _found(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False

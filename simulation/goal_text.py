@@ -1,0 +1,180 @@
+"""Goals as text, as the Embodied Agent Interface writes them: literals, actions, alternatives, order.
+
+    goal    both [then both]...          the parts are reached in this order (see `goal_trace`); `then` binds loosest
+    both    one [and one]...             [or ...] binds between `then` and `and`
+    one     NAME(term, ...)[: count]     a state or relation: `ON(television)`, `ON(plate, table): 2`
+            ACTION[(term, ...)]          an action that is done: `WATCH`, `PUTIN(milk, fridge)`; `[Open](fridge)`
+            not one | (goal)
+            exists x. (goal)             for some thing x; `forall x. (goal)` for all
+    term    a class, a node (`41`, `television.410`), `agent`, `agent:1`, or a variable
+
+`|` is `or`, `&` is `and`. Words and names may have any case. `ONTOP` is ON of two, `NEXT_TO` is CLOSE.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.literals import AGENT, Literal, Name
+from hearth.schemas.numbers import number_of
+from hearth.schemas.tokens import Tokens
+from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID
+from hearth.simulation.goals import RELATED, check, unknown
+from hearth.simulation.holds import nodes
+from hearth.simulation.world.home import Home
+
+OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
+"""Relations of the Embodied Agent Interface, by its names."""
+
+DEEPEST = 40
+"""Brackets within one another."""
+
+VARIABLES = 2
+"""Variables within one another: each multiplies the cost by the number of things."""
+
+
+def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") -> Goal:
+    """A goal from text, or from a record of the Embodied Agent Interface: `vh_goal`, or a task with it or `tl_goal`.
+
+    Of a `vh_goal`, the actions are done in their order, and its states and relations hold at the end.
+
+    Args:
+        given: text or record.
+        home: for names and nodes.
+        file: the name of its place in faults.
+
+    Raises:
+        HearthError: SYNTAX, UNKNOWN_ACTION, UNKNOWN_OBJECT, UNKNOWN_AGENT or WRONG_ARITY, with line and column.
+
+    Examples:
+        >>> goal = hearth.read_goal("OPEN(fridge) then HOLDS(agent, milk) and (LOOKAT or WATCH)", home)
+        >>> hearth.Progress.of(hearth.read_goal("OPEN(fridge) then GRAB(milk)", home), execution).satisfied
+        True
+    """
+    if isinstance(given, Mapping):
+        whole = given.get("tl_goal") or given.get("vh_goal") or given
+        given = whole if isinstance(whole, str) else _release_text(whole, file)
+    return _Parser(given, file, home).whole(_Parser.ordered)
+
+
+def _release_text(record: Any, file: str) -> str:
+    """A `vh_goal` as text."""
+    try:
+        done = [f"({each.replace(' ', '')})" for each in record["actions"]]
+        facts = " and ".join(_fact(each) for each in record["goal"])
+        return " then ".join([*done, facts] if facts else done)
+    except (AttributeError, KeyError, TypeError) as error:
+        hint = 'give text, {"tl_goal": TEXT} or {"actions": [...], "goal": [...]}'
+        raise HearthError.of(Code.BAD_JSON, f"not a goal: {error!r}", file=file, suggestion=hint) from None
+
+
+def _fact(each: Mapping[str, Any]) -> str:
+    if "state" in each:
+        return f"{each['state']}({each['class_name']}.{each['id']})"
+    return f"{each['relation_type']}({each['from_id']}, {each['to_id']})"
+
+
+class _Parser(Tokens):
+    PATTERN = re.compile(r"[()\[\]|&:,]|[0-9]+|agent:[0-9]+|[^\W\d]\w*(?:\.[0-9]+)?|\.")
+
+    def __init__(self, text: str, file: str, home: Home) -> None:
+        super().__init__(text, file)
+        self.home, self.depth = home, 0
+        self.variables: tuple[str, ...] = ()
+
+    def ordered(self) -> Goal:
+        return self._joined("then", self.several(self.alternatives, "then"))
+
+    def alternatives(self) -> Goal:
+        return self._joined("or", self.several(self.conjunction, "or", "|"))
+
+    def conjunction(self) -> Goal:
+        first, *rest = self.several(self.one, "and", "&")
+        for goal in rest:
+            first &= goal
+        return first
+
+    def _joined(self, join: str, goals: tuple[Goal, ...]) -> Goal:
+        return goals[0] if len(goals) == 1 else Goal(parts=(Joined(join, goals),))
+
+    def one(self) -> Goal:
+        word = self.peek().lower()
+        if self.depth > DEEPEST:
+            raise self.fault(f"more than {DEEPEST} brackets within one another")
+        self.depth += 1
+        if word == "not":
+            self.take()
+            found = Goal(parts=(Joined("not", (self.one(),)),))
+        elif word in ("exists", "forall"):
+            found = self._quantified(self.take().lower())
+        elif word == "(":
+            found = self._bracketed()
+        else:
+            found = self._counted()
+        self.depth -= 1
+        return found
+
+    def _bracketed(self) -> Goal:
+        self.take("(")
+        goal = self.ordered()
+        self.take(")")
+        return goal
+
+    def _quantified(self, join: str) -> Goal:
+        outer, variable = self.variables, "?" + self.name()
+        if len(outer) == VARIABLES:
+            raise self.fault(f"more than {VARIABLES} variables within one another", ahead=-1)
+        self.take(".")
+        self.variables = (*outer, variable)
+        goal = self._bracketed()
+        self.variables = outer
+        return Goal(parts=(Joined(join, (goal,), variable),))
+
+    def _counted(self) -> Goal:
+        place = self.next
+        bracketed = self.peek() == "[" and bool(self.take())
+        word = self.name()
+        if bracketed:
+            self.take("]")
+        terms: tuple[Name, ...] = ()
+        if self.peek() == "(":
+            self.take()
+            terms = () if self.peek() == ")" else self.several(self.term, ",")
+            self.take(")")
+        literal = Literal(self._named(word, len(terms), bracketed), terms)
+        if fault := check(literal, self.home):
+            raise self.fault(*fault, ahead=place - self.next)
+        if self.peek() != ":":
+            return Goal.of(literal)
+        self.take()
+        number = number_of(self.peek())
+        if not number:
+            raise self.fault(f"expected a count but found `{self.peek()[:20] or 'the end'}`")
+        self.take()
+        return Goal.of((literal, number))
+
+    def _named(self, word: str, terms: int, bracketed: bool) -> str:
+        """The name of a state or relation, of an action, or the word itself."""
+        name = OTHER_NAMES.get(word.upper(), word.upper())
+        action = self.home.knowledge.action(word)
+        if not bracketed and ((terms == 1 and name in STATE_ID) or (terms == 2 and name in RELATED)):
+            return name
+        return action.name if action else name
+
+    def term(self) -> Name:
+        word = self.take()
+        if "?" + word in self.variables:
+            return "?" + word
+        kind, _, digits = word.rpartition(".")
+        node = number_of(digits) if kind or word[:1].isdigit() else None
+        if kind and not nodes(node or 0, self.home) & nodes(kind, self.home):
+            raise self.fault(f"the home has no `{word}`", Code.UNKNOWN_OBJECT, ahead=-1)
+        found = AGENT if word == CHARACTER_CLASS else word if node is None else node
+        if fault := unknown(found, self.home):
+            raise self.fault(*fault, ahead=-1)
+        return found

@@ -1,0 +1,115 @@
+"""Whether a goal is reached over a run: what holds at its end, what was done, and in which order.
+
+A state or relation is reached while it holds; an action is reached once it has been done. The parts of `A then B` are
+reached one after the other. After a state, a state is reached only when it begins to hold; after an action it may have
+held before, as in `WATCH(x) then ON(television)` of the Embodied Agent Interface. The last part is reached at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import islice
+from typing import NamedTuple
+
+from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.literals import AGENT, Literal, Name
+from hearth.schemas.program import Step
+from hearth.simulation.engine import Execution
+from hearth.simulation.holds import candidates, nodes
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+
+class Trace(NamedTuple):
+    """A run.
+
+    Attributes:
+        worlds: the start, and the world after each tick.
+        done: the instructions done in each tick.
+    """
+
+    worlds: tuple[World, ...]
+    done: tuple[tuple[Step, ...], ...] = ()
+
+    @classmethod
+    def of(cls, execution: Execution) -> Trace:
+        """What an execution did, up to its failure if it has one."""
+        return cls(execution.worlds, tuple(islice(execution.program.ticks(), len(execution.worlds) - 1)))
+
+    def reached(self, goal: Goal, since: int = 0, now: int | None = None) -> bool:
+        """Whether a goal is reached in the world of one number, by what was done since that of another."""
+        now = len(self.done) if now is None else now
+        counted = all(self.times(literal, since, now) >= wanted for literal, wanted in goal)
+        return counted and all(self.has(part, since, now) for part in goal.parts)
+
+    def times(self, literal: Literal[Name], since: int, now: int) -> int:
+        """How often a literal holds in a world; of an action, with how many different objects it was done."""
+        world = self.worlds[now]
+        if acts(literal, world.home):
+            done = ((tick, step) for tick in range(since, now) for step in self.done[tick])
+            found = ((tick, step.objects) for tick, step in done if _does(step, literal, world.home))
+            return len({tuple(ref.node for ref in objects) or (tick,) for tick, objects in found})
+        return sum(mask.bit_count() for mask in candidates(literal, world.home).met(world))
+
+    def has(self, part: Joined, since: int, now: int) -> bool:
+        """Whether a joined part of a goal is reached."""
+        if part.join == "then":
+            return self._ordered(part.goals, since, now)
+        if part.join == "or":
+            return any(self.reached(goal, since, now) for goal in part.goals)
+        (goal,) = part.goals
+        if part.join == "not":
+            return not self.reached(goal, since, now)
+        found = (self.reached(goal.bound(part.variable, node), since, now) for node in self._things(part))
+        return any(found) if part.join == "exists" else all(found)
+
+    def _things(self, part: Joined) -> Iterable[int]:
+        """The nodes that a variable may stand for; to make an action's literal hold, only those that were used."""
+        home = self.worlds[0].home
+        about = [literal for literal, _ in part.goals[0].literals() if part.variable in literal.terms]
+        if part.join == "exists" and about and _positive(part.goals[0]) and all(acts(each, home) for each in about):
+            return {ref.node for steps in self.done for step in steps for ref in step.objects if ref.node is not None}
+        return (home.ids[i] for i in indices(home.everything))
+
+    def _ordered(self, goals: Sequence[Goal], since: int, now: int) -> bool:
+        home = self.worlds[0].home
+        begins = False
+        for goal in goals[:-1]:
+            first = next((at for at in range(since, now + 1) if self._comes(goal, since, at, begins)), None)
+            if first is None:
+                return False
+            since, begins = first, not any(acts(literal, home) for literal, _ in goal.literals())
+        came = not begins or any(self._comes(goals[-1], since, at, begins) for at in range(since + 1, now + 1))
+        return came and self.reached(goals[-1], since, now)
+
+    def _comes(self, goal: Goal, since: int, at: int, begins: bool) -> bool:
+        """Whether a goal is reached at a time; with `begins`, for the first time since an earlier one or again."""
+        if begins and not goal.counts and [part.join for part in goal.parts] == ["or"]:
+            return any(self._comes(other, since, at, begins) for other in goal.parts[0].goals)
+        before = begins and (at == since or self.reached(goal, since, at - 1))
+        return self.reached(goal, since, at) and not before
+
+
+def _positive(goal: Goal) -> bool:
+    return all(part.join not in ("not", "forall") and all(map(_positive, part.goals)) for part in goal.parts)
+
+
+def acts(literal: Literal[Name], home: Home) -> bool:
+    """Whether a literal is about an action that is done."""
+    return literal.name in home.knowledge.actions
+
+
+def by_agent(literal: Literal[Name]) -> bool:
+    """Whether an action's first term says who does it."""
+    return bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
+
+
+def _does(step: Step, literal: Literal[Name], home: Home) -> bool:
+    if step.action != literal.name:
+        return False
+    who = by_agent(literal)
+    if who and not nodes(literal.terms[0], home) >> home.agents[step.agent] & 1:
+        return False
+    objects = zip(literal.terms[who:], step.objects, strict=False)
+    return all(ref.node is not None and nodes(term, home) >> home.index[ref.node] & 1 for term, ref in objects)
