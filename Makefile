@@ -61,7 +61,7 @@ $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up 
 # Progress goes to the terminal; the table of each command is only printed at the end.
 RUN = @$(HEARTH) $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
 
-$(call manifest,ingest): $(SHARED) $(shell find kb -name '*.py') $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
+$(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
 	$(RUN) >/dev/null
 
 $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)

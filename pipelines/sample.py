@@ -14,9 +14,9 @@ from hearth.grounding.environments.sampling import sample
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
 from hearth.kb.knowledge import Knowledge
-from hearth.pipelines.engine.build_homes import DERIVED, Homes
+from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.context import knowledge_used, overlays
-from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program

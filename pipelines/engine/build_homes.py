@@ -5,15 +5,11 @@ from functools import cache
 import orjson
 
 from hearth.pipelines.engine.context import knowledge
-from hearth.pipelines.engine.settings import Settings
+from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.names import inside
-
-DERIVED = "homes"
-"""Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from
-stored start graphs."""
 
 
 class Homes:

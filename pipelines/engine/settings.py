@@ -4,6 +4,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+DERIVED = "homes"
+"""Folder of homes that come with the sources: scene graphs in the ingest stage; in the sample stage, homes derived from
+stored start graphs."""
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:

@@ -16,6 +16,7 @@ from hearth.schemas.graph import Edge, EdgeColumns
 from hearth.schemas.vocabulary import RELATION_ID, STATE_ID
 
 JsonObject = dict[str, Any]
+"""An object as the release writes it."""
 
 EDGE = itemgetter("from_id", "relation_type", "to_id")
 """The fields of an edge in JSON."""

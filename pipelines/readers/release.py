@@ -10,7 +10,7 @@ from typing import Any
 import orjson
 
 from hearth.datasets.format.codecs import change_row, node_row
-from hearth.pipelines.readers.graph_pairs import EDGE, pair_of, read_pair
+from hearth.pipelines.readers.graph_pairs import EDGE, JsonObject, pair_of, read_pair
 from hearth.pipelines.readers.item import LARGEST_FILE, Item, record, refused
 from hearth.pipelines.readers.text import header
 from hearth.schemas.change import Change
@@ -38,8 +38,6 @@ FOLDERS: dict[str, str] = {
 """The release's folders by the kind of their files."""
 
 _IN_HOMES = frozenset({"grounded", "graphs", "states"})
-JsonObject = dict[str, Any]
-"""A program's files by folder and home, or the JSON value of one of them."""
 
 _HOME = re.compile(r"(.*?)(_graph)?")
 

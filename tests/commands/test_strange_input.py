@@ -166,7 +166,7 @@ def test_only_line_ends_end_lines(run, tmp_path, odd):
 def test_dask_that_is_not_installed_is_named(monkeypatch):
     for name in ("dask", "distributed", "distributed.scheduler"):
         monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(HearthError, match=r"hearth\[dask\]"):
+    with pytest.raises(HearthError, match=r"pip install '\.\[dask\]'"):
         next(DaskEngine(2).run(None, iter(()), None))
 
 

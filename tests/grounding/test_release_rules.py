@@ -52,7 +52,6 @@ def test_what_is_not_ours_is_explained(read, knowledge):
 
 
 def test_the_steps_at_odds_are_named(read, knowledge):
-    program = read("[Walk] <television> (1)", "[TurnTo] <television> (1)", "[Watch] <television> (1)",
-                   "[SwitchOn] <television> (1)")  # fmt: skip
-    assert at_odds(program, knowledge) == (2, 3)
+    lines = "[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Walk] <fridge> (1)", "[Open] <fridge> (1)"
+    assert at_odds(read(*lines), knowledge) == (1, 3)
     assert at_odds(read("[Walk] <television> (1)"), knowledge) == ()

@@ -112,7 +112,7 @@ def test_make_runs_all_stages_in_order_ends_with_the_funnel_and_then_does_nothin
         ("data_raw/crowd/programs.csv", "ingest"),
         ("data_raw/crowd/descriptions.csv", "ingest"),
         ("data_raw/homes/maple.yaml", "sample"),
-        ("kb/data/actions.yaml", "validate"),
+        ("kb/data/actions.yaml", "ingest"),
         ("rendering/models/looks.yaml", "render"),
         ("pipelines/publish.py", "publish"),
         ("setup.sh", None),
