@@ -126,6 +126,10 @@ class Job:
     settings: Settings
     plan: Plan = field(default_factory=dict)
 
+    def __reduce__(self) -> tuple[type[Job], tuple[Stage, Settings, Plan]]:
+        """Pickle without the context: each process opens its own."""
+        return Job, (self.stage, self.settings, self.plan)
+
     @property
     def folder(self) -> Path:
         """The folder of the stage."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -11,10 +12,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from hearth.pipelines import publish
 from hearth.pipelines.engine import runner
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stage import Partition, Stage
+from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.lock import locked
@@ -270,3 +272,10 @@ def test_parts_are_shared_and_gathered_without_loss(settings):
         for each in found
     ]
     assert rows[0] == rows[1] == rows[2]
+
+
+def test_a_job_goes_to_a_worker_without_what_was_opened_here(settings):
+    job = Job(publish.STAGE, settings)
+    assert job.context.homes.names()
+    sent = pickle.loads(pickle.dumps(job))
+    assert sent == job and "context" not in vars(sent)
