@@ -63,6 +63,7 @@ def _explained(function: Callable[P, T]) -> Callable[P, T]:
             from hearth.schemas.arguments import explain
 
             explain(function, args, kwargs, error)
+            raise
 
     return call
 

@@ -10,7 +10,7 @@ from dataclasses import fields, is_dataclass
 from functools import wraps
 from itertools import chain
 from os import PathLike
-from typing import Any, NoReturn, ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -26,7 +26,9 @@ _KINDS: dict[str, Any] = {
 
 
 def explained(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; where it fails because of its arguments, it raises an error of ours.
+    """The function; where it fails and an argument is not of its type, it raises an error of ours.
+
+    What is raised though all arguments fit stays what it is: a documented KeyError, or a fault of ours.
 
     Raises:
         HearthError: BAD_ARGUMENT, naming the argument, what it is and what it should be.
@@ -38,19 +40,17 @@ def explained(function: Callable[P, T]) -> Callable[P, T]:
             return function(*args, **kwargs)
         except Exception as error:
             explain(function, args, kwargs, error)
+            raise
 
     return call
 
 
-def explain(
-    function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any], error: Exception
-) -> NoReturn:
-    """Raise the error of ours for a failed call; one that is ours stays as it is."""
-    if isinstance(error, HearthError):
-        raise error
-    found = next(_misfits(function, args, kwargs), f"it failed on these arguments: {error!r}")
-    message = f"{function.__qualname__}: {found}"
-    raise HearthError.of(Code.BAD_ARGUMENT, message[:500], suggestion=_form(function)) from error
+def explain(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any], error: Exception) -> None:
+    """Raise the error of ours for a failed call with an argument that is not of its type."""
+    found = None if isinstance(error, HearthError) else next(_misfits(function, args, kwargs), None)
+    if found is not None:
+        message = f"{function.__qualname__}: {found}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message[:500], suggestion=_form(function)) from error
 
 
 def _misfits(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> Iterator[str]:
@@ -94,9 +94,10 @@ def _unlike(value: Any, expected: str, where: str) -> Iterator[str]:
     elif is_dataclass(value) and type(value).__module__.startswith("hearth.schemas."):
         for field in fields(value):
             yield from _unlike(getattr(value, field.name), _text(field.type), f"{where}.{field.name}")
-    elif isinstance(value, tuple | list) and type(value) in (tuple, list) and fitting[0].endswith(", ..."):
+    elif isinstance(value, tuple | list | str | bytes | AbstractSet) and (inner := fitting[0].removesuffix(", ...")):
+        kinds = list(_parts(inner, ", "))
         for number, each in enumerate(value):
-            yield from _unlike(each, fitting[0].removesuffix(", ..."), f"{where}[{number}]")
+            yield from _unlike(each, kinds[min(number, len(kinds) - 1)], f"{where}[{number}]")
 
 
 def _is(value: Any, name: str) -> bool:

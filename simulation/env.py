@@ -102,7 +102,13 @@ class Env:
         return {number: self.observe(number) for number in range(len(self.world.agents))}
 
     def restore(self, world: World) -> None:
-        """Go on from a world, as if nothing had happened before."""
+        """Go on from a world, as if nothing had happened before.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if it is no world; the episode then stays as it is.
+        """
+        if not isinstance(world, World):
+            raise HearthError.of(Code.BAD_ARGUMENT, f"`world` is {type(world).__name__}, not World")
         self._world = world
         self.ticks = []
         self._last_actions = {}

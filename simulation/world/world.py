@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.world import rows
@@ -47,8 +49,15 @@ class World(WorldState):
 
     @explained
     def has_state(self, node_id: int, state: str) -> bool:
-        """Whether a node is in a state."""
-        return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
+        """Whether a node is in a state.
+
+        Raises:
+            HearthError: BAD_ARGUMENT, if there is no such node or state.
+        """
+        try:
+            return bool(self.states[STATE_ID[state]] >> self.home.index[node_id] & 1)
+        except KeyError as error:
+            raise HearthError.of(Code.BAD_ARGUMENT, f"there is no node or state {error.args[0]!r}") from None
 
     @explained
     def graph(self, among: int = -1) -> EnvironmentGraph:

@@ -99,12 +99,25 @@ def test_a_step_that_cannot_be_is_a_failure(calls, step, code):
     assert isinstance(result, Failure) and result.code == code
 
 
-def test_what_is_ours_and_what_is_right_pass_through():
+def test_what_fails_though_its_arguments_fit_stays_what_it_is():
     @explained
     def divided(number: int, by: float = 1) -> float:
         return number / by
 
     assert divided(6, by=2) == 3 and inspect.signature(divided).parameters.keys() == {"number", "by"}
-    with pytest.raises(HearthError, match="failed on these arguments: ZeroDivisionError") as caught:
+    with pytest.raises(ZeroDivisionError):
         divided(1, 0)
-    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+    with pytest.raises(HearthError, match="`by` is str, not float") as caught:
+        divided(1, "x")
+    assert isinstance(caught.value.__cause__, TypeError)
+
+
+def test_an_unknown_id_is_a_key_error(tmp_path):
+    (tmp_path / "milk.txt").write_text(TEXT)
+    dataset = hearth.build([tmp_path / "milk.txt"], tmp_path / "out", homes=("maple",), pictures=0).dataset
+    dataset = hearth.load(dataset)
+    for ask in (dataset.__getitem__, dataset.home, lambda name: dataset.to_tensors([name])):
+        with pytest.raises(KeyError, match="nobody"):
+            ask("nobody")
+    with pytest.raises(HearthError, match=r"`program_ids` is int, not Iterable\[str\]"):
+        dataset.to_tensors(3)
