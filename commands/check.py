@@ -180,5 +180,6 @@ def _print(checked: list[Checked], faults: int) -> None:
     result = output.counted(faults, "fault") if faults else "no faults"
     warnings = sum(len(each.warnings) for each in checked)
     result += f", {output.counted(warnings, 'warning')}" if warnings else ""
-    counts = [output.counted(len(checked), "file"), output.counted(programs, "program"), output.counted(steps, "step")]
+    read = "source" if any(Path(each.file).is_dir() for each in checked) else "file"
+    counts = [output.counted(len(checked), read), output.counted(programs, "program"), output.counted(steps, "step")]
     print(f"{', '.join(counts)}: {result}")

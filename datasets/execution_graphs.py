@@ -10,6 +10,7 @@ from hearth.datasets.dataset import Dataset, Run
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
+from hearth.schemas.arguments import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 
@@ -45,6 +46,7 @@ class ExecutionGraphs(Sequence[GraphPair]):
         (2, 10)
     """
 
+    @explained
     def __init__(self, dataset: Dataset, ids: Iterable[str] | None = None) -> None:
         query = f"SELECT execution_id FROM executions WHERE {dataset.included} ORDER BY 1"
         self.folder = dataset.folder

@@ -89,6 +89,8 @@ def _file(name: str, directory: Path | str | None) -> Path:
     if name not in known:
         near = get_close_matches(name, known, 1)
         hint = f"did you mean `{near[0]}`?" if near else f"homes are {', '.join(sorted(known))}"
+        if name.endswith((".json", ".yaml")):
+            hint = "a file is not a name: give a scene graph by --graph, a folder of homes by --homes"
         raise HearthError.of(Code.UNKNOWN_HOME, f"there is no home `{name}`", suggestion=hint)
     return known[name]
 

@@ -150,7 +150,7 @@ def _culprit(program: Program, conditions: Preconditions, step: int, knowledge: 
     earlier step about that object, else the last that moved the character.
     """
     keys = {ref.key for ref in program.steps[step].objects}
-    changing = knowledge.group("operates") | knowledge.group("takes") | knowledge.group("dresses")
+    changing = frozenset[str]().union(*map(knowledge.group, ("operates", "takes", "frees_hand", "dresses")))
     for number in range(step - 1, -1, -1):
         if keys & {ref.key for ref in program.steps[number].objects} and program.steps[number].action in changing:
             return number

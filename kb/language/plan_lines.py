@@ -85,7 +85,7 @@ def header(text: str) -> Header:
     """Title and description: the lines before the first step.
 
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
-    first; lines before it belong to no description.
+    first; lines before it belong to no description. `Here is my plan:` is no title.
     """
     lines = list(map(plan_line, text.split("\n")))
     is_ordered = ordered(lines)
@@ -98,9 +98,11 @@ def header(text: str) -> Header:
     if not ranks:
         return Header("", "")
     at = min(ranks)[-1]
-    title, asked = TITLE.sub("", found[at].text, count=1), _ASKED.match(found[at].text)
-    if asked and _ANSWER.match(title):
-        title = asked[1].rstrip(" :.!")
+    line, named = found[at].text, TITLE.match(found[at].text)
+    asked = _ASKED.match(line)
+    title = line[named.end() :] if named else line
+    if not named and _ANSWER.match(line) and (asked or line.endswith((":", "!"))):
+        title = asked[1].rstrip(" :.!") if asked else ""
     return Header(title, "\n".join(line.text for line in found[at + 1 :]))
 
 

@@ -41,12 +41,7 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
     first, layout = _begun(rows)
     columns = guessed(layout.columns, given)
     if not {"program", "description"} & columns.keys():
-        message = "a table without a column of programs or descriptions that is known by its name"
-        names = [*layout.columns, "...", "..."]
-        suggestion = f"name them, as in `--columns title={names[0]},program={names[1]}`"
-        found = ", ".join(layout.columns)[:200]
-        fault = Reject.of(Code.BAD_TABLE, message, file=place, line=first, found=found, suggestion=suggestion)
-        yield refused(place, fault)
+        yield refused(place, _unnamed(rows, first, layout, place, given))
         return
     empty = True
     for line, raw, cells in rows.parsed(layout):
@@ -61,3 +56,23 @@ def scan(path: Place, place: str, given: FieldColumns) -> Iterator[Item]:
             yield from ours.items(values, place, line, f"{place}:{line}", {})
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a table with its first line only", file=place, line=first))
+
+
+def _unnamed(rows: Rows, line: int, layout: Layout, place: str, given: FieldColumns) -> Reject:
+    """The fault of a table none of whose columns is known; the longest cell of its first row may be a program."""
+    lacking = [name for field, name in given.items() if field in ("program", "description")]
+    message = "a table without a column of programs or descriptions that is known by its name"
+    if lacking:
+        message = f"a table without a column {' or '.join(f'`{name}`' for name in lacking)}"
+    names, cells = layout.columns or ("...",), next((cells for _, _, cells in rows.parsed(layout) if cells), [])
+    lengths = [*map(len, cells), *[0] * len(names)]
+    program = max(range(len(names)), key=lambda at: lengths[at])
+    title = next((name for at, name in enumerate(names) if at != program), "...")
+    return Reject.of(
+        Code.BAD_TABLE,
+        message,
+        file=place,
+        line=line,
+        found=", ".join(layout.columns)[:200],
+        suggestion=f"name them, as in `--columns title={title},program={names[program]}`",
+    )

@@ -54,6 +54,15 @@ def test_every_form_is_checked_and_run(tmp_path, name):
     assert [step.partition("]")[0] for step in found["steps"]] == ["[Walk", "[SwitchOn"] and found["executable"]
 
 
+def test_a_folder_is_a_source_and_a_file_is_no_home(tmp_path):
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text(TEXT.replace("Watch", name))
+    assert call("check", tmp_path).stdout.startswith("1 source, 2 programs, 4 steps")
+    assert call("check", tmp_path / "a.txt").stdout.startswith("1 file, 1 program")
+    refused = call("run", tmp_path / "a.txt", "--home", "scene.json", status=2)
+    assert "give a scene graph by --graph" in refused.output
+
+
 def test_one_bad_step_does_not_sink_the_rest(tmp_path):
     file = tmp_path / "plan.md"
     file.write_text(PLAN)

@@ -11,6 +11,7 @@ import pytest
 
 import hearth
 from hearth.datasets.execution_graphs import ExecutionGraphs
+from hearth.schemas.diagnostics import HearthError
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +78,11 @@ def test_it_is_sent_to_workers_without_its_connection(pairs):
     pairs[0]
     copy = pickle.loads(pickle.dumps(pairs))
     assert copy._opened is None and copy[0] == pairs[0]
+
+
+def test_a_folder_is_not_a_dataset(pairs):
+    with pytest.raises(HearthError, match="`dataset` is str, not Dataset"):
+        ExecutionGraphs(str(pairs.folder))
 
 
 def test_it_needs_no_torch():

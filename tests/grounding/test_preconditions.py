@@ -83,6 +83,7 @@ def test_what_the_program_provides_is_not_needed(knowledge):
     [
         (["[Walk] <television> (1)", "[SwitchOn] <television> (1)", "[SwitchOn] <television> (1)"], 3, 2),
         (["[Walk] <fridge> (1)", "[Open] <fridge> (1)", "[Open] <fridge> (1)"], 3, 2),
+        (["[Grab] <cup> (1)", "[PutBack] <cup> (1) <table> (1)", "[Drink] <cup> (1)"], 3, 2),
     ],
 )
 def test_a_contradiction_names_both_steps(knowledge, steps, needing, violating):

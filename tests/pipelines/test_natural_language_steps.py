@@ -114,6 +114,9 @@ def test_a_language_model_s_markdown(write, knowledge):
     ("text", "title", "steps"),
     [
         ("Here is a plan for watching TV:\n\n1. Walk to the TV\n2. Turn on the TV\n", "watching TV", 2),
+        ("Here is my plan:\n\n1. Walk to bed\n2. Lie on bed\n", "", 2),
+        ("Sure thing!\n1. Walk to bed\n2. Lie on bed\n", "", 2),
+        ("Sunday plan: nap\n1. Walk to bed\n2. Lie on bed\n", "Sunday plan: nap", 2),
         ("**Task:** Nap\n```\n[Walk] <bed> (1)\n[Lie] <bed> (1)\n```\nHope this helps!\n", "Nap", 2),
         ("Nap\n- [Walk] <bed> (1)\n- [Lie] <bed> (1)\n", "Nap", 2),
         ("Nap\n## Phase 1\n1. Walk to bed\n## Phase 2\n2. Lie on bed\n", "Phase 1", 2),

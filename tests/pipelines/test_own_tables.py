@@ -106,6 +106,14 @@ def test_a_table_without_known_columns_names_them(write):
     assert "--columns title=Alpha" in fault.suggestion
 
 
+def test_a_table_of_other_names_is_told_by_its_longest_cell_and_what_was_asked_for(write):
+    file = write("sheet.csv", table(["Alpha", "Beta", "Gamma"]))
+    (reject,) = read(file)
+    assert "--columns title=Alpha,program=Gamma" in reject.diagnostics[0].suggestion
+    (reject,) = read(file, program="Delta")
+    assert reject.diagnostics[0].message == "a table without a column `Delta`"
+
+
 @pytest.mark.parametrize(
     "cell",
     [
