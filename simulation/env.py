@@ -105,7 +105,7 @@ class Env:
         """Go on from a world, as if nothing had happened before.
 
         Raises:
-            HearthError: BAD_ARGUMENT, if it is no world; the episode then stays as it is.
+            HearthError: BAD_ARGUMENT, if it is not a world; the episode then stays as it is.
         """
         if not isinstance(world, World):
             raise HearthError.of(Code.BAD_ARGUMENT, f"`world` is {type(world).__name__}, not World")

@@ -85,7 +85,7 @@ def header(text: str) -> Header:
     """Title and description: the lines before the first step.
 
     The title is the line after `Task:`, else the first heading, else the first line that is not a sentence, else the
-    first; lines before it belong to no description. `Here is my plan:` is no title.
+    first; lines before it belong to no description. `Here is my plan:` is not a title.
     """
     lines = list(map(plan_line, text.split("\n")))
     is_ordered = ordered(lines)
