@@ -1,18 +1,19 @@
 """Faults of a scene graph, each with the ids of the nodes concerned."""
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TypeVar
 
+from hearth.homes.forms import form
+from hearth.homes.from_graph.measured import has_geometry, measured
+from hearth.homes.plans.checks import joined
+from hearth.homes.plans.floor import REACH
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.literals import HANDS
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATIONS, ROOM_CATEGORY, STATES
-
-Id = TypeVar("Id", int, str)
 
 CATEGORIES = (
     "Animals", "Appliances", "BodyParts", "Ceiling", "Characters", "Clothes", "Decor", "Doors", "Electronics", "Floor",
@@ -220,15 +221,6 @@ def _doors(view: View) -> Iterator[Diagnostic]:
         yield _fault(Code.NO_PATH, f"no door leads from {view.label(rooms[0])} to {names}", tuple(cut), "add a door")
 
 
-def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
-    """What is reached from `start` through doors, each a set of what it joins."""
-    found, left = {start}, list(doors)
-    while through := [ends for ends in left if ends & found]:
-        left = [ends for ends in left if not ends & found]
-        found.update(*through)
-    return found
-
-
 def _hands(view: View) -> Iterator[Diagnostic]:
     holders: dict[int, set[int]] = defaultdict(set)
     for hand in HANDS:
@@ -258,6 +250,24 @@ def _close(view: View) -> Iterator[Diagnostic]:
                 yield _fault(Code.BAD_GRAPH, message, (one, other), f"add {other} CLOSE {one}")
 
 
+def _on_foot(view: View) -> Iterator[Diagnostic]:
+    """What stands on the floor, and who, where the largest free region of it does not come near."""
+    if not has_geometry(view.graph):
+        return
+    layout = measured(view.graph, "", view.knowledge)
+    floor, numbers = layout.floor, {room.name: number for number, room in enumerate(layout.plan.rooms)}
+    for thing in layout.things:
+        shaped = form(thing.class_name, view.knowledge)
+        far = floor.distance(thing.box, numbers.get(thing.room, -1))
+        if shaped is not None and shaped.mount == "floor" and far > REACH:
+            message = f"nobody gets nearer than {far:.2f} m to {view.label(int(thing.name))}"
+            yield _fault(Code.NO_PATH, message, (int(thing.name),), f"free the way to within {REACH:g} m of it")
+    for node in view.graph.nodes:
+        if node.class_name == CHARACTER_CLASS and node.box is not None and floor.distance(node.box) > 0:
+            message = f"{view.label(node.id)} does not stand in the main region of the floor"
+            yield _fault(Code.NO_PATH, message, (node.id,), "move it to where all rooms can be walked to")
+
+
 CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
     "ids": _ids,
     "names": _names,
@@ -269,5 +279,6 @@ CHECKS: dict[str, Callable[[View], Iterator[Diagnostic]]] = {
     "doors": _doors,
     "hands": _hands,
     "close": _close,
+    "on foot": _on_foot,
 }
 """Every check of a graph."""

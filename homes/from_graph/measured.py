@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping
 
 from hearth.homes.forms import form
-from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, footprint, top
+from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, bottom, footprint, top
+from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import Doorway, Plan, Room
 from hearth.homes.plans.shell import WALL, Opening, Shell, Thing, shared_wall
@@ -33,8 +34,9 @@ def measured(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Layout
             between.setdefault(edge.source, []).append(edge.target)
     rooms = tuple(_room(node, names[node.id], boxes[node.id]) for node in graph.nodes if node.id in boxes)
     openings, doors = [], []
+    walls = [footprint(n.box) for n in graph.nodes if n.class_name == "wall" and n.box and bottom(n.box) < HEAD]
     for node in graph.nodes:
-        found = list(_openings(node, between.get(node.id, []), names, boxes))
+        found = list(_openings(node, between.get(node.id, []), names, boxes, walls))
         openings += found
         doors += [found[0].door] if found and found[0].door else []
     people = [inside.get(node.id, "") for node in graph.nodes if node.class_name == CHARACTER_CLASS]
@@ -58,11 +60,14 @@ def _thing(node: Node, room: str, box: Box, knowledge: Knowledge) -> Thing:
     return Thing(str(node.id), node.class_name, room, box, node.yaw, mount, line=node.id)
 
 
-def _openings(node: Node, rooms: list[int], names: Mapping[int, str], boxes: Mapping[int, Box]) -> Iterator[Opening]:
+def _openings(
+    node: Node, rooms: list[int], names: Mapping[int, str], boxes: Mapping[int, Box], walls: list[Rect]
+) -> Iterator[Opening]:
     """The hole of a doorway in the wall of each of its two rooms: where its jamb is, or beside its open leaf."""
     if node.class_name not in ("door", "doorjamb") or node.box is None or len(rooms) != 2:
         return
-    place = _hole(node.box) if node.class_name == "doorjamb" else _beside_leaf(node.box, *(boxes[r] for r in rooms))
+    joined = (boxes[rooms[0]], boxes[rooms[1]])
+    place = _hole(node.box) if node.class_name == "doorjamb" else _beside_leaf(node.box, *joined, walls)
     if place is None:
         return
     along, start, end, at = place
@@ -82,8 +87,10 @@ def _hole(jamb: Box) -> DoorHole:
     return (True, rect.x0, rect.x1, rect.center[1]) if along else (False, rect.z0, rect.z1, rect.center[0])
 
 
-def _beside_leaf(leaf: Box, one: Box, other: Box) -> DoorHole | None:
-    """An open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long."""
+def _beside_leaf(leaf: Box, one: Box, other: Box, walls: list[Rect]) -> DoorHole | None:
+    """An open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long: the end
+    at which less of the wall stands in the hole.
+    """
     shared = shared_wall(footprint(one).inset(-WALL), footprint(other).inset(-WALL))
     if shared is None:
         return None
@@ -91,9 +98,15 @@ def _beside_leaf(leaf: Box, one: Box, other: Box) -> DoorHole | None:
     along, width = along_x(wall), max(leaf.size[0], leaf.size[2])
     rect, (x, z) = footprint(one), footprint(leaf).center
     middle = x if along else z
-    start = middle if middle + width <= high else middle - width
-    sides = {"north": rect.z1, "south": rect.z0, "east": rect.x1, "west": rect.x0}
-    return along, max(low, start), min(high, start + width), sides[wall]
+    at = {"north": rect.z1, "south": rect.z0, "east": rect.x1, "west": rect.x0}[wall]
+
+    def filled(start: float) -> float:
+        hole = (start, at - WALL, start + width, at + WALL) if along else (at - WALL, start, at + WALL, start + width)
+        return sum(Rect(*hole).overlap(panel) for panel in walls)
+
+    start = min((start for start in (middle, middle - width) if low - WALL <= start <= high + WALL - width),
+                key=filled, default=middle)  # fmt: skip
+    return along, max(low, start), min(high, start + width), at
 
 
 def _nearest(room: Rect, at: float, along: bool) -> str:

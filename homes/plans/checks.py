@@ -1,20 +1,22 @@
 """Checks of a plan's entries together: rooms do not overlap, doors lead somewhere, furniture can be reached."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
-from hearth.homes.lint import joined
-from hearth.homes.plans.floor import Floor, stands_on_floor
+from hearth.homes.plans.floor import REACH, Floor, stands_on_floor
 from hearth.homes.plans.plan import OUTSIDE, Faults, Plan
 from hearth.homes.plans.shell import Shell, Thing, before, interior, strip
 from hearth.schemas.failures import Code
 
+Id = TypeVar("Id", int, str)
+
 TOUCH = 0.011
 """Things may stand this far in each other: plans are rounded to centimetres."""
-REACH = 0.6
-"""From how far a thing is used."""
+FRONT = 0.6
+"""Metres before its front from which a thing is used."""
 LEAST_ROOM = 0.9
 
 
@@ -139,26 +141,35 @@ def _check_reach(plan: Plan, things: Sequence[Thing], floor: Floor, faults: Faul
     faulty = {fault.line for fault in faults}
     if faulty & ({room.line for room in plan.rooms} | {door.line for door in plan.doorways}):
         return
-    regions = floor.regions()
-    main = _main_region(regions)
     for number, room in enumerate(plan.rooms):
-        if not ((regions == main) & (floor.room == number)).any() and main:
+        if not (floor.main & (floor.room == number)).any() and floor.main.any():
             faults.add(Code.NO_PATH, f"furniture leaves no way into {room.name}", room.line,
                        "clear half a metre from its door")  # fmt: skip
     for thing in things:
         if thing.front and thing.mount == "floor" and thing.yaw is not None and thing.line not in faulty:
-            zone = before(footprint(thing.box), thing.yaw, max(thing.front, REACH))
-            if not _any_in(regions == main, floor, zone):
+            zone = before(footprint(thing.box), thing.yaw, max(thing.front, FRONT))
+            if not _any_in(floor.main, floor, zone):
                 faults.add(Code.NO_PATH, f"nobody can get to the front of {_short(thing)}", thing.line,
                            f"leave {thing.front:g} m free on its {front_of(thing.yaw)} side")  # fmt: skip
-
-
-def _main_region(regions: np.ndarray) -> int:
-    sizes = np.bincount(regions.ravel())[1:]
-    return int(sizes.argmax()) + 1 if sizes.size else 0
+    numbers = {room.name: number for number, room in enumerate(plan.rooms)}
+    for thing in things:
+        if thing.mount == "floor" and thing.line not in {fault.line for fault in faults}:
+            far = floor.distance(thing.box, numbers[thing.room])
+            if REACH < far < np.inf:
+                faults.add(Code.NO_PATH, f"nobody gets nearer than {far:.2f} m to {_short(thing)}", thing.line,
+                           f"leave a way of half a metre to within {REACH:g} m of it")  # fmt: skip
 
 
 def _any_in(mask: np.ndarray, floor: Floor, zone: Rect) -> bool:
     i0, j0 = floor.index(zone.x0, zone.z0)
     i1, j1 = floor.index(zone.x1, zone.z1)
     return bool(mask[max(i0, 0) : i1 + 1, max(j0, 0) : j1 + 1].any())
+
+
+def joined(start: Id, doors: Iterable[set[Id]]) -> set[Id]:
+    """What is reached from `start` through doors, each a set of what it joins."""
+    found, left = {start}, list(doors)
+    while through := [ends for ends in left if ends & found]:
+        left = [ends for ends in left if not ends & found]
+        found.update(*through)
+    return found

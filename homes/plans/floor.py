@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from hearth.homes.geometry import Rect, bottom, footprint
 from hearth.homes.plans import raster
 from hearth.homes.plans.plan import Plan
 from hearth.homes.plans.shell import WALL, Shell, Thing, interior, strip
+from hearth.schemas.graph import Box
 
 CELL = 0.1
 """Metres a cell."""
@@ -16,6 +18,8 @@ BODY = 0.2
 """Half the width of someone walking."""
 HEAD = 1.8
 """What hangs higher is walked under."""
+REACH = 0.9
+"""Metres from a thing's outline within which it can be handled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,26 @@ class Floor:
     def regions(self) -> np.ndarray:
         """Int array: walkable cells that reach each other share a number from 1; others are 0."""
         return raster.regions(self.walkable)
+
+    @cached_property
+    def main(self) -> np.ndarray:
+        """Bool, same shape: the largest region; who is elsewhere on the floor can't leave its pocket."""
+        numbered = self.regions()
+        sizes = np.bincount(numbered.ravel())
+        sizes[0] = 0
+        return np.asarray((numbered > 0) & (numbered == sizes.argmax()))
+
+    def distance(self, box: Box, room: int = -1) -> float:
+        """Metres from a box's outline to the nearest main cell, in one room if its number is given; inf without any."""
+        cells = np.argwhere(self.main if room < 0 else self.main & (self.room == room))
+        return float(gaps(np.asarray(self.origin) + (cells + 0.5) * self.cell, box).min(initial=np.inf))
+
+
+def gaps(points: np.ndarray, box: Box) -> np.ndarray:
+    """Metres over the floor from points (n, 2) to a box's outline; 0 within it."""
+    (x, _, z), (width, _, depth) = box
+    outside = np.abs(points - (x, z)) - (width / 2, depth / 2)
+    return np.asarray(np.hypot(*np.maximum(outside, 0.0).T))
 
 
 def stands_on_floor(thing: Thing) -> bool:

@@ -46,7 +46,7 @@ class Layout:
 
     @cached_property
     def character(self) -> Thing:
-        """The character: standing in its room, at the walkable point with most space around it."""
+        """The character: standing in its room, at the point of the main region with most space around it."""
         return _character(self)
 
     def rooms(self) -> Iterator[Thing]:
@@ -192,7 +192,7 @@ def _character(layout: Layout) -> Thing:
     plan, floor = layout.plan, layout.floor
     names = [room.name for room in plan.rooms]
     number = names.index(plan.character) if plan.character in names else 0
-    space = raster.clearance(floor.free) * (floor.walkable & (floor.room == number))
+    space = raster.clearance(floor.free) * (floor.main & (floor.room == number))
     i, j = divmod(int(space.argmax()), space.shape[1])
     x, z = floor.center(i, j)
     width, height, depth = PERSON

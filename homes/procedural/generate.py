@@ -75,7 +75,9 @@ def _furniture(room: Room, plan: Plan, built: Shell, knowledge: Knowledge, rng: 
 
 
 def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
-    """The plan with everything in its place; small things that find none are left out, other faults end it."""
+    """The plan with everything in its place; small things that find none are left out, and what nobody gets to, unless
+    it is used from its front; other faults end it.
+    """
     known: dict[int, tuple[Room, tuple[Thing, ...]]] = {}
     for _ in range(3):
         faults = Faults(plan.name)
@@ -85,7 +87,13 @@ def _settled(plan: Plan, knowledge: Knowledge) -> Layout | None:
             plan = _without(plan, crowded)
             continue
         checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
-        return None if faults else layout
+        if not faults:
+            return layout
+        far = {fault.line for fault in faults if fault.code == Code.NO_PATH}
+        used = {thing.line for thing in layout.things if thing.front}
+        if len(far) < len(faults) or far & used or not far:
+            return None
+        plan = _without(plan, far)
     return None
 
 

@@ -8,7 +8,7 @@ from hearth.homes import library
 from hearth.homes.lint import CHECKS, lint
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Edge, EnvironmentGraph, Node
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 
 ROOM, CHARACTER, CUP, FRIDGE, BOX = 1, 2, 3, 4, 5
 NODES = (
@@ -31,7 +31,19 @@ def with_node(node):
     return EnvironmentGraph((*NODES, node), INSIDE + edges)
 
 
+def walled_in(*boxes):
+    """A kitchen of 6 m by 4 m that a wall of fridges parts; the smaller part has the box in it."""
+    room = Node(ROOM, "kitchen", "Rooms", box=Box((3.0, 1.25, 2.0), (6.0, 2.5, 4.0)))
+    wall = replace(NODES[3], box=Box((4.5, 0.9, 2.0), (0.6, 1.8, 4.0)))
+    own = {node.id: node for node in (room, wall, *boxes)}
+    return replace(SOUND, nodes=tuple(own.get(node.id, node) for node in NODES))
+
+
+IN_THE_CORNER = Box((5.6, 0.3, 2.0), (0.5, 0.6, 0.5))
+
 ODD = {
+    "out of reach": (walled_in(replace(NODES[4], class_name="bed", box=IN_THE_CORNER)), Code.NO_PATH, "5"),
+    "character in a pocket": (walled_in(replace(NODES[1], box=IN_THE_CORNER)), Code.NO_PATH, "2"),
     "two nodes of one id": (replace(SOUND, nodes=(*NODES, Node(CUP, "cup", "Props"))), Code.DUPLICATE, "3"),
     "unknown category": (with_node(Node(9, "cup", "Spaceship")), Code.BAD_GRAPH, "9"),
     "unknown class": (with_node(Node(9, "warpdrive", "Props")), Code.UNKNOWN_OBJECT, "9"),
