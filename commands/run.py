@@ -61,9 +61,9 @@ def run(
     failure = trial if isinstance(trial, Failure) else trial.execution.failure
     progress = None if isinstance(trial, Failure) or not goal else _progress(goal, trial)
     if as_json:
-        output.emit(_json(trial, place, homes) | ({"goal": _goal_json(progress)} if progress else {}))
+        output.emit(_json(trial, place) | ({"goal": _goal_json(progress)} if progress else {}))
     else:
-        _print(program, trial, place, explain, homes)
+        _print(program, trial, place, explain)
         if progress:
             print("Goal: reached." if progress.satisfied else f"Goal: not reached; unmet: {progress.unmet()}.")
     output.status(failure is not None or (progress is not None and not progress.satisfied), strict=True)
@@ -79,7 +79,7 @@ def _goal_json(progress: Progress) -> dict[str, Any]:
     return {"reached": progress.satisfied, "fraction": progress.fraction, "unmet": str(progress.unmet())}
 
 
-def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool, homes: Path | None) -> None:
+def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool) -> None:
     from hearth.schemas.failures import Failure
 
     print(f"{program.title or 'A program'}, in {place.name}")
@@ -88,7 +88,7 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
         return
     _print_binding(trial)
     execution = trial.execution
-    poses = _poses(trial, place, homes) if explain else ()
+    poses = _poses(trial) if explain else ()
     for number, tick in enumerate(execution.program.ticks()):
         before = execution.worlds[number]
         if number + 1 == len(execution.worlds):
@@ -104,15 +104,11 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool,
     print(f"Done: {output.counted(len(execution.worlds) - 1, 'tick')}.")
 
 
-def _poses(trial: Trial, place: Home, homes: Path | None) -> tuple[tuple[HandAndBasePose, ...], ...]:
+def _poses(trial: Trial) -> tuple[tuple[HandAndBasePose, ...], ...]:
     """The hand and base pose of the characters for each tick; nothing in homes without geometry."""
-    from hearth.homes import library
     from hearth.simulation.motion.base_pose import hand_and_base_poses
-    from hearth.simulation.motion.navigation import Ways
 
-    if place.name not in library.names(homes) or place.node(place.agents[0]).box is None:
-        return ()
-    return hand_and_base_poses(trial.execution, Ways(library.load_layout(place.name, place.knowledge, homes).floor))
+    return hand_and_base_poses(trial.execution)
 
 
 def _pose(found: HandAndBasePose) -> str:
@@ -163,7 +159,7 @@ def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:
             print(f"       {check.literal}{'  by  ' + check.by if check.by else ''}")
 
 
-def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, Any]:
+def _json(trial: Trial | Failure, place: Home) -> dict[str, Any]:
     from hearth.datasets.format.codecs import change_row
     from hearth.schemas.failures import Failure
     from hearth.schemas.syntax import print_step
@@ -181,5 +177,5 @@ def _json(trial: Trial | Failure, place: Home, homes: Path | None) -> dict[str, 
         "binding": {f"{ref.name} ({ref.instance})": ref.node for ref in execution.program.objects()},
         "steps": [print_step(step) for step in execution.program.steps],
         "changes": changes,
-        "stances": _poses(trial, place, homes),
+        "stances": _poses(trial),
     }

@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
-from hearth.simulation.actions.registry import ACTIONS
+from hearth.simulation.actions.metres import followed
+from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
+from hearth.simulation.motion.placing import placed
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
@@ -50,6 +52,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
         >>> execution.executable, len(execution.worlds), execution.final.holding()
         (True, 4, {0: (142,)})
     """
+    world = _placed_for(world, program)
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
@@ -64,12 +67,18 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Only the end of a run, for who needs no trace."""
+    world = _placed_for(world, program)
     for number, steps in enumerate(_ticks(program)):
         result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
             return replace(result, tick=number)
         world = result
     return world
+
+
+def _placed_for(world: World, program: Program) -> World:
+    """The world with its characters at places if a program moves them by metres."""
+    return placed(world) if any(step.action in MOVES for step in program.steps) else world
 
 
 def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT) -> World | Failure:
@@ -80,8 +89,12 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
 
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
-    action = ACTIONS.get(instruction.action)
-    if action is None or not 0 <= instruction.agent < len(world.agents):
+    number = instruction.agent
+    if not 0 <= number < len(world.agents):
+        return _refused(world, instruction)
+    placed_there = world.agents[number].pose is not None
+    action = (EVERY if placed_there else ACTIONS).get(instruction.action)
+    if action is None:
         return _refused(world, instruction)
     index = world.home.index
     objects = instruction.objects
@@ -93,12 +106,12 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
     except KeyError:
         return _unbound(world, instruction)
-    result = action.rule(world, instruction.agent, o, s, rules)
-    if result.__class__ is Failure:
+    result = action.rule(world, number, o, s, rules)
+    if isinstance(result, Failure):
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
         rest = (result.objects, result.names, result.expected, result.actual)
-        return Failure(result.code, result.tick, instruction.agent, instruction.action, *rest)
-    return result
+        return Failure(result.code, result.tick, number, instruction.action, *rest)
+    return followed(result, number, instruction.action, o) if placed_there else result
 
 
 def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:
@@ -131,14 +144,20 @@ def tick(
         if instruction is None:
             continue
         mine = instruction if instruction.agent == agent else replace(instruction, agent=agent)
-        result = act(world, mine, rules)
-        if isinstance(result, World) and now is not world:
-            result = _after_others(act(now, mine, rules), mine.action)
+        result = act(now, mine, rules)
+        if now is not world and (isinstance(result, Failure) or not _only_moves(mine, world, now)):
+            alone = act(world, mine, rules)
+            result = alone if isinstance(alone, Failure) else _after_others(result, mine.action)
         if isinstance(result, Failure):
             failures[agent] = result
         else:
             now = result
     return now, failures
+
+
+def _only_moves(instruction: Step, before: World, now: World) -> bool:
+    """Whether an instruction can't have become possible by what changed: a move of metres that no door allowed."""
+    return instruction.action in MOVES and before.states is now.states
 
 
 def _after_others(result: World | Failure, action: str) -> World | Failure:

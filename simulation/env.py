@@ -17,6 +17,7 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.instructions import instruction_of
+from hearth.simulation.motion.placing import placed
 from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
@@ -35,14 +36,18 @@ class Tick:
     Attributes:
         instructions: what each agent tried, by number; who did nothing is not named.
         failures: why, for those who could not.
-        world: after it.
-        change: what is different from before it.
+        before, world: the world before and after it.
     """
 
     instructions: Mapping[int, Step]
     failures: Mapping[int, Failure]
+    before: World
     world: World
-    change: Change
+
+    @property
+    def change(self) -> Change:
+        """What is different from before it, poses aside."""
+        return self.world.changes(self.before)
 
 
 class Env:
@@ -83,12 +88,12 @@ class Env:
         return self._world
 
     def reset(self, home: Home | World | str, agents: int = 1, seed: int = 0) -> dict[int, View]:
-        """Begin anew.
+        """Begin anew. In a home with geometry every character stands at a place (see `motion.placing`).
 
         Args:
             home: where, or its name; a world is taken up as it stands.
             agents: how many are wanted at least. Those the home lacks are added, each in a random room.
-            seed: decides the rooms.
+            seed: decides the rooms, and the places in them of characters that are added.
 
         Returns:
             What each agent sees, by number.
@@ -98,7 +103,8 @@ class Env:
         """
         if isinstance(home, str):
             home = self._home(home)
-        self.restore(with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed))
+        world = with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed)
+        self.restore(placed(world, rng(seed, "poses", world.home.name)))
         return {number: self.observe(number) for number in range(len(self.world.agents))}
 
     def restore(self, world: World) -> None:
@@ -139,7 +145,7 @@ class Env:
         after, failures = engine.tick(before, tried, self.rules)
         self._world = after
         self._last_actions |= {number: LastAction(step, failures.get(number)) for number, step in tried.items()}
-        tick = Tick(tried, failures, after, after.changes(before))
+        tick = Tick(tried, failures, before, after)
         self.ticks.append(tick)
         return tick
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from operator import is_
 
 from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
@@ -18,6 +19,7 @@ from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent
 from hearth.simulation.holds import Candidates, candidates, nodes
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.touched import changed
 from hearth.simulation.world.world import World
 
 RELATED = frozenset({*RELATIONS, HOLDS})
@@ -103,7 +105,24 @@ class Progress:
         touched = _touched(change, world.home)
         if not touched:
             return self
-        return replace(self, watches=tuple(_updated(watch, world, touched) for watch in self.watches))
+        touched[HOLDS] = touched[HANDS[0]] | touched[HANDS[1]]
+        return replace(
+            self, watches=tuple(_updated(watch, world, touched[watch.literal.name]) for watch in self.watches)
+        )
+
+    def then(self, before: World, world: World, done: Sequence[Step] = ()) -> Progress:
+        """The same as `after`, from the world before instead of a change; faster, where both are of one home.
+
+        Args:
+            before: the world that this is the progress in.
+            world: after the tick.
+            done: the instructions of the tick, as `after` needs them.
+        """
+        if self.trace or before.home is not world.home:
+            return self.after(world, world.changes(before), done)
+        watches = [_updated(watch, world, changed(watch.literal.name, before, world)) for watch in self.watches]
+        same = all(map(is_, watches, self.watches))
+        return self if same else Progress(self.goal, tuple(watches))
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -140,16 +159,14 @@ class Progress:
         return zip(self.counts, self.goal, strict=True)
 
 
-def _updated(watch: Watch, world: World, touched: Mapping[str, int]) -> Watch:
-    name = watch.literal.name
-    changed = touched.get(HANDS[0], 0) | touched.get(HANDS[1], 0) if name == HOLDS else touched.get(name, 0)
-    if not changed:
+def _updated(watch: Watch, world: World, touched: int) -> Watch:
+    if not touched:
         return watch
-    met = watch.candidates.updated(watch.met, world, changed)
+    met = watch.candidates.updated(watch.met, world, touched)
     return watch if met == watch.met else replace(watch, met=met)
 
 
-def _touched(change: Change, home: Home) -> Mapping[str, int]:
+def _touched(change: Change, home: Home) -> defaultdict[str, int]:
     """The nodes that a change is about by relation or state; both ends of an edge."""
     found: defaultdict[str, int] = defaultdict(int)
     index = home.index

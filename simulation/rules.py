@@ -16,11 +16,13 @@ class Rules(NamedTuple):
             published end graphs were made, which decides 55 of 518 of them.
         watch_needs_on: watching something with a switch needs it ON (thesis 5.5.2); the release watches what is off.
         doors: a closed door on the only way between two rooms stops a walk; the release ignores doors.
+        bodies: characters at places do not walk by metres through each other.
     """
 
     origin: Literal["sensible", "release"] = "sensible"
     watch_needs_on: bool = True
     doors: bool = True
+    bodies: bool = False
 
 
 DEFAULT = Rules()

@@ -56,7 +56,7 @@ def _grab(world: World, number: int, o: int, rules: Rules) -> World:
         right |= bit
     taken = Agent(
         agent.index, agent.bit, close, agent.facing, agent.faced, agent.inside & ~bit, agent.contents & ~bit,
-        agent.on & ~bit, agent.worn & ~bit, right, left, memory,
+        agent.on & ~bit, agent.worn & ~bit, right, left, memory, agent.pose, agent.stride,
     )  # fmt: skip
     agents: tuple[Agent, ...] = (taken,)
     if len(world.agents) > 1:
@@ -134,8 +134,8 @@ def _put_at_character(world: World, edge: tuple[int, int, int]) -> World:
 
 def _freed(agent: Agent, o: int, close: int, worn: int, memory: tuple[tuple[int, int, int], ...]) -> Agent:
     rest = ~(1 << o)
-    index, bit, _close, facing, faced, inside, contents, on, _worn, right, left, _origins = agent
-    return Agent(index, bit, close, facing, faced, inside, contents, on, worn, right & rest, left & rest, memory)
+    right, left = agent.right & rest, agent.left & rest
+    return Agent._make((agent.index, agent.bit, close, *agent[3:8], worn, right, left, memory, *agent[12:]))
 
 
 def _forgotten(agent: Agent, o: int) -> tuple[tuple[int, int, int], ...]:

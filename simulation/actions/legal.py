@@ -8,7 +8,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.actions.registry import ACTIONS
+from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
 from hearth.simulation.rules import DEFAULT, Rules
@@ -88,7 +88,8 @@ def legal(
     if only_reachable:
         keep &= reach.reachable(world, situation.me)
     found: dict[str, tuple[int, ...]] = {}
-    for name, action in ACTIONS.items():
+    every = ACTIONS if situation.me.pose is None else EVERY
+    for name, action in every.items():
         masks = action.mask(situation)
         if masks is not None:
             if keep != -1:

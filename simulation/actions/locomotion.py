@@ -4,11 +4,13 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import doors
 from hearth.simulation.actions.common import Action, Masks, need_close, refuse, some
 from hearth.simulation.actions.situation import Situation
+from hearth.simulation.motion import placing
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import NOTHING, carry
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.states import LYING, SITTING
 from hearth.simulation.world.world import World
 
@@ -16,10 +18,26 @@ from hearth.simulation.world.world import World
 def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
     """Go to o, into its room; Run is the same."""
     agent = world.agents[number]
+    room = destination(world, agent, o, rules)
+    if isinstance(room, Failure):
+        return room
+    return arrived(world, number, o, room, None if agent.pose is None else placing.beside(world, agent.pose, o))
+
+
+def need_legs(world: World, agent: Agent, *objects: int) -> Failure | None:
+    """Refuse who sits or lies."""
     states = world.states
-    if (states[SITTING] | states[LYING]) & agent.bit:
-        lying = states[LYING] & agent.bit
-        return refuse(world, Code.LYING if lying else Code.SITTING, "standing", "lying" if lying else "sitting", o)
+    if not (states[SITTING] | states[LYING]) & agent.bit:
+        return None
+    lying = states[LYING] & agent.bit
+    return refuse(world, Code.LYING if lying else Code.SITTING, "standing", "lying" if lying else "sitting", *objects)
+
+
+def destination(world: World, agent: Agent, o: int, rules: Rules) -> int | Failure:
+    """Index of the room in which a walk to o ends, or why there can be none."""
+    failure = need_legs(world, agent, o)
+    if failure is not None:
+        return failure
     room = rows.room_of(world, o)
     if rules.doors and world.home.between[o]:
         room = doors.side(world, agent, o, room)
@@ -29,7 +47,7 @@ def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
         blocked = doors.blocking(world, agent, room)
         if blocked is not None:
             return blocked
-    return _arrive(world, number, agent, o, room)
+    return room
 
 
 def find(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
@@ -62,11 +80,11 @@ def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | 
 
 
 def _attending(agent: Agent, close: int, facing: int) -> Agent:
-    index, bit, _close, _facing, faced, inside, contents, on, worn, right, left, origins = agent
-    return Agent(index, bit, close, facing, faced, inside, contents, on, worn, right, left, origins)
+    return Agent._make((agent.index, agent.bit, close, facing, *agent[4:]))
 
 
-def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World:
+def arrived(world: World, number: int, o: int, room: int, pose: Pose | None) -> World:
+    """The world once a character has walked to o in a room, and stands there if it is placed."""
     home = world.home
     moved = world.moved
     if moved is NOTHING:
@@ -76,14 +94,25 @@ def _arrive(world: World, number: int, agent: Agent, o: int, room: int) -> World
         if home.properties["SURFACES"] >> o & 1:
             near |= rows.bears(world, o)
     near |= _characters_near(world, o)
-    held = agent.right | agent.left
+    if pose is not None:
+        near |= placing.near(world, number, pose)
+    return gone(world, number, near, room, pose)
+
+
+def gone(world: World, number: int, near: int, room: int, pose: Pose | None) -> World:
+    """The world once a character has moved: it is CLOSE to some nodes and what it holds, and INSIDE a room (or -1)."""
+    moved = world.moved
+    index, bit, _close, _facing, _faced, _inside, _contents, on, worn, right, left, origins, _pose, stride = (
+        world.agents[number]
+    )
+    held = right | left
     for i in indices(held):
         moved = carry(moved, i, room)
-    _index, bit, _close, _facing, _faced, _inside, _contents, on, worn, right, left, origins = agent
-    arrived = Agent(agent.index, bit, near | held, 0, 0, 1 << room, 0, on, worn, right, left, origins)
+    inside = 1 << room if room >= 0 else 0
+    here = Agent(index, bit, near | held, 0, 0, inside, 0, on, worn, right, left, origins, pose, stride)
     if len(world.agents) == 1:
-        return World(home, world.states, (arrived,), moved)
-    return World(home, world.states, _seen_by_others(world.agents, number, arrived, held), moved)
+        return World(world.home, world.states, (here,), moved)
+    return World(world.home, world.states, _seen_by_others(world.agents, number, here, held), moved)
 
 
 def _characters_near(world: World, o: int) -> int:

@@ -80,10 +80,10 @@ def _unoccupied(lying: bool) -> Check:
 
 def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
     agent = world.agents[number]
-    index, bit, close, _facing, faced, inside, contents, on, worn, right, left, origins = agent
-    settled = Agent(index, bit, close, facing, faced, inside, contents, on | 1 << o, worn, right, left, origins)
+    on = agent.on | 1 << o
+    settled = Agent._make((*agent[:3], facing, *agent[4:7], on, *agent[8:]))
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents
-    return World(world.home, with_state(world.states, state, bit), agents, world.moved)
+    return World(world.home, with_state(world.states, state, agent.bit), agents, world.moved)
 
 
 ACTIONS = (

@@ -1,6 +1,17 @@
 """Every action that is executed, by its canonical name; the files name theirs in `ACTIONS`."""
 
-from hearth.simulation.actions import appliances, cleaning, clothes, food, hands, locomotion, moving, posture, senses
+from hearth.simulation.actions import (
+    appliances,
+    cleaning,
+    clothes,
+    food,
+    hands,
+    locomotion,
+    metres,
+    moving,
+    posture,
+    senses,
+)
 from hearth.simulation.actions.common import Action
 
 ACTIONS: dict[str, Action] = {
@@ -17,3 +28,9 @@ ACTIONS: dict[str, Action] = {
         *senses.ACTIONS,
     )
 }
+
+MOVES: dict[str, Action] = {action.name: action for action in metres.ACTIONS}
+"""The actions of characters at places; programs may use them, and in homes without geometry nothing executes them."""
+
+EVERY = ACTIONS | MOVES
+"""What a character at a place can do."""

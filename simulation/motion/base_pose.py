@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Step
-from hearth.simulation.engine import Execution
-from hearth.simulation.motion.moves import Located, do, located, spot
-from hearth.simulation.motion.navigation import Pose, Ways
+from hearth.simulation.engine import Execution, act
+from hearth.simulation.motion.placing import facing, placed
 from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 RIGHT, LEFT = "right", "left"
@@ -29,46 +29,41 @@ class HandAndBasePose:
     hand: str | None
 
 
-def hand_and_base_poses(
-    execution: Execution, ways: Ways, rules: Rules = DEFAULT
-) -> tuple[tuple[HandAndBasePose, ...], ...]:
+def hand_and_base_poses(execution: Execution, rules: Rules = DEFAULT) -> tuple[tuple[HandAndBasePose, ...], ...]:
     """For each tick done, the hand and the base pose of each acting character, once it has arrived and turned.
 
     Args:
-        execution: in a home with geometry.
-        ways: over the floor of that home.
+        execution: of any program; in a home without geometry nobody has a pose.
         rules: of the run.
-
-    Raises:
-        KeyError: a character has no box.
     """
-    here = located(execution.worlds[0])
+    here = placed(execution.worlds[0])
+    if any(agent.pose is None for agent in here.agents):
+        return ()
     found = []
     for steps, after in zip(execution.program.ticks(), execution.worlds[1:], strict=False):
-        tick = tuple(_each(here, steps, ways, rules))
+        tick = tuple(_each(here, steps, rules))
         found.append(tick)
         poses = {each.agent: each.pose for each in tick}
-        here = Located(after, tuple(poses.get(number, pose) for number, pose in enumerate(here.poses)))
+        agents = (
+            now._replace(pose=poses.get(number, agent.pose))
+            for number, (now, agent) in enumerate(zip(after.agents, here.agents, strict=True))
+        )
+        here = World(after.home, after.states, tuple(agents), after.moved)
     return tuple(found)
 
 
-def _each(here: Located, steps: tuple[Step, ...], ways: Ways, rules: Rules) -> Iterator[HandAndBasePose]:
+def _each(here: World, steps: tuple[Step, ...], rules: Rules) -> Iterator[HandAndBasePose]:
     for step in steps:
-        there = do(here, step, ways, rules=rules)
+        there = act(here, step, rules)
         if isinstance(there, Failure):
             there = here
-        hand = hand_of(step, here.world, there.world)
-        pose = there.poses[step.agent]
-        if hand is not None:
-            pose = _turned(pose, here, step)
+        hand = hand_of(step, here, there)
+        pose = there.agents[step.agent].pose
+        assert pose is not None
+        if hand is not None and step.objects:
+            # It faces what the hand goes to: the last of the step's objects.
+            pose = facing(here, pose, here.home.index.get(step.objects[-1].node or -1, step.agent))
         yield HandAndBasePose(step.agent, pose, hand)
-
-
-def _turned(pose: Pose, here: Located, step: Step) -> Pose:
-    """Facing what the hand goes to: the last of the step's objects."""
-    index = here.world.home.index.get(step.objects[-1].node or -1, -1) if step.objects else -1
-    box = spot(here, index) if index >= 0 else None
-    return pose if box is None else pose.towards((box.center[0], box.center[2]))
 
 
 def hand_of(step: Step, before: World, after: World) -> str | None:

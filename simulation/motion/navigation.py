@@ -1,9 +1,10 @@
-"""Navigation: shortest free paths, base poses for things, and other characters as obstacles (thesis 2.3.1, 2.4.1)."""
+"""Navigation: distance fields, shortest free paths, and other characters as obstacles (thesis 2.3.1, 2.4.1)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from array import array
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hearth.homes.plans.floor import Floor
-from hearth.schemas.graph import Box, Spot
+from hearth.schemas.graph import Spot
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -20,31 +21,31 @@ if TYPE_CHECKING:
 BODY_RADIUS = 0.25
 """Metres around a character that others keep out of."""
 
-REACH = 0.9
-"""Metres from a thing's edge within which it can be handled."""
+MOST_FIELDS = 1_000
+"""Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells."""
 
 
-class Pose(NamedTuple):
-    """Where someone stands and looks: metres, and degrees about y from +z."""
+class Field(NamedTuple):
+    """The shortest ways from every walkable cell to the nearest of some cells.
 
-    x: float
-    z: float
-    yaw: float = 0.0
+    Attributes:
+        distance: metres by cell number; inf where no way leads there.
+        following: the next cell on the way; negative at its end.
+    """
 
-    @property
-    def point(self) -> Spot:
-        """The position alone."""
-        return (self.x, self.z)
-
-    def towards(self, point: Spot) -> Pose:
-        """The same place, looking at a point."""
-        if math.dist(self.point, point) < 1e-9:
-            return self
-        return Pose(self.x, self.z, heading(self.point, point))
+    distance: array[float]
+    following: array[int]
 
 
 class Ways:
-    """The walkable cells of a floor as a graph of eight neighbours; made once a floor."""
+    """The walkable cells of a floor as a graph of eight neighbours, with its distance fields; made once a floor.
+
+    Attributes:
+        floor: the floor.
+        cells: int (n, 2): the walkable cells; a cell's number is its position here.
+        number: int, as the grid: the number of each cell, -1 where it is not walkable.
+        points: metres (n, 2): the middles of the cells.
+    """
 
     def __init__(self, floor: Floor) -> None:
         self.floor = floor
@@ -52,6 +53,8 @@ class Ways:
         self.number = np.full(floor.walkable.shape, -1, np.int64)
         self.number[floor.walkable] = np.arange(len(self.cells))
         self.points = np.asarray(floor.origin) + (self.cells + 0.5) * floor.cell
+        self.main = floor.main[floor.walkable]
+        self._fields: dict[tuple[tuple[int, ...], tuple[int, ...]], Field] = {}
 
     @cached_property
     def graph(self) -> csr_matrix:
@@ -74,6 +77,149 @@ class Ways:
         data = (np.concatenate(lengths), (np.concatenate(sources), np.concatenate(targets)))
         return csr_matrix(data, shape=(size, size))
 
+    def field(self, ends: tuple[int, ...], without: tuple[int, ...] = ()) -> Field:
+        """The ways to the nearest of some cells; computed at the first call (some milliseconds), then kept.
+
+        Args:
+            ends: numbers of cells.
+            without: cells that are not free; of closed doors, and of other characters.
+        """
+        try:
+            return self._fields[ends, without]
+        except KeyError:
+            pass
+        if len(self._fields) >= MOST_FIELDS:
+            self._fields.pop(next(iter(self._fields)))
+        found = self._fields[ends, without] = self._field(ends, without)
+        return found
+
+    def detour(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
+        """The same, not kept: other characters seldom stand where they did."""
+        return self._field(ends, without)
+
+    def _field(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
+        from scipy.sparse.csgraph import dijkstra
+
+        free = [end for end in ends if end not in without]
+        if not free:
+            return Field(array("d", [math.inf]) * len(self.cells), array("i", [-1]) * len(self.cells))
+        graph = self._without(without) if without else self.graph
+        distance, before, _ = dijkstra(graph, directed=False, indices=free, return_predecessors=True, min_only=True)
+        return Field(array("d", distance.tobytes()), array("i", before.astype(np.int32).tobytes()))
+
+    def _without(self, taken: Sequence[int]) -> csr_matrix:
+        from scipy.sparse import diags
+
+        kept = np.ones(len(self.cells))
+        kept[list(taken)] = 0.0
+        free = diags(kept)
+        found = (free @ self.graph @ free).tocsr()
+        found.eliminate_zeros()
+        return found
+
+    @cached_property
+    def _rows(self) -> list[list[int]]:
+        """`number` as lists with a border, which Python reads faster than arrays."""
+        rows: list[list[int]] = np.pad(self.number, 1, constant_values=-1).tolist()
+        return rows
+
+    @cached_property
+    def _middles(self) -> list[Spot]:
+        return [(x, z) for x, z in self.points.tolist()]
+
+    def at(self, x: float, z: float) -> int:
+        """Number of the walkable cell that a point lies in, or -1."""
+        (x0, z0), cell, rows = self.floor.origin, self.floor.cell, self._rows
+        i, j = math.floor((x - x0) / cell) + 1, math.floor((z - z0) / cell) + 1
+        return rows[i][j] if 0 <= i < len(rows) and 0 <= j < len(rows[0]) else -1
+
+    def ahead(self, point: Spot, step: Spot, without: tuple[int, ...] = ()) -> float:
+        """The share of a straight step from a point that leads over free cells of the main region, looked at every half
+        cell.
+        """
+        (x0, z0), cell, rows, main = self.floor.origin, self.floor.cell, self._rows, self._main
+        count = max(1, math.ceil(math.hypot(*step) / (cell / 2)))
+        x, z = (point[0] - x0) / cell + 1, (point[1] - z0) / cell + 1
+        dx, dz = step[0] / cell / count, step[1] / cell / count
+        for part in range(1, count + 1):
+            i, j = math.floor(x + dx * part), math.floor(z + dz * part)
+            if not (0 <= i < len(rows) and 0 <= j < len(rows[0])):
+                return (part - 1) / count
+            number = rows[i][j]
+            if number < 0 or not main[number] or number in without:
+                return (part - 1) / count
+        return 1.0
+
+    @cached_property
+    def _main(self) -> list[bool]:
+        found: list[bool] = self.main.tolist()
+        return found
+
+    def around(self, x: float, z: float) -> list[int]:
+        """The cells to whose middles one can go straight from a point: its own, and of the three that it lies between
+        those that share a free side with it. Of a point on the line between two middles, only these two.
+        """
+        (x0, z0), cell, rows = self.floor.origin, self.floor.cell, self._rows
+        u, v = (x - x0) / cell + 0.5, (z - z0) / cell + 0.5
+        i, j = math.floor(u + 1e-6), math.floor(v + 1e-6)
+        if not (0 <= i < len(rows) - 1 and 0 <= j < len(rows[0]) - 1):
+            return []
+        right, up = u - i > 1e-6, v - j > 1e-6
+        found = [rows[i][j]]
+        if right:
+            found.append(rows[i + 1][j])
+        if up:
+            found.append(rows[i][j + 1])
+            if right and rows[i + 1][j + 1] >= 0 and min(found) >= 0:
+                found.append(rows[i + 1][j + 1])
+            elif right:
+                return self._between(x, z, found, rows[i + 1][j + 1])
+        return [number for number in found if number >= 0]
+
+    def _between(self, x: float, z: float, three: list[int], far: int) -> list[int]:
+        """Of four cells some of which are not free, those that share a side with the one that a point lies in."""
+        own = self.at(x, z)
+        here, right, up = three
+        sides = {here: (right, up), right: (here, far), up: (here, far), far: (right, up)}
+        return [own, *(number for number in sides.get(own, ()) if number >= 0)] if own >= 0 else []
+
+    def left(self, field: Field, x: float, z: float) -> tuple[float, int]:
+        """Metres from a point to the end of a field's way, and the cell to which it goes first (-1: no way)."""
+        best, first = math.inf, -1
+        middles, distance = self._middles, field.distance
+        for number in self.around(x, z):
+            there = middles[number]
+            total = math.hypot(x - there[0], z - there[1]) + distance[number]
+            if total < best:
+                best, first = total, number
+        return best, first
+
+    def stepped(self, field: Field, x: float, z: float, stride: float) -> tuple[float, float, int]:
+        """The point `stride` metres along a field's way from a point, and the cell before or at it on the way.
+
+        Equal strides come to the end in as many steps as the way's length over the stride, rounded up.
+
+        Returns:
+            (x, z, the next cell of the way); that cell is -1 when the end is reached, and -2 where no way leads there.
+        """
+        total, cell = self.left(field, x, z)
+        if cell < 0:
+            return x, z, -2
+        rest = total - stride
+        distance, following, middles = field.distance, field.following, self._middles
+        here = (x, z)
+        while distance[cell] > rest:
+            here = middles[cell]
+            cell = following[cell]
+            if cell < 0:
+                return (*here, -1)
+        there = middles[cell]
+        length = math.hypot(here[0] - there[0], here[1] - there[1])
+        share = (rest - distance[cell]) / length if length else 0.0
+        if share < 1e-9 and following[cell] < 0:
+            return (*there, -1)
+        return there[0] + (here[0] - there[0]) * share, there[1] + (here[1] - there[1]) * share, cell
+
     def nearest(self, point: Spot, blocked: np.ndarray | None = None) -> int:
         """Number of the walkable cell nearest to a point, or -1 when there is none."""
         distance = np.hypot(*(self.points - point).T)
@@ -82,7 +228,7 @@ class Ways:
         best = int(distance.argmin()) if len(distance) else -1
         return best if best >= 0 and np.isfinite(distance[best]) else -1
 
-    def blocked(self, others: Sequence[Spot]) -> np.ndarray:
+    def blocked(self, others: Iterable[Spot]) -> np.ndarray:
         """Bool by cell: where other characters stand in the way."""
         taken = np.zeros(len(self.cells), bool)
         for other in others:
@@ -99,51 +245,18 @@ class Ways:
         Returns:
             The points, or None when no path leads there.
         """
-        from scipy.sparse.csgraph import dijkstra
-
         taken = self.blocked(others)
         first, last = self.nearest(start), self.nearest(goal, taken)
         if first < 0 or last < 0:
             return None
         taken[first] = False
-        graph = self._without(taken) if taken.any() else self.graph
-        _, before = dijkstra(graph, directed=False, indices=first, return_predecessors=True)
-        numbers = [last]
-        while numbers[-1] != first:
-            previous = int(before[numbers[-1]])
-            if previous < 0:
-                return None
-            numbers.append(previous)
-        return tuple((float(x), float(z)) for x, z in self.points[numbers[::-1]])
-
-    def _without(self, taken: np.ndarray) -> csr_matrix:
-        from scipy.sparse import diags
-
-        free = diags((~taken).astype(float))
-        kept = (free @ self.graph @ free).tocsr()
-        kept.eliminate_zeros()
-        return kept
-
-    def stand(self, box: Box, yaw: float | None, others: Sequence[Spot] = (), seed: Spot | None = None) -> Pose | None:
-        """Where to stand for a thing, looking at it: the free cell nearest to its front, or, where it has no front, to
-        who comes.
-
-        Args:
-            box: the thing's box.
-            yaw: the way it faces, if it has a front.
-            others: other characters, who keep their places.
-            seed: where the character comes from.
-
-        Returns:
-            The pose, or None when no free cell lies within reach.
-        """
-        middle = (box.center[0], box.center[2])
-        goal = _front(box, yaw) if yaw is not None else _edge_towards(box, seed or middle)
-        cell = self.nearest(goal, self.blocked(others))
-        if cell < 0:
+        field = self._field((first,), tuple(np.flatnonzero(taken).tolist()))
+        if not math.isfinite(field.distance[last]):
             return None
-        pose = Pose(float(self.points[cell][0]), float(self.points[cell][1])).towards(middle)
-        return pose if distance_to(box, pose.point) <= REACH else None
+        numbers = [last]
+        while (number := field.following[numbers[-1]]) >= 0:
+            numbers.append(number)
+        return tuple(self._middles[number] for number in reversed(numbers))
 
 
 def heading(start: Spot, end: Spot) -> float:
@@ -151,38 +264,6 @@ def heading(start: Spot, end: Spot) -> float:
     return math.degrees(math.atan2(end[0] - start[0], end[1] - start[1])) % 360
 
 
-def distance_to(box: Box, point: Spot) -> float:
-    """Metres over the floor from a point to a box's edge; 0 within it."""
-    dx = max(abs(point[0] - box.center[0]) - box.size[0] / 2, 0.0)
-    dz = max(abs(point[1] - box.center[2]) - box.size[2] / 2, 0.0)
-    return math.hypot(dx, dz)
-
-
-def along(path: Sequence[Spot], stride: float) -> Spot:
-    """The point `stride` metres along a path, or its end."""
-    left = stride
-    for here, there in pairwise(path):
-        length = math.dist(here, there)
-        if length >= left:
-            part = left / length
-            return (here[0] + (there[0] - here[0]) * part, here[1] + (there[1] - here[1]) * part)
-        left -= length
-    return path[-1]
-
-
 def length(path: Sequence[Spot]) -> float:
     """Metres of a path."""
     return sum(math.dist(here, there) for here, there in pairwise(path))
-
-
-def _front(box: Box, yaw: float) -> Spot:
-    angle = math.radians(yaw)
-    out = max(box.size[0] * abs(math.sin(angle)), box.size[2] * abs(math.cos(angle))) / 2 + BODY_RADIUS
-    return (box.center[0] + math.sin(angle) * out, box.center[2] + math.cos(angle) * out)
-
-
-def _edge_towards(box: Box, point: Spot) -> Spot:
-    """The point of a box's outline nearest to another point."""
-    x = min(max(point[0], box.center[0] - box.size[0] / 2), box.center[0] + box.size[0] / 2)
-    z = min(max(point[1], box.center[2] - box.size[2] / 2), box.center[2] + box.size[2] / 2)
-    return (x, z)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from hearth.simulation.world.pose import STRIDE, Pose
+
 AGENT_OUT = {
     "CLOSE": "close", "FACING": "facing", "INSIDE": "inside", "ON": "on", "HOLDS_RH": "right", "HOLDS_LH": "left",
 }  # fmt: skip
@@ -28,6 +30,8 @@ class Agent(NamedTuple):
         on, worn: what it is ON; the things that are ON it.
         right, left: what each hand holds.
         origins: where grabbed things came from: (thing, place, kind of relation), for PutObjBack.
+        pose: where it stands and looks; None where it is not placed (see `motion.placing`).
+        stride: metres that it walks in a tick.
     """
 
     index: int  # type: ignore[assignment] # what tuples call index is of no use here
@@ -42,6 +46,8 @@ class Agent(NamedTuple):
     right: int = 0
     left: int = 0
     origins: tuple[tuple[int, int, int], ...] = ()
+    pose: Pose | None = None
+    stride: float = STRIDE
 
     @property
     def held(self) -> int:
@@ -50,12 +56,13 @@ class Agent(NamedTuple):
 
     def without(self, bit: int) -> Agent:
         """Without the edges to and from these nodes."""
-        return Agent._make((self.index, self.bit, *[row & ~bit for row in self[2:-1]], self.origins))
+        return Agent._make((self.index, self.bit, *[row & ~bit for row in self[2:11]], *self[11:]))
 
     def parted(self, bit: int) -> Agent:
         """Without the edges to and from these nodes but those of FACING."""
-        index, me, close, facing, faced, *rest, origins = self
-        return Agent._make((index, me, close & ~bit, facing, faced, *[row & ~bit for row in rest], origins))
+        index, me, close, facing, faced, *_ = self
+        rest = [row & ~bit for row in self[5:11]]
+        return Agent._make((index, me, close & ~bit, facing, faced, *rest, *self[11:]))
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:

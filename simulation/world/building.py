@@ -24,6 +24,7 @@ from hearth.schemas.graph import Edge, EdgeColumns, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, PROPERTIES, RELATION_ID, ROOM_CATEGORY, STATE_ID, STATES
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.pose import STRIDE
 
 Rows = list[int]
 Raw = tuple[int, str, int]
@@ -275,7 +276,7 @@ def _part_characters(tables: list[Rows], nodes: Nodes, others: list[Raw]) -> lis
     # Edges between two characters stay with the one they go out from (see `Agent`).
     things = (-1, -1, ~characters, -1, ~characters, -1, ~characters, -1, -1)
     edges = ([row[i] & mask for row, mask in zip(mine, things, strict=True)] for i in nodes.agents)
-    found = [Agent._make((i, 1 << i, *own, ())) for i, own in zip(nodes.agents, edges, strict=True)]
+    found = [Agent._make((i, 1 << i, *own, (), None, STRIDE)) for i, own in zip(nodes.agents, edges, strict=True)]
     opposite = (close, faced, facing, contents, inside, bears, on)
     for i in nodes.agents:
         for table, inverse in zip(mine, opposite, strict=False):

@@ -118,7 +118,11 @@ def _moved_over(world: World, home: Home) -> World:
     there = apply(start, world.changes(before))
     old, new = world.home.ids, home.index
     agents = tuple(
-        there_agent._replace(origins=tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins))
+        there_agent._replace(
+            origins=tuple((new[old[o]], new[old[p]], kind) for o, p, kind in agent.origins),
+            pose=agent.pose,
+            stride=agent.stride,
+        )
         for agent, there_agent in zip(world.agents, there.agents, strict=False)
     )
     return World(home, there.states, (*agents, *there.agents[len(agents) :]), there.moved)
@@ -146,7 +150,7 @@ def _placed(world: World, i: int, relation: str, j: int) -> World:
     agents = list(world.agents)
     for number, agent in enumerate(agents):
         if agent.index == i:
-            agents[number] = agent._replace(close=0, inside=0, on=0)
+            agents[number] = agent._replace(close=0, inside=0, on=0, pose=None)
         else:
             agents[number] = agent.parted(bit)
     edges = [(i, relation, j)]

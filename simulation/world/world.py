@@ -23,7 +23,7 @@ from hearth.simulation.world.world_change import encode
 class World(WorldState):
     """The state of everything at one moment.
 
-    Two worlds are equal when they show the same graph with the same memories, however they came about.
+    Two worlds are equal when they show the same graph with the same memories and poses, however they came about.
 
     Examples:
         >>> world = hearth.World.start(home)
@@ -77,13 +77,13 @@ class World(WorldState):
         return encode(since, self)
 
     def key(self) -> tuple[object, ...]:
-        """Its identity: its difference from its home, and the agents' memories."""
+        """Its identity: its difference from its home, and the agents' memories and poses."""
         try:
             return self._key
         except AttributeError:
             pass
-        memories = tuple(frozenset(agent.origins) for agent in self.agents)
-        self._key = (self.states, rows.difference(self), tuple(a[:-1] for a in self.agents), memories)
+        memories = tuple((frozenset(agent.origins), agent.pose, agent.stride) for agent in self.agents)
+        self._key = (self.states, rows.difference(self), tuple(a[:11] for a in self.agents), memories)
         return self._key
 
     def __eq__(self, other: object) -> bool:

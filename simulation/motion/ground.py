@@ -1,0 +1,235 @@
+"""The ground of a home with geometry: where one stands for each thing, what is near each point, where doors are."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from functools import cached_property
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hearth.homes.forms import form
+from hearth.homes.from_graph.measured import measured
+from hearth.homes.geometry import Rect, bottom
+from hearth.homes.plans import raster
+from hearth.homes.plans.floor import HEAD, REACH, Floor, gaps
+from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.shell import WALL, interior, strip
+from hearth.schemas.graph import Box, Spot
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
+from hearth.simulation.motion.navigation import BODY_RADIUS, Ways
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.home import Home, Memo
+from hearth.simulation.world.world import World
+
+UNTOUCHED = frozenset({ROOM_CATEGORY, CHARACTER_CATEGORY, "Floor", "Floors", "Walls", "Ceiling"})
+"""Categories that passing by does not bring anybody close to."""
+
+BESIDE = 0.3
+"""Metres from its outline within which one stands for a thing without a front, where there is floor."""
+
+MOST_WAYS = 64
+"""Floors whose distance fields are kept."""
+
+
+class Ground:
+    """The floor of a home as its graph's boxes describe it. It knows where things are at the start.
+
+    Attributes:
+        home: the home.
+        floor: its floor.
+        ways: over it; homes of equal floors share them.
+        rooms: index of the room that each cell of `ways` lies in, -1 for none.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self.home = home
+        start = World.start(home)
+        layout = measured(start.graph(), home.name, home.knowledge)
+        self.floor: Floor = layout.floor
+        self.ways = _shared(self.floor)
+        numbers = [home.index[room.line] for room in layout.plan.rooms]
+        here = self.floor.room[self.floor.walkable]
+        self.rooms: list[int] = np.where(here < 0, -1, np.asarray(numbers)[here]).tolist()
+        self._room_of = [rows.room_of(start, i) for i in range(len(home))]
+        self._doorways = dict(_doorways(layout, home, self.ways))
+        self._stands: dict[int, tuple[int, ...]] = {}
+        self._shut: dict[int, tuple[int, ...]] = {0: ()}
+        self._reached: dict[tuple[int, int], int] = {}
+        self._numbered: dict[int, list[int]] = {}
+        self.near = Memo(self._near)
+
+    def box(self, node: int) -> Box | None:
+        """The box of a node at the start."""
+        return self.home.node(node).box if node < len(self.home) else None
+
+    def stands(self, node: int) -> tuple[int, ...]:
+        """The cells of the main region at which one stands for a node as it is at the start; none without a box.
+
+        For what has a front, the one nearest to it, else those beside it; for a room the one nearest to its middle;
+        for a door one on either side. Cells in the node's room go before others; where none is within reach, it is
+        the nearest that there is.
+        """
+        try:
+            return self._stands[node]
+        except KeyError:
+            found = self._stands[node] = tuple(sorted(set(self._found_stands(node))))
+            return found
+
+    def _found_stands(self, node: int) -> list[int]:
+        box = self.box(node)
+        if box is None or not self.ways.main.any():
+            return []
+        if self.home.between[node]:
+            return [self._nearest(box, room) for room in indices(self.home.between[node] & self.home.rooms)]
+        middle = (box.center[0], box.center[2])
+        if self.home.rooms >> node & 1:
+            cells = self._main(node)
+            return [int(cells[np.hypot(*(self.ways.points[cells] - middle).T).argmin()])]
+        cells = self._main(self._room_of[node])
+        far = gaps(self.ways.points[cells], box)
+        yaw = self.home.node(node).yaw
+        if yaw is not None:
+            cells = cells[far <= max(REACH, far.min())]
+            return [int(cells[np.hypot(*(self.ways.points[cells] - _front(box, yaw)).T).argmin()])]
+        return list(map(int, cells[far <= max(BESIDE, far.min() + 1e-6)]))
+
+    def _nearest(self, box: Box, room: int) -> int:
+        cells = self._main(room)
+        return int(cells[gaps(self.ways.points[cells], box).argmin()])
+
+    def _main(self, room: int) -> np.ndarray:
+        """The cells of the main region in a room; all, where none is in it."""
+        own = np.flatnonzero(self.ways.main & (np.asarray(self.rooms) == room))
+        return own if len(own) else np.flatnonzero(self.ways.main)
+
+    def shut(self, doors: int) -> tuple[int, ...]:
+        """The cells in the doorways of doors that are closed."""
+        try:
+            return self._shut[doors]
+        except KeyError:
+            cells = sorted({cell for door in indices(doors) for cell in self._doorways.get(door, ())})
+            found = self._shut[doors] = tuple(cells)
+            return found
+
+    def reached(self, cell: int, doors: int) -> int:
+        """The nodes at whose standing places one arrives from a cell while these doors are closed."""
+        region = self._regions(doors)
+        key = region[cell], doors
+        if key not in self._reached:
+            every = range(len(self.home))
+            self._reached[key] = mask_of(i for i in every if any(region[s] == key[0] for s in self.stands(i)))
+        return self._reached[key]
+
+    def joined(self, one: int, other: int, doors: int) -> bool:
+        """Whether a way leads from one cell to another while these doors are closed."""
+        region = self._regions(doors)
+        return region[one] == region[other]
+
+    def _regions(self, doors: int) -> list[int]:
+        """By cell the number of its region; cells that are not free have one of their own each."""
+        if doors not in self._numbered:
+            free = self.floor.walkable.copy()
+            free[tuple(self.ways.cells[list(self.shut(doors))].T)] = False
+            found = raster.regions(free)[self.floor.walkable]
+            found[found == 0] = -1 - np.flatnonzero(found == 0)
+            self._numbered[doors] = found.tolist()
+        return self._numbered[doors]
+
+    def _near(self, cell: int) -> int:
+        return int.from_bytes(self._packed[cell].tobytes(), "little")
+
+    @cached_property
+    def _packed(self) -> np.ndarray:
+        """Bits (cells, nodes): what stands within reach of a cell, in its room, and not in something."""
+        cells = np.zeros((len(self.ways.cells), len(self.home)), bool)
+        here = np.asarray(self.rooms)
+        for i in indices(self.home.everything):
+            node = self.home.node(i)
+            if node.box is None or node.category in UNTOUCHED or bottom(node.box) > HEAD:
+                continue
+            rooms = self.home.between[i] & self.home.rooms or (1 << self._room_of[i] if self._room_of[i] >= 0 else 0)
+            if not self.home.inside[i] & ~self.home.rooms:
+                cells[:, i] = (gaps(self.ways.points, node.box) <= REACH) & np.isin(here, list(indices(rooms)))
+        return np.packbits(cells, axis=1, bitorder="little")
+
+
+def _doorways(layout: Layout, home: Home, ways: Ways) -> list[tuple[int, tuple[int, ...]]]:
+    """The cells between the walls of the doorways by the index of their door."""
+    found: dict[int, set[int]] = {}
+    for hole in layout.shell.openings:
+        if hole.door is not None:
+            inner = interior(layout.plan.room(hole.room))
+            gap = strip(inner, hole.wall, hole.start - 0.1, hole.end + 0.1, -2 * WALL).inset(-0.001)
+            found.setdefault(home.index[hole.door.line], set()).update(_cells(gap, ways))
+    return [(door, tuple(sorted(cells))) for door, cells in found.items()]
+
+
+def _cells(rect: Rect, ways: Ways) -> list[int]:
+    x, z = ways.points.T
+    inside = (x >= rect.x0) & (x <= rect.x1) & (z >= rect.z0) & (z <= rect.z1)
+    return list(map(int, np.flatnonzero(inside)))
+
+
+def _front(box: Box, yaw: float) -> Spot:
+    angle = math.radians(yaw)
+    out = max(box.size[0] * abs(math.sin(angle)), box.size[2] * abs(math.cos(angle))) / 2 + BODY_RADIUS
+    return (box.center[0] + math.sin(angle) * out, box.center[2] + math.cos(angle) * out)
+
+
+_WAYS: dict[bytes, Ways] = {}
+
+
+def _shared(floor: Floor) -> Ways:
+    """The ways over a floor, the same for floors that are equal."""
+    text = repr((floor.origin, floor.cell, floor.walkable.shape)).encode()
+    key = hashlib.blake2b(text + np.packbits(floor.walkable).tobytes()).digest()
+    if key not in _WAYS:
+        if len(_WAYS) >= MOST_WAYS:
+            _WAYS.pop(next(iter(_WAYS)))
+        _WAYS[key] = Ways(floor)
+    return _WAYS[key]
+
+
+class Here(NamedTuple):
+    """The ground of a home, and the nodes that are elsewhere than when it was measured, or new."""
+
+    ground: Ground
+    elsewhere: int
+
+
+_KNOWN: WeakKeyDictionary[Home, Here | None] = WeakKeyDictionary()
+
+
+def ground_of(home: Home) -> Here | None:
+    """The ground of a home; None where its rooms have no boxes. A home derived from another shares its ground, unless
+    something that stood on the floor is gone.
+    """
+    try:
+        return _KNOWN[home]
+    except KeyError:
+        pass
+    base = None if home.base is None else ground_of(home.base[0])
+    if base is not None and not _gone(home, base.ground):
+        found: Here | None = Here(base.ground, _elsewhere(home, base.ground.home))
+    else:
+        rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
+        found = Here(Ground(home), 0) if rooms and all(room.box is not None for room in rooms) else None
+    _KNOWN[home] = found
+    return found
+
+
+def _gone(home: Home, ground: Ground) -> bool:
+    gone = home.absent & ~ground.home.absent & (1 << len(ground.home)) - 1
+    shapes = (form(home.classes[i], home.knowledge) for i in indices(gone))
+    return any(shape is not None and shape.mount == "floor" for shape in shapes)
+
+
+def _elsewhere(home: Home, measured_home: Home) -> int:
+    same = range(len(measured_home))
+    before, now = (measured_home.on, measured_home.inside), (home.on, home.inside)
+    changed = mask_of(i for i in same if any(a[i] != b[i] for a, b in zip(before, now, strict=True)))
+    return changed | home.everything & -1 << len(measured_home)
