@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,7 +97,9 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool)
             print(f"{number + 1:3}  {_tick(tick)}\n     FAILED  {execution.failure.message()}")
             return
         change = execution.worlds[number + 1].changes(before)
-        print(f"{number + 1:3}  {_tick(tick)}\n     {_summary(change, before)}")
+        moves = list(_moved(before, execution.worlds[number + 1]))
+        said = [_summary(change, before)] if change or not moves else []
+        print(f"{number + 1:3}  {_tick(tick)}", *said, *moves, sep="\n     ")
         for pose in poses[number] if poses else ():
             print(f"       {_pose(pose)}")
         if explain:
@@ -109,6 +112,13 @@ def _poses(trial: Trial) -> tuple[tuple[HandAndBasePose, ...], ...]:
     from hearth.simulation.motion.base_pose import hand_and_base_poses
 
     return hand_and_base_poses(trial.execution)
+
+
+def _moved(before: World, after: World) -> Iterator[str]:
+    """Where each character is that stands or looks elsewhere than before."""
+    for number, (old, new) in enumerate(zip(before.agents, after.agents, strict=True)):
+        if new.pose is not None and new.pose != old.pose:
+            yield f"character {number} at ({new.pose.x:.2f}, {new.pose.z:.2f}) m, facing {new.pose.yaw:.0f} degrees"
 
 
 def _pose(found: HandAndBasePose) -> str:

@@ -13,7 +13,7 @@ from operator import and_
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import Key
 from hearth.schemas.program import ObjectRef, Program, Step
-from hearth.simulation.engine import act, together
+from hearth.simulation.engine import act, ready, together
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
@@ -52,7 +52,7 @@ def bind(program: Program, world: World, rules: Rules = DEFAULT) -> Binding | Fa
     fixed = {ref.key: ref.node for ref in program.objects() if ref.node is not None}
     if not program.steps:
         return Binding({}, 0)
-    stack = [search.options(0, world, fixed)]
+    stack = [search.options(0, ready(world, program), fixed)]
     while stack and search.tried < MAX_ACTS:
         option = next(stack[-1], None)
         if option is None:

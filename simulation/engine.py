@@ -52,7 +52,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
         >>> execution.executable, len(execution.worlds), execution.final.holding()
         (True, 4, {0: (142,)})
     """
-    world = _placed_for(world, program)
+    world = ready(world, program)
     worlds = [world]
     failure: Failure | None = None
     for number, steps in enumerate(_ticks(program)):
@@ -67,7 +67,7 @@ def run(world: World, program: Program, rules: Rules = DEFAULT) -> Execution:
 
 def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Failure:
     """Only the end of a run, for who needs no trace."""
-    world = _placed_for(world, program)
+    world = ready(world, program)
     for number, steps in enumerate(_ticks(program)):
         result = act(world, steps, rules) if isinstance(steps, Step) else together(world, steps, rules)
         if isinstance(result, Failure):
@@ -76,7 +76,7 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
     return world
 
 
-def _placed_for(world: World, program: Program) -> World:
+def ready(world: World, program: Program) -> World:
     """The world with its characters at places if a program moves them by metres."""
     return placed(world) if any(step.action in MOVES for step in program.steps) else world
 

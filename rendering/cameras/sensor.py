@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera, follow, top_view
 from hearth.rendering.cameras.viewpoints import home_box
-from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at
+from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, standing
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.acting import Actor, initial_actors, posed
@@ -83,12 +83,14 @@ class CameraSensor:
             self._begin(env)
         for tick in env.ticks[self._ticks :]:
             steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
-            self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), self.floor, steps)
+            self.actors, self.places = advanced(
+                self.actors, self.places, tick.world.graph(), self.floor, steps, tick.world
+            )
             self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
         self.places = Places.start(self.home, self.prepared.knowledge).settled(graph)
         actors = initial_actors(graph, self.floor, self.places, self.seed)
-        self.actors = tuple(posed(actor, graph, self.places, None) for actor in actors)
+        self.actors = standing((posed(actor, graph, self.places, None) for actor in actors), env.world)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

@@ -28,6 +28,7 @@ from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.engine import Execution
+from hearth.simulation.world.world import World
 
 AUTO = "auto"
 TOP = "top"
@@ -182,8 +183,9 @@ def _keyframes(
             actors = initial_actors(graph, floor, places, variation.seed)
             actors = _wandered(actors, floor, variation) if variation.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
+            actors = standing(actors, execution.worlds[0])
         else:
-            actors, places = advanced(actors, places, graph, floor, steps)
+            actors, places = advanced(actors, places, graph, floor, steps, execution.worlds[tick])
         yield Keyframe(tick, steps, scene_at(prepared, places, actors), actors, places)
 
 
@@ -198,10 +200,25 @@ def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation)
     return tuple(found)
 
 
+def standing(actors: Iterable[Actor], world: World) -> tuple[Actor, ...]:
+    """The actors; those that stand, where the world says if it knows."""
+    return tuple(
+        actor
+        if agent.pose is None or actor.body_pose.posture != "standing"
+        else replace(actor, spot=agent.pose.point, yaw=agent.pose.yaw)
+        for actor, agent in zip(actors, world.agents, strict=True)
+    )
+
+
 def advanced(
-    actors: tuple[Actor, ...], places: Places, graph: EnvironmentGraph, floor: FreeFloor, steps: tuple[Step, ...]
+    actors: tuple[Actor, ...],
+    places: Places,
+    graph: EnvironmentGraph,
+    floor: FreeFloor,
+    steps: tuple[Step, ...],
+    world: World,
 ) -> tuple[tuple[Actor, ...], Places]:
-    """Actors and places after a tick."""
+    """Actors and places after a tick, by the graph and the poses of the world after it."""
     by_agent = {step.agent: step for step in steps}
     after: list[Actor] = []
     # Actors first walk, then objects are placed near them, then hands reach for the objects.
@@ -209,6 +226,7 @@ def advanced(
         others = [a.spot for a in (*after, *actors[number + 1 :])]
         known = replace(places, graph=graph)
         after.append(moved(actor, graph, known, floor, by_agent.get(number), others))
+    after = list(standing(after, world))
     near = {actor.node.id: actor.position for actor in after}
     settled = places.settled(graph, near)
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled

@@ -26,7 +26,7 @@ TURN = 30.0
 
 
 def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> World | Failure:
-    """A stride along the shortest way; at its end one has walked there."""
+    """A stride along the shortest way; at its end one has walked there. Who can't pass another character waits."""
     agent = world.agents[number]
     room = destination(world, agent, o, rules)
     if isinstance(room, Failure):
@@ -43,6 +43,8 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         taken[ways.around(pose.x, pose.z)] = False
         without = tuple(sorted({*shut, *taken.nonzero()[0].tolist()}))
         x, z, cell = ways.stepped(ways.detour(ends, without), pose.x, pose.z, agent.stride)
+        if cell == -2:
+            return world
     if cell == -2:
         return refuse(world, Code.NO_PATH, "a free way over the floor", "none", o)
     there = Pose(x, z, pose.yaw)

@@ -60,9 +60,9 @@ def _each(here: World, steps: tuple[Step, ...], rules: Rules) -> Iterator[HandAn
         hand = hand_of(step, here, there)
         pose = there.agents[step.agent].pose
         assert pose is not None
-        if hand is not None and step.objects:
-            # It faces what the hand goes to: the last of the step's objects.
-            pose = facing(here, pose, here.home.index.get(step.objects[-1].node or -1, step.agent))
+        target = here.home.index.get(step.objects[-1].node or -1, -1) if step.objects else -1
+        if hand is not None and target >= 0:
+            pose = facing(here, pose, target)
         yield HandAndBasePose(step.agent, pose, hand)
 
 

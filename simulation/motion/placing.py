@@ -166,16 +166,17 @@ def walked_to(world: World, number: int, doors: int) -> int:
     if here is None or pose is None:
         return 0
     ground, home = here.ground, world.home
-    cell = ground.ways.at(pose.x, pose.z)
-    if cell < 0:
-        return 0
-    reached = ground.reached(cell, doors)
+    cells = ground.ways.around(pose.x, pose.z)
+    reached = 0
+    for cell in cells:
+        reached |= ground.reached(cell, doors)
     carried = _held(world) | home.characters
+    still = reached
     moved = (here.elsewhere | world.moved.on | world.moved.inside | carried) & home.everything
     for i in indices(moved):
         there = ends(world, here, i) if carried >> i & 1 else ()
         place = -1 if there else _standing(world, here, i)
-        if ground.joined(cell, there[0], doors) if there else place >= 0 and reached >> place & 1:
+        if any(ground.joined(cell, there[0], doors) for cell in cells) if there else place >= 0 and still >> place & 1:
             reached |= 1 << i
         else:
             reached &= ~(1 << i)

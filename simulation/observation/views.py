@@ -10,6 +10,7 @@ from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation import reach
+from hearth.simulation.world import pose as world_pose
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
@@ -36,6 +37,8 @@ class Pose:
         facing: ids of what it faces.
         holding: ids of what it holds, right hand first.
         wearing: ids of what is on it.
+        place: where it stands and looks, in metres and degrees; None without geometry.
+        stride: metres that it walks in a tick.
         last: what it last tried, if anything.
     """
 
@@ -47,6 +50,8 @@ class Pose:
     facing: tuple[int, ...] = ()
     holding: tuple[int, ...] = ()
     wearing: tuple[int, ...] = ()
+    place: world_pose.Pose | None = None
+    stride: float = world_pose.STRIDE
     last: LastAction | None = None
 
 
@@ -135,6 +140,8 @@ def pose(world: World, number: int, last: LastAction | None = None) -> Pose:
         facing=named(agent.facing),
         holding=tuple(ids[i] for i in rows.held_indices(agent)),
         wearing=named(agent.worn),
+        place=agent.pose,
+        stride=agent.stride,
         last=last,
     )
 

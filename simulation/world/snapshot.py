@@ -1,7 +1,7 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; the origins of grabbed things, which a graph cannot
-hold, stand beside it under `memories`.
+The graph is the release's own format, so that other tools read it; what a graph cannot hold stands beside it: the
+origins of grabbed things under `memories`, and the characters' places and strides under `poses`.
 """
 
 from collections.abc import Mapping
@@ -13,6 +13,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release, to_release
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved import CLOSE, INSIDE, ON
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 _KINDS = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE"}
@@ -20,14 +21,20 @@ _NUMBERS = {name: kind for kind, name in _KINDS.items()}
 
 
 def export(world: World) -> dict[str, Any]:
-    """The world as a JSON-able mapping: `home`, `graph`, `memories`."""
+    """The world as a JSON-able mapping: `home`, `graph`, `memories`, and `poses` where characters have places."""
     ids = world.home.ids
     memories = [
         {"agent": ids[agent.index], "thing": ids[thing], "place": ids[place], "relation": _KINDS[kind]}
         for agent in world.agents
         for thing, place, kind in agent.origins
     ]
-    return {"home": world.home.name, "graph": to_release(world.graph()), "memories": memories}
+    poses = [
+        {"agent": ids[agent.index], **agent.pose._asdict(), "stride": agent.stride}
+        for agent in world.agents
+        if agent.pose is not None
+    ]
+    found = {"home": world.home.name, "graph": to_release(world.graph()), "memories": memories}
+    return found | {"poses": poses} if poses else found
 
 
 def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
@@ -44,10 +51,17 @@ def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
         for memory in memories:
             entry = (index[memory["thing"]], index[memory["place"]], _NUMBERS[memory["relation"]])
             by_agent.setdefault(index[memory["agent"]], []).append(entry)
-    except (KeyError, TypeError, AttributeError) as error:
+        places = {index[each["agent"]]: _place(each) for each in data.get("poses", ())}
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
         message = f"not an exported world: {type(error).__name__} {error}"
         raise HearthError.of(
             Code.BAD_GRAPH, message, suggestion="it needs `graph`, and `memories` of nodes in it"
         ) from error
-    agents = tuple(agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
-    return World(world.home, world.states, agents, world.moved)
+    agents = (agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
+    placed = (agent._replace(**places.get(agent.index, {})) for agent in agents)
+    return World(world.home, world.states, tuple(placed), world.moved)
+
+
+def _place(given: Mapping[str, Any]) -> dict[str, Any]:
+    x, z, yaw, stride = (float(given[name]) for name in ("x", "z", "yaw", "stride"))
+    return {"pose": Pose(x, z, yaw), "stride": stride}

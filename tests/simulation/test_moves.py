@@ -1,27 +1,48 @@
-"""Moving by metres over the floor of a home."""
+"""Moving by metres over the floors of homes: ours, drawn ones and the release's laid out."""
 
+import itertools
 import math
-from itertools import pairwise
+import random
 
+import numpy as np
 import pytest
 
 from hearth.homes import library
+from hearth.homes.plans.floor import REACH, gaps
+from hearth.homes.procedural.generate import generate
+from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.motion.moves import Located, do, located
-from hearth.simulation.motion.navigation import Pose, Ways, along, distance_to, heading, length
+from hearth.simulation.actions.legal import legal
+from hearth.simulation.actions.registry import EVERY
+from hearth.simulation.engine import act, tick
+from hearth.simulation.env import with_agents
+from hearth.simulation.motion.ground import ground_of
+from hearth.simulation.motion.navigation import BODY_RADIUS
+from hearth.simulation.motion.placing import placed
+from hearth.simulation.rules import DEFAULT
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import edit
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
+
+OWN = library.names()
+BODIES = DEFAULT._replace(bodies=True)
+
+
+def own_home(name):
+    return Home.from_graph(library.load_graph(name, default()), name, default())
+
+
+def drawn_home(seed):
+    return Home.from_graph(scene(generate(3 + seed % 7, seed, default()), default()), f"drawn {seed}", default())
 
 
 @pytest.fixture(scope="module")
-def ways():
-    return Ways(library.load_layout("maple", default()).floor)
-
-
-@pytest.fixture
 def here(maple):
-    return located(World.start(maple))
+    return placed(World.start(maple))
 
 
 def step(action, *nodes, agent=0):
@@ -32,98 +53,281 @@ def id_of(home, name):
     return home.ids[home.classes.index(name)]
 
 
-def test_headings_turn_from_z_towards_x():
-    assert [heading((0, 0), p) for p in ((0, 1), (1, 0), (0, -1), (-1, 0))] == [0, 90, 180, 270]
+def at(world, pose, number=0, stride=1.0):
+    ground = ground_of(world.home).ground
+    room = 1 << ground.rooms[ground.ways.at(*pose.point)]
+    agent = world.agents[number]._replace(pose=pose, stride=stride, inside=room)
+    return World(world.home, world.states, (*world.agents[:number], agent, *world.agents[number + 1 :]), world.moved)
 
 
-def test_a_path_is_free_and_no_shorter_than_the_straight_line(ways, here, maple):
-    start = here.poses[0].point
-    box = maple.node(maple.classes.index("bed")).box
-    goal = ways.stand(box, None, seed=start)
-    path = ways.path(start, goal.point)
-    assert length(path) >= math.dist(start, goal.point) - 0.2
-    for x, z in path:
-        i, j = ways.floor.index(x, z)
-        assert ways.floor.walkable[i, j]
-    assert all(math.dist(a, b) < 0.15 for a, b in pairwise(path))
+def walked(world, node, limit=200):
+    """The worlds of walking to a node, until there is nothing left of the way."""
+    worlds = [world]
+    target = step("Walktowards", node)
+    ground = ground_of(world.home).ground
+    field = ground.ways.field(ground.stands(world.home.index[node]))
+    while ground.ways.left(field, *worlds[-1].agents[0].pose.point)[0] > 1e-9:
+        after = act(worlds[-1], target)
+        assert isinstance(after, World), after
+        worlds.append(after)
+        assert len(worlds) < limit
+    return worlds
 
 
-def test_walktowards_goes_a_stride_at_a_time_and_arrives_with_a_walk(ways, here, maple):
-    bed = id_of(maple, "bed")
-    before, strides = here, 0
-    while not before.world.agents[0].close >> maple.index[bed] & 1:
-        after = do(before, step("Walktowards", bed), ways)
-        assert isinstance(after, Located), after
-        moved = math.dist(before.poses[0].point, after.poses[0].point)
-        assert moved <= 1.0 + 1e-6
-        before, strides = after, strides + 1
-        assert strides < 40
-    assert strides > 2
-    assert distance_to(maple.node(maple.index[bed]).box, before.poses[0].point) < 1.0
+def assert_all_furniture_is_reached(home, within=REACH):
+    """From every cell of the main region a way leads to each piece, and ends within reach of it."""
+    ground = ground_of(home).ground
+    main = ground.ways.main
+    for i in indices(home.furniture | home.by_class.get("fridge", 0) | home.by_class.get("dishwasher", 0)):
+        if home.node(i).box is None:
+            continue
+        stands = ground.stands(i)
+        assert stands and main[list(stands)].all(), (home, home.classes[i])
+        distance = np.asarray(ground.ways.field(stands).distance)
+        assert np.isfinite(distance[main]).all(), (home, home.classes[i])
+        if home.node(i).box.center[1] - home.node(i).box.size[1] / 2 < 0.1 and within is not None:
+            assert gaps(ground.ways.points[list(stands)], home.node(i).box).max() <= within, (home, home.classes[i])
 
 
-def test_a_fast_helper_needs_a_third_of_the_strides(ways, here, maple):
-    bed = id_of(maple, "bed")
-
-    def strides(metres):
-        now, count = here, 0
-        while not now.world.agents[0].close >> maple.index[bed] & 1:
-            now, count = do(now, step("Walktowards", bed), ways, stride=metres), count + 1
-        return count
-
-    slow, fast = strides(1.0), strides(3.0)
-    assert fast <= slow / 3 + 1
+@pytest.mark.parametrize("name", OWN)
+def test_all_furniture_of_our_homes_is_reached(name):
+    assert_all_furniture_is_reached(own_home(name))
 
 
-def test_who_is_under_way_is_close_to_nothing_and_in_the_room_it_crosses(ways, here, maple):
-    bed = id_of(maple, "bed")
-    near = do(here, step("Walk", id_of(maple, "couch")), ways)
-    away = do(near, step("Walktowards", bed), ways)
-    assert away.world.agents[0].close == 0
-    assert maple.classes[away.world.agents[0].inside.bit_length() - 1] == "living_room"
+@pytest.mark.parametrize("seed", [*range(6), *(pytest.param(n, marks=pytest.mark.slow) for n in range(6, 50))])
+def test_all_furniture_of_drawn_homes_is_reached(seed):
+    assert_all_furniture_is_reached(drawn_home(seed))
 
 
-def test_turns_are_thirty_degrees_and_twelve_bring_one_round(ways, here):
-    right = do(here, step("Turnright"), ways)
-    assert (right.poses[0].yaw - here.poses[0].yaw) % 360 == pytest.approx(30)
-    assert do(right, step("Turnleft"), ways).poses == here.poses
-    now = here
-    for _ in range(12):
-        now = do(now, step("Turnright"), ways)
-    assert now.poses[0].yaw == pytest.approx(here.poses[0].yaw)
+@pytest.mark.parametrize("number", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in range(2, 8))])
+def test_no_furniture_of_the_real_homes_is_without_a_way_once_laid_out(real_data, number):
+    made = library.graph_layout(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
+    home = Home.from_graph(made.graph, "real", default())
+    assert_all_furniture_is_reached(home, within=None)
+    world = placed(World.start(home))
+    for i in indices(home.furniture):
+        after = act(world, step("Walktowards", home.ids[i]))
+        assert not (isinstance(after, Failure) and after.code is Code.NO_PATH), after
 
 
-def test_walkforward_is_one_metre_or_nothing(ways, here):
-    results = []
+@pytest.mark.parametrize("name", OWN)
+def test_as_many_strides_as_the_way_is_long_rounded_up(name):
+    home = own_home(name)
+    world = placed(World.start(home))
+    ground = ground_of(home).ground
+    chooser = random.Random(name)
+    cells = np.flatnonzero(ground.ways.main).tolist()
+    for i in chooser.sample(list(indices(home.furniture)), 12):
+        field = ground.ways.field(ground.stands(i))
+        start = chooser.choice(cells)
+        for stride in (1.0, 3.0):
+            begun = at(world, Pose(*ground.ways.points[start].tolist()), stride=stride)
+            worlds = walked(begun, home.ids[i])
+            assert len(worlds) - 1 == math.ceil(field.distance[start] / stride - 1e-9)
+            assert worlds[-1].agents[0].close >> i & 1 or len(worlds) == 1
+
+
+def crossed(ways, one, other):
+    """The cells on the straight line between two points that are a stride apart, as finely as they are."""
+    count = max(1, math.ceil(math.dist(one, other) / 0.02))
+    points = (tuple(a + (b - a) * k / count for a, b in zip(one, other, strict=True)) for k in range(count + 1))
+    return [ways.at(*point) for point in points]
+
+
+def way(ways, field, pose, stride):
+    """The points of a stride, its corners included."""
+    points = [pose.point]
+    for _ in range(round(stride / 0.05)):
+        x, z, cell = ways.stepped(field, *points[-1], 0.05)
+        points.append((x, z))
+        if cell < 0:
+            break
+    return points
+
+
+@pytest.mark.parametrize("stride", [1.0, 3.0])
+def test_no_stride_passes_a_wall_or_a_closed_door(stride):
+    home = own_home("maple")
+    ground = ground_of(home).ground
+    doors = [i for i in indices(home.doors) if home.classes[i] == "door"]
+    chooser = random.Random(3)
+    passed = 0
+    for _ in range(40):
+        shut = chooser.sample(doors, 2)
+        world = edit(placed(World.start(home)), set=[(home.ids[door], "CLOSED") for door in shut])
+        without = ground.shut(sum(1 << door for door in shut))
+        assert without
+        x, z = ground.ways.points[chooser.choice(np.flatnonzero(ground.ways.main).tolist())].tolist()
+        world = at(world, Pose(x, z), stride=stride)
+        if ground.ways.at(x, z) in without:
+            continue
+        node = chooser.choice(list(indices(home.furniture)))
+        for _ in range(20):
+            after = act(world, step("Walktowards", home.ids[node]))
+            if isinstance(after, Failure):
+                assert after.code is Code.DOOR_CLOSED, after
+                break
+            one, other = world.agents[0].pose, after.agents[0].pose
+            points = way(ground.ways, ground.ways.field(ground.stands(node), without), one, stride)
+            for a, b in itertools.pairwise(points):
+                cells = crossed(ground.ways, a, b)
+                assert min(cells) >= 0 and not set(cells) & set(without)
+            assert math.dist(points[-1], other.point) < 1e-6
+            passed += 1
+            world = after
+    assert passed > 30
+
+
+def test_a_closed_door_stops_who_walks_straight_on(maple):
+    home = maple
+    ground = ground_of(home).ground
+    door = next(i for i in indices(home.doors) if home.classes[i] == "door")
+    cells = ground.shut(1 << door)
+    x, z = ground.ways.points[list(cells)].mean(axis=0).tolist()
+    stopped = 0
     for yaw in range(0, 360, 30):
-        start = Located(here.world, (Pose(*here.poses[0].point, yaw),))
-        after = do(start, step("Walkforward"), ways)
-        if isinstance(after, Failure):
-            assert after.code is Code.NO_PATH
+        pose = Pose(x - 0.5 * math.sin(math.radians(yaw)), z - 0.5 * math.cos(math.radians(yaw)), yaw)
+        world = at(placed(World.start(home)), pose)
+        if isinstance(act(world, step("Walkforward")), World):
+            closed = edit(world, set=[(home.ids[door], "CLOSED")])
+            assert isinstance(act(closed, step("Walkforward")), Failure)
+            stopped += 1
+    assert stopped
+
+
+def test_a_character_stands_in_the_main_region_from_the_start():
+    for home in (own_home("juniper"), own_home("willow"), drawn_home(1)):
+        world = placed(with_agents(World.start(home), 4, seed=5), random.Random(2))
+        ways = ground_of(home).ground.ways
+        points = [agent.pose.point for agent in world.agents]
+        assert all(ways.main[ways.at(*point)] for point in points)
+        assert min(math.dist(a, b) for i, a in enumerate(points) for b in points[:i]) >= 2 * BODY_RADIUS
+
+
+def test_who_passes_by_is_close_to_what_is_within_reach(here, maple):
+    world = here
+    ground = ground_of(maple).ground
+    for world in walked(here, id_of(maple, "bed"))[1:-1]:
+        agent = world.agents[0]
+        room = agent.inside.bit_length() - 1
+        for i in indices(agent.close & ~maple.properties["BODY_PART"]):
+            assert gaps(np.asarray([agent.pose.point]), maple.node(i).box)[0] <= REACH + 0.08
+        for i in indices(maple.furniture):
+            box = maple.node(i).box
+            mine = ground._room_of[i] == room and not maple.inside[i] & ~maple.rooms
+            if mine and box.center[1] < 1.5 and gaps(np.asarray([agent.pose.point]), box)[0] < REACH - 0.08:
+                assert agent.close >> i & 1
+
+
+def test_who_has_arrived_has_walked_there(here, maple):
+    table = id_of(maple, "dining_table") if "dining_table" in maple.classes else id_of(maple, "table")
+    walk = act(here, step("Walk", table))
+    by_metres = walked(here, table)[-1]
+    assert by_metres.agents[0].inside == walk.agents[0].inside
+    assert walk.agents[0].close & ~by_metres.agents[0].close & ~maple.bears[maple.index[table]] == 0
+    assert gaps(np.asarray([walk.agents[0].pose.point]), maple.node(maple.index[table]).box)[0] <= REACH
+
+
+def test_turns_are_thirty_degrees_and_twelve_bring_one_round(here):
+    now = here
+    right = act(here, step("Turnright"))
+    assert (right.agents[0].pose.yaw - here.agents[0].pose.yaw) % 360 == pytest.approx(30)
+    assert act(right, step("Turnleft")).agents[0].pose == here.agents[0].pose
+    for _ in range(12):
+        now = act(now, step("Turnright"))
+    assert now.agents[0].pose.yaw == pytest.approx(here.agents[0].pose.yaw)
+
+
+def test_walkforward_is_one_metre_or_nothing(here):
+    done = []
+    for yaw in range(0, 360, 30):
+        start = at(here, Pose(*here.agents[0].pose.point, yaw))
+        after = act(start, step("Walkforward"))
+        done.append(isinstance(after, World))
+        if done[-1]:
+            assert math.dist(after.agents[0].pose.point, start.agents[0].pose.point) == pytest.approx(1.0)
         else:
-            assert math.dist(after.poses[0].point, start.poses[0].point) == pytest.approx(1.0)
-        results.append(isinstance(after, Failure))
-    assert False in results
+            assert after.code is Code.NO_PATH
+        assert (step("Walkforward") in legal(start)) == done[-1]
+    assert True in done and False in done
 
 
-def test_other_characters_are_in_the_way(ways, here, maple):
-    start = here.poses[0].point
-    goal = ways.stand(maple.node(maple.classes.index("bed")).box, None, seed=start).point
-    free = ways.path(start, goal)
-    middle = free[len(free) // 2]
-    around = ways.path(start, goal, others=[middle])
-    assert around is None or min(math.dist(point, middle) for point in around) >= 0.45
+def test_who_sits_can_not_walk_and_gets_up_beside_the_seat(here, maple):
+    couch = id_of(maple, "couch")
+    seated = act(act(here, step("Walk", couch)), step("Sit", couch))
+    box = maple.node(maple.index[couch]).box
+    assert seated.agents[0].pose.point == (box.center[0], box.center[2])
+    for action in (("Walktowards", couch), ("Walkforward",)):
+        refused = act(seated, step(*action))
+        assert isinstance(refused, Failure) and refused.code is Code.SITTING and refused.action == action[0]
+    up = act(seated, step("StandUp"))
+    ways = ground_of(maple).ground.ways
+    assert ways.main[ways.at(*up.agents[0].pose.point)]
+    assert isinstance(act(up, step("Walktowards", id_of(maple, "bed"))), World)
 
 
-def test_along_stops_at_the_end():
-    path = [(0.0, 0.0), (0.0, 2.0), (1.0, 2.0)]
-    assert along(path, 1.0) == (0.0, 1.0)
-    assert along(path, 2.5) == (0.5, 2.0)
-    assert along(path, 9.0) == (1.0, 2.0)
+def test_without_geometry_nobody_has_a_place(here, maple):
+    graph = maple_without_boxes(maple)
+    world = World.start(Home.from_graph(graph, "", default()))
+    assert placed(world) is world
+    for unplaced in (world, World.start(maple)):
+        refused = act(unplaced, step("Turnleft"))
+        assert isinstance(refused, Failure) and refused.code is Code.NOT_SIMULATED
+    assert "Turnleft" not in legal(world).masks
 
 
-def test_who_sits_can_not_walk(ways, here, maple):
-    seated = do(do(here, step("Walk", id_of(maple, "couch")), ways), step("Sit", id_of(maple, "couch")), ways)
-    for action in ("Walktowards", "Walkforward"):
-        refused = do(seated, step(action, id_of(maple, "bed")), ways)
-        assert isinstance(refused, Failure) and refused.code is Code.SITTING and refused.action == action
+def maple_without_boxes(maple):
+    from dataclasses import replace
+
+    graph = World.start(maple).graph()
+    return replace(graph, nodes=tuple(replace(node, box=None) for node in graph.nodes))
+
+
+def test_bodies_are_in_the_way_by_a_rule(maple):
+    world = placed(with_agents(World.start(maple), 2))
+    node = id_of(maple, "bed")
+    alone = walked(World(maple, world.states, world.agents[:1], world.moved), node)
+    middle = alone[len(alone) // 2].agents[0].pose
+    standing = at(world, middle, number=1)
+    through = around = standing
+    nearest = {"through": math.inf, "around": math.inf}
+    for _ in range(2 * len(alone)):
+        through, _ = tick(through, {0: step("Walktowards", node)}, DEFAULT)
+        around, _ = tick(around, {0: step("Walktowards", node)}, BODIES)
+        for name, now in (("through", through), ("around", around)):
+            nearest[name] = min(nearest[name], math.dist(now.agents[0].pose.point, middle.point))
+    assert nearest["through"] < 2 * BODY_RADIUS <= nearest["around"] + 0.02
+
+
+def test_of_two_that_walk_the_lower_number_goes_first(maple):
+    world = placed(with_agents(World.start(maple), 2))
+    towards = {0: step("Walktowards", id_of(maple, "bed")), 1: step("Walktowards", maple.ids[maple.agents[0]], agent=1)}
+    for _ in range(30):
+        world, failures = tick(world, towards)
+        assert not failures
+    one, other = world.agents
+    assert math.dist(one.pose.point, other.pose.point) < REACH and other.close & one.bit and one.close & other.bit
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_legal_is_exactly_what_can_be_done_at_a_place(seed):
+    chooser = random.Random(seed)
+    home = own_home(OWN[seed])
+    world = placed(with_agents(World.start(home), 2, seed), chooser)
+    doors = [home.ids[i] for i in indices(home.doors) if home.properties["CAN_OPEN"] >> i & 1]
+    world = edit(world, set=[(door, "CLOSED") for door in doors if chooser.random() < 0.3], check=False)
+    for _ in range(25):
+        for number in (0, 1):
+            found = legal(world, number)
+            things = chooser.sample(home.ids, 25) + [home.ids[i] for i in indices(world.agents[number].held)]
+            tries = [step("Walktowards", thing, agent=number) for thing in things]
+            tries += [step(name, agent=number) for name in ("Walkforward", "Turnleft", "Turnright")]
+            for each in tries:
+                assert (each in found) == isinstance(act(world, each), World), (each, act(world, each))
+            options = [each for each in found if each.action in EVERY]
+            chosen = chooser.choice([each for each in options if each.action in ("Walktowards", "Grab")] or options)
+            world, failures = tick(world, {number: chosen})
+            assert not failures
+            ways = ground_of(world.home).ground.ways
+            pose = world.agents[number].pose
+            assert world.agents[number].on or ways.main[ways.at(*pose.point)]
