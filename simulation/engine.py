@@ -8,7 +8,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.actions.metres import followed
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
-from hearth.simulation.motion.placing import placed
+from hearth.simulation.motion.positions import placed
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 

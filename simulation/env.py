@@ -17,7 +17,7 @@ from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS
 from hearth.simulation import engine
 from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.instructions import instruction_of
-from hearth.simulation.motion.placing import placed
+from hearth.simulation.motion.positions import placed
 from hearth.simulation.observation.views import LastAction, View, view
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
@@ -88,7 +88,7 @@ class Env:
         return self._world
 
     def reset(self, home: Home | World | str, agents: int = 1, seed: int = 0) -> dict[int, View]:
-        """Begin anew. In a home with geometry every character stands at a place (see `motion.placing`).
+        """Begin anew. In a home with geometry every character stands at a place (see `motion.positions`).
 
         Args:
             home: where, or its name; a world is taken up as it stands.
@@ -181,7 +181,7 @@ class Env:
         Examples:
             >>> _ = env.step("[Walk] <fridge> (1)")
             >>> [step.objects[0].name for step in env.legal() if step.action == "Open"]
-            ['fridge', 'coffe_maker', 'cupboard', 'microwave']
+            ['window', 'curtain', 'fridge', 'coffe_maker', 'oven', 'cupboard', 'cupboard', 'microwave']
         """
         self._check(agent)
         seen = self.partial if only_visible is None else only_visible

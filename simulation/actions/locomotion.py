@@ -4,7 +4,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions import doors
 from hearth.simulation.actions.common import Action, Masks, need_close, refuse, some
 from hearth.simulation.actions.situation import Situation
-from hearth.simulation.motion import placing
+from hearth.simulation.motion import positions
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
@@ -21,7 +21,7 @@ def walk(world: World, number: int, o: int, _: int, rules: Rules) -> World | Fai
     room = destination(world, agent, o, rules)
     if isinstance(room, Failure):
         return room
-    return arrived(world, number, o, room, None if agent.pose is None else placing.beside(world, agent.pose, o))
+    return arrived(world, number, o, room, None if agent.pose is None else positions.beside(world, agent.pose, o))
 
 
 def need_legs(world: World, agent: Agent, *objects: int) -> Failure | None:
@@ -95,7 +95,7 @@ def arrived(world: World, number: int, o: int, room: int, pose: Pose | None) -> 
             near |= rows.bears(world, o)
     near |= _characters_near(world, o)
     if pose is not None:
-        near |= placing.near(world, number, pose)
+        near |= positions.near(world, number, pose)
     return gone(world, number, near, room, pose)
 
 

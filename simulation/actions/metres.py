@@ -1,7 +1,7 @@
 """Walktowards, Walkforward, Turnleft, Turnright: moving by metres and degrees where there is geometry (table 2.2).
 
-They need characters at places (see `motion.placing`). The symbolic world follows: who is under way is CLOSE to what it
-passes, in the room that it crosses, and who has arrived has walked there.
+They need characters at places (see `motion.positions`). The symbolic world follows: who is under way is CLOSE to what
+it passes, in the room that it crosses, and who has arrived has walked there.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Action, Masks, refuse, some
 from hearth.simulation.actions.locomotion import arrived, destination, gone, need_legs
 from hearth.simulation.actions.situation import Situation
-from hearth.simulation.motion import placing
+from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import Here, ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
 from hearth.simulation.rules import Rules
@@ -32,7 +32,7 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
     if isinstance(room, Failure):
         return room
     here, pose = ground_of(world.home), agent.pose
-    ends = placing.ends(world, here, o) if here is not None else ()
+    ends = positions.ends(world, here, o) if here is not None else ()
     if here is None or pose is None or not ends:
         return refuse(world, Code.NO_PATH, "something with a place", "no place of it is known", o)
     ways = here.ground.ways
@@ -49,7 +49,7 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         return refuse(world, Code.NO_PATH, "a free way over the floor", "none", o)
     there = Pose(x, z, pose.yaw)
     if cell == -1:
-        return arrived(world, number, o, room, placing.facing(world, there, o))
+        return arrived(world, number, o, room, positions.facing(world, there, o))
     there = Pose(x, z, pose.towards((x, z)).yaw)
     return _under_way(world, number, here, there)
 
@@ -85,7 +85,7 @@ def _ahead(world: World, number: int, here: Here | None, rules: Rules) -> tuple[
 
 
 def _under_way(world: World, number: int, here: Here, pose: Pose) -> World:
-    near, room = placing.around(world, number, here, pose)
+    near, room = positions.around(world, number, here, pose)
     return gone(world, number, near, room, pose)
 
 
@@ -131,7 +131,7 @@ def turn(degrees: float) -> Action:
 def _towards(s: Situation) -> Masks:
     if s.resting:
         return None
-    return some(s.walkable & placing.walked_to(s.world, s.number, _closed(s.world, s.rules)))
+    return some(s.walkable & positions.walked_to(s.world, s.number, _closed(s.world, s.rules)))
 
 
 def _forward(s: Situation) -> Masks:
@@ -158,11 +158,11 @@ def followed(world: World, number: int, action: str, o: int) -> World:
         return world
     known = world.home.knowledge
     if action in known.group("looks") and o >= 0:
-        there = placing.facing(world, pose, o)
+        there = positions.facing(world, pose, o)
     elif action in known.group("rests") and o >= 0:
-        there = placing.resting(world, pose, o)
+        there = positions.resting(world, pose, o)
     elif action in known.group("rises"):
-        there = placing.risen(world, number, pose)
+        there = positions.risen(world, number, pose)
     else:
         return world
     if there == pose:

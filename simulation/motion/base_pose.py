@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Step
 from hearth.simulation.engine import Execution, act
-from hearth.simulation.motion.placing import facing, placed
+from hearth.simulation.motion.positions import facing, placed
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World

@@ -30,7 +30,7 @@ class Agent(NamedTuple):
         on, worn: what it is ON; the things that are ON it.
         right, left: what each hand holds.
         origins: where grabbed things came from: (thing, place, kind of relation), for PutObjBack.
-        pose: where it stands and looks; None where it is not placed (see `motion.placing`).
+        pose: where it stands and looks; None where it is not placed (see `motion.positions`).
         stride: metres that it walks in a tick.
     """
 

@@ -148,3 +148,15 @@ def test_a_second_character_is_placed_too(tmp_path):
     file.write_text("Two\n\n\n<char0> [Walk] <chair> (1) | <char1> [Walk] <fridge> (1)\n")
     (tick,) = json.loads(call("run", file, "--home", "maple", "--json").output)["stances"]
     assert [stance["agent"] for stance in tick] == [0, 1]
+
+
+def test_run_prints_where_the_four_moves_lead(tmp_path):
+    file = tmp_path / "moves.txt"
+    file.write_text("Move\nAbout.\n\n\n[Walkforward]\n[Turnleft]\n[Walktowards] <fridge> (1)\n[Turnright]\n")
+    result = call("run", file, "--home", "maple")
+    assert result.exit_code == 0, result.output
+    found = [line.strip() for line in result.output.splitlines() if line.strip().startswith("character 0 at")]
+    assert len(found) == 4
+    before, turned = found[0].split(" m, facing "), found[1].split(" m, facing ")
+    assert before[0] == turned[0] and (int(before[1].split()[0]) - int(turned[1].split()[0])) % 360 == 30
+    assert found[2].split(" m,")[0] != found[1].split(" m,")[0]

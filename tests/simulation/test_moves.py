@@ -20,7 +20,7 @@ from hearth.simulation.engine import act, tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
-from hearth.simulation.motion.placing import placed
+from hearth.simulation.motion.positions import placed
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
