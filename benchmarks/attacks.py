@@ -113,8 +113,8 @@ def exports() -> Iterator[Attack]:
 
 def names() -> Iterator[Attack]:
     """Names as archives and stores list them."""
+    from hearth.storage.fetching import fetched
     from hearth.storage.names import file_name, inside
-    from hearth.storage.stores import fetched
 
     def unzip(name: str, ground: Ground) -> Any:
         path = ground.folder / "dataset.zip"

@@ -72,7 +72,7 @@ class Dataset:
             HearthError: the path is not a dataset, or a newer version wrote it, or it is incomplete.
         """
         from hearth.storage.exchange import present
-        from hearth.storage.stores import fetched
+        from hearth.storage.fetching import fetched
 
         folder = fetched(path)
         if not (folder / NAME).exists() and (present(folder / "publish") / NAME).exists():

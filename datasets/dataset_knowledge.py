@@ -1,6 +1,7 @@
 """The knowledge of a dataset: recorded in its manifest; the user's overlay is stored beside the tables."""
 
 import shutil
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,7 @@ dataset, the path of their copy. Datasets without the field were made with ours.
 
 def copy_overlay(overlay: str | None, folder: Path) -> None:
     """Copy the user's knowledge files into a folder, replacing those of an earlier build."""
-    target = folder / FOLDER
-    files = {path.name: path.read_bytes() for path in files_of(Path(overlay))} if overlay else {}
-    shutil.rmtree(target, ignore_errors=True)
-    for name, data in files.items():
-        target.mkdir(exist_ok=True)
-        write_bytes(target / name, data)
+    copy_files(files_of(Path(overlay)) if overlay else [], folder / FOLDER)
 
 
 def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
@@ -36,6 +32,15 @@ def made_with(overlay: str | None, folder: Path) -> dict[str, Any]:
     return {FIELD: {"base": digest(), "overlay": over}}
 
 
+def copy_files(files: Iterable[Path], folder: Path) -> None:
+    """Make a folder hold copies of these files and nothing else; without a file it goes."""
+    data = {path.name: path.read_bytes() for path in files}
+    shutil.rmtree(folder, ignore_errors=True)
+    for name, content in data.items():
+        folder.mkdir(exist_ok=True)
+        write_bytes(folder / name, content)
+
+
 def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
     """The knowledge that a dataset was made with: ours, extended by the dataset's overlay.
 
@@ -43,29 +48,41 @@ def knowledge_of(folder: Path, manifest: dict[str, Any]) -> Knowledge:
         HearthError: BAD_JSON, for a malformed manifest field; MISSING_FILE or DAMAGED_FILE, if the overlay's files
             differ from the manifest; every fault of these files.
     """
-    recorded = manifest.get(FIELD)
+    return overlaid(carried(folder, manifest.get(FIELD), FIELD, digest))
+
+
+def carried(folder: Path, recorded: Any, what: str, digest_of: Callable[[Path], str]) -> Path | None:
+    """The folder of the user's files that a dataset was made with and carries; None where it was made with ours alone.
+
+    Args:
+        folder: of the dataset.
+        recorded: the manifest's field; None, in datasets made before there was one.
+        what: the files are of, for messages.
+        digest_of: the digest of such a folder.
+
+    Raises:
+        HearthError: BAD_JSON, for a malformed field; MISSING_FILE or DAMAGED_FILE, if the files differ from it.
+    """
     if recorded is None:
-        return overlaid(None)
+        return None
     try:
         overlay = recorded["overlay"]
-        path, wanted = (folder / overlay["path"], overlay["sha256"]) if overlay else (None, "")
+        path: Path | None = folder / overlay["path"] if overlay else None
+        wanted = overlay["sha256"] if overlay else ""
     except (TypeError, KeyError) as error:
-        message = f"the manifest does not say which knowledge: {type(error).__name__} {error}"
+        message = f"the manifest does not say which {what}: {type(error).__name__} {error}"
         raise HearthError.of(Code.BAD_JSON, message, file=str(folder)) from error
-    if path is not None:
-        _check(path, wanted, folder)
-    return overlaid(path)
-
-
-def _check(path: Path, wanted: str, folder: Path) -> None:
+    if path is None:
+        return None
     again = "fetch or publish the dataset again"
     if not path.resolve().is_relative_to(folder.resolve()):
-        raise HearthError.of(Code.DAMAGED_FILE, f"its knowledge lies outside: `{path}`", file=str(folder))
+        raise HearthError.of(Code.DAMAGED_FILE, f"its {what} lies outside: `{path}`", file=str(folder))
     if not path.is_dir():
-        raise HearthError.of(Code.MISSING_FILE, "the knowledge it was made with", file=str(path), suggestion=again)
-    if digest(path) != wanted:
-        message = "other files of knowledge than the manifest says"
+        raise HearthError.of(Code.MISSING_FILE, f"the {what} it was made with", file=str(path), suggestion=again)
+    if digest_of(path) != wanted:
+        message = f"other files of {what} than the manifest says"
         raise HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion=again)
+    return path
 
 
 def other_base(manifest: dict[str, Any]) -> str:

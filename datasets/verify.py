@@ -6,6 +6,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 from hearth.datasets.dataset import Dataset
+from hearth.datasets.dataset_homes import own_homes
 from hearth.datasets.dataset_knowledge import other_base
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.stored_cases import stored_cases
@@ -76,7 +77,7 @@ def verify(path: str | Path, workers: int = 1, seen: Seen = unseen) -> Verdict:
     files = len(dataset.manifest["files"])
     note = other_base(dataset.manifest)
     odd = tuple(unknown(dataset))
-    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_knowledge(dataset))
+    faults = tuple(_files(dataset)) or (*_schemas(dataset), *_overlays(dataset))
     faults = faults or tuple(other_files(dataset.folder))
     if faults:
         return Verdict(files, 0, 0, faults, note, odd)
@@ -108,9 +109,10 @@ def _files(dataset: Dataset) -> Iterator[Diagnostic]:
                 yield Diagnostic(Code.UNSUPPORTED_FILE, message, str(path), suggestion="move it elsewhere")
 
 
-def _knowledge(dataset: Dataset) -> Iterator[Diagnostic]:
+def _overlays(dataset: Dataset) -> Iterator[Diagnostic]:
     try:
         _ = dataset.knowledge
+        own_homes(dataset.folder, dataset.manifest)
     except HearthError as error:
         yield from error.diagnostics
 

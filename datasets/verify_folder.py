@@ -8,8 +8,8 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
+from hearth.datasets import dataset_homes, dataset_knowledge
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.dataset_knowledge import FIELD
 from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
@@ -28,7 +28,8 @@ EARLIER = {
 }
 """SHA-256 of the catalog's SQL in earlier versions; add that of the last one when the SQL of the next differs."""
 
-_FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", FIELD, "counts", "parts", "files"}
+_FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", "counts", "parts", "files",
+           dataset_homes.FIELD, dataset_knowledge.FIELD}  # fmt: skip
 
 
 def unknown(dataset: Dataset) -> Iterator[Diagnostic]:

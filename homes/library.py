@@ -98,10 +98,7 @@ def _file(name: str, directory: Path | str | None) -> Path:
 def _files(directory: Path | str | None, own: Mapping[str, Path]) -> dict[str, Path]:
     found = dict(own)
     if directory is not None:
-        folder = Path(directory)
-        if not folder.is_dir():
-            raise HearthError.of(Code.MISSING_FILE, f"`{folder}` is not a directory", suggestion="--homes DIR")
-        found.update(_in(folder))
+        found.update(_in(_folder(directory)))
     return found
 
 
@@ -109,6 +106,23 @@ def _files(directory: Path | str | None, own: Mapping[str, Path]) -> dict[str, P
 def _own() -> Mapping[str, Path]:
     with as_file(files("hearth.data_raw") / "homes") as folder:
         return _in(folder)
+
+
+def files_of(directory: Path) -> list[Path]:
+    """The files of homes in a directory, by name: plans, their ids, scene graphs.
+
+    Raises:
+        HearthError: MISSING_FILE: there is no such directory.
+    """
+    found = sorted(_folder(directory).iterdir())
+    return [path for path in found if path.name.endswith((".yaml", ".json", IDS)) and path.is_file()]
+
+
+def _folder(directory: Path | str) -> Path:
+    folder = Path(directory)
+    if not folder.is_dir():
+        raise HearthError.of(Code.MISSING_FILE, f"`{folder}` is not a directory", suggestion="--homes DIR")
+    return folder
 
 
 def _in(folder: Path) -> dict[str, Path]:

@@ -16,7 +16,7 @@ from hearth.datasets.format.codecs import (
 from hearth.grounding.environments.sampling import Environment
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Output, Plan, Stage
 from hearth.repair.causes import cause
@@ -271,7 +271,7 @@ STAGE = Stage(
     settings=("seed", "probability", "variants", "target", "tries"),
     open=lambda job: Context(job.settings, job.plan),
     prepare=prepare,
-    facts=knowledge_used,
+    facts=overlays_used,
     select=lambda record, plan: bool(record["executable"]) and record["home"] not in plan.get("left_out", ()),
     identify=lambda record: str(record["execution_id"]),
     label=_label,

@@ -8,9 +8,9 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from hearth.pipelines.engine.context import kept_knowledge
 from hearth.pipelines.engine.engines import engine as make_engine
 from hearth.pipelines.engine.estimates import forecast
+from hearth.pipelines.engine.overlays import kept_overlays, overlays
 from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
@@ -20,10 +20,11 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
 from hearth.schemas.row_types import RejectedRow
+from hearth.storage.fetching import fetched
 from hearth.storage.lock import locked
 from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts
-from hearth.storage.stores import fetched, working
+from hearth.storage.stores import working
 
 CORPUS = ("crowd/descriptions.csv", "crowd/programs.csv")
 """The embedded corpus, in `data_raw`."""
@@ -108,8 +109,9 @@ def build(
     fresh: list[str] = []
     with working(out) as (folder, url, revision):
         settings = Settings(paths, folder, store=url, revision=revision, **options)
-        if only and only != "validate":
-            settings = kept_knowledge(settings)
+        if only:
+            settings = kept_overlays(settings, only)
+        overlays(settings)  # their faults are reported before the sources are read
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:
             for name in [only] if only else list(STAGES):
                 if name == "render" and progress and (settings.pictures or settings.videos):

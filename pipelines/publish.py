@@ -13,8 +13,8 @@ from hearth.datasets.format.cases import difference_on_replay
 from hearth.datasets.format.ids import STAMP, activity_id
 from hearth.datasets.format.splits import LEFT_OUT, PARTS
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.context import knowledge_used, overlays
 from hearth.pipelines.engine.final_tables import finish
+from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
 from hearth.pipelines.engine.stage import Job, Partition, Stage
@@ -134,5 +134,5 @@ STAGE = Stage(
     exchanged=True,
     identify=lambda case: str(case["execution_id"]),
     finish=finish,
-    facts=knowledge_used,
+    facts=overlays_used,
 )

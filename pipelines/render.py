@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import rerun
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.failures import Code
@@ -242,7 +242,7 @@ STAGE = Stage(
     settings=("pictures", "videos", "seed"),
     open=open_context,
     prepare=prepare,
-    facts=knowledge_used,
+    facts=overlays_used,
     partitions=partitions,
     records=records,
     time_factor=10,

@@ -15,7 +15,7 @@ from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.context import knowledge_used, overlays
+from hearth.pipelines.engine.overlays import keep_homes, overlays, overlays_used
 from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.stage import Job, Plan, Stage
 from hearth.schemas.failures import Failure
@@ -173,8 +173,9 @@ def _parts_by_home(settings: Settings, homes: Homes) -> dict[str, list[tuple[str
     return found
 
 
-def derive_homes(job: Job) -> None:
-    """Write the homes that are derived from stored start graphs."""
+def begin(job: Job) -> None:
+    """Keep the user's homes, and write those that are derived from stored start graphs."""
+    keep_homes(job)
     folder = job.folder / DERIVED
     folder.mkdir(exist_ok=True)
     derived = _parts_by_home(job.settings, Homes(job.settings))
@@ -208,8 +209,8 @@ STAGE = Stage(
     settings=("seed", "homes_each"),
     open=open_homes,
     prepare=prepare,
-    facts=knowledge_used,
-    begin=derive_homes,
+    facts=overlays_used,
+    begin=begin,
     label=lambda row: "executable" if row["executable"] else "not executable",
     share=64,
 )

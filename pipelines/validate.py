@@ -9,7 +9,7 @@ from hearth.kb import grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.numbered_steps import parse_steps
 from hearth.pipelines.checks import programs, special
-from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_used, overlays
+from hearth.pipelines.engine.context import keep_knowledge, knowledge, knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.stage import Stage
 from hearth.pipelines.readers import plans
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -161,7 +161,7 @@ STAGE = Stage(
     process=process,
     reads=("ingest",),
     open=lambda job: knowledge(job.settings),
-    prepare=overlays,
+    prepare=knowledge_laid_over,
     begin=keep_knowledge,
     facts=knowledge_used,
     # Descriptions without a program go on to `publish` as they are.

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -90,9 +90,15 @@ def tree_digest(path: Path) -> str:
         return file_digest(path)
     if not path.is_dir():
         raise HearthError.of(Code.MISSING_FILE, "no such file or folder", file=str(path))
+    return files_digest(walk(path), path)
+
+
+def files_digest(files: Iterable[Path], folder: Path) -> str:
+    """SHA-256 over the names and bytes of files of a folder, in the order given."""
     digest = hashlib.sha256()
-    for file in walk(path):
-        digest.update(f"{file.relative_to(path).as_posix()}\0{file_digest(file)}\n".encode("utf-8", "surrogateescape"))
+    for file in files:
+        name = file.relative_to(folder).as_posix()
+        digest.update(f"{name}\0{file_digest(file)}\n".encode("utf-8", "surrogateescape"))
     return digest.hexdigest()
 
 

@@ -14,7 +14,7 @@ TIMING = "timing.json"
 FORMAT = 2
 """Of datasets; it changes with their tables. `datasets/format/earlier.yaml` says how earlier ones are read."""
 
-_UNHASHED = frozenset({NAME, TIMING, "catalog.duckdb"})
+UNHASHED = frozenset({NAME, TIMING, "catalog.duckdb"})
 """The manifest itself, what differs from run to run, and the catalog, whose bytes DuckDB does not fix."""
 
 
@@ -80,7 +80,7 @@ def describe(folder: Path, asked: dict[str, Any], inputs: dict[str, str], key: s
 def _files(folder: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     for path in walk(folder):
         name = path.relative_to(folder).as_posix()
-        if name not in _UNHASHED and not is_temporary(name):
+        if name not in UNHASHED and not is_temporary(name):
             yield name, {"bytes": path.stat().st_size, "sha256": file_digest(path)}
 
 

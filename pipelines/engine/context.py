@@ -1,16 +1,13 @@
-"""The knowledge of a build, and the digests of the user's overlays in a plan."""
+"""The knowledge of a build, and the digest of the user's own in a plan."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from hearth.datasets.dataset_knowledge import FOLDER, copy_overlay, made_with
+from hearth.datasets.dataset_knowledge import copy_overlay, made_with
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.loading.load import digest as knowledge_digest
-from hearth.kb.loading.load import overlaid
+from hearth.kb.loading.load import digest, overlaid
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
-from hearth.storage.files import tree_digest
 
 
 def knowledge(settings: Settings) -> Knowledge:
@@ -28,22 +25,13 @@ def keep_knowledge(job: Job) -> None:
     copy_overlay(job.settings.kb_folder, job.folder)
 
 
-def kept_knowledge(settings: Settings) -> Settings:
-    """The settings, with the knowledge that `validate` used if they name none."""
-    folder = settings.folder("validate") / FOLDER
-    return settings if settings.kb_folder or not folder.is_dir() else replace(settings, kb_folder=str(folder))
-
-
-def overlays(settings: Settings) -> dict[str, Any]:
-    """Digests of the user's own knowledge and homes, for a plan.
+def knowledge_laid_over(settings: Settings) -> dict[str, Any]:
+    """Digest of the user's own knowledge, for a plan.
 
     Raises:
         HearthError: a folder is not there; every fault of the knowledge.
     """
-    made: dict[str, Any] = {}
-    if settings.kb_folder:
-        knowledge(settings)
-        made["kb_overlay"] = knowledge_digest(Path(settings.kb_folder))
-    if settings.homes_folder:
-        made["homes_overlay"] = tree_digest(Path(settings.homes_folder))
-    return made
+    if not settings.kb_folder:
+        return {}
+    knowledge(settings)
+    return {"kb_overlay": digest(Path(settings.kb_folder))}

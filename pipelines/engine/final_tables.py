@@ -11,6 +11,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from hearth.datasets.dataset_homes import copy_homes
 from hearth.datasets.dataset_knowledge import copy_overlay
 from hearth.datasets.format import splits
 from hearth.datasets.format.card import write_card
@@ -64,6 +65,7 @@ def finish(job: Job, counts: Counts) -> None:
         write_rows(part_path(job.folder, table, 0), TABLES[table], rows())
     _copy_pictures(job)
     copy_overlay(job.settings.kb_folder, job.folder)
+    copy_homes(job.settings.homes_folder, job.folder)
     write_card(job.folder)
     write_croissant(job.folder)
     write_catalog(job.folder)

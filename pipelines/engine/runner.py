@@ -118,6 +118,8 @@ def _clear(job: Job) -> None:
     """Remove the manifest, which marks a complete stage, and files written in part; a folder in use is kept."""
     if job.stage.exchanged:
         folder = job.settings.folder(job.stage.name)
+        if job.settings.store and not job.folder.exists():
+            store(job.settings.store).tidy(job.stage.name)
         start_from(folder, [*folder.rglob("part-*.parquet"), *folder.glob(REJECTS), *folder.glob(".rejects-*.parquet")])
     elif job.settings.store:
         store(job.settings.store).begin(job.stage.name)
@@ -133,7 +135,8 @@ def _put_in_place(job: Job) -> None:
         put_in_place(job.settings.folder(name))
     _drop_gathered(job.settings.folder(name))
     if job.settings.store:
-        store(job.settings.store).end(name, whole=job.stage.exchanged)
+        remote = store(job.settings.store)
+        (remote.replace if job.stage.exchanged else remote.end)(name)
 
 
 def _tidy(job: Job) -> None:
@@ -142,6 +145,8 @@ def _tidy(job: Job) -> None:
     _drop_gathered(folder)
     if job.stage.exchanged:
         tidy(folder)
+        if job.settings.store:
+            store(job.settings.store).tidy(job.stage.name)
 
 
 def _drop_gathered(folder: Path) -> None:

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,7 +20,10 @@ from hearth.datasets.verify import verify  # noqa: E402
 from hearth.pipelines.build import build  # noqa: E402
 from hearth.schemas.diagnostics import HearthError  # noqa: E402
 from hearth.schemas.failures import Code  # noqa: E402
-from hearth.storage.stores import Store, _temporary_folder, fetched, store, url_of, working  # noqa: E402
+from hearth.storage.fetching import _temporary_folder, fetched  # noqa: E402
+from hearth.storage.files import file_digest  # noqa: E402
+from hearth.storage.remote import url_of  # noqa: E402
+from hearth.storage.stores import Store, store, working  # noqa: E402
 
 URL = "memory://bucket/evening"
 
@@ -168,6 +172,128 @@ def test_a_worker_elsewhere_fetches_what_it_needs(made, memory):
         assert not (Path(folder) / "ingest/part-00001.parquet").exists()
 
 
+CHANGING = ("put_file", "pipe_file", "cp_file", "rm_file")
+"""What a build calls to change a store."""
+
+
+@pytest.fixture
+def changes(memory, monkeypatch):
+    """Calls a function before and after each change to the store, once it is given one."""
+    watching = []
+
+    def watched(change, own):
+        def call(*words, **options):
+            watch = watching.pop() if watching else lambda *_: None
+            try:
+                watch(change, words)
+                own(*words, **options)
+                watch("", ())
+            finally:
+                watching.append(watch)
+
+        return call
+
+    for change in CHANGING:
+        monkeypatch.setattr(memory, change, watched(change, getattr(memory, change)))
+    return watching
+
+
+def publish_anew(made, seed):
+    settings = made.settings
+    return build(out=URL, only="publish", seed=seed, homes=settings.homes, pictures=0)
+
+
+def read_whole():
+    """The key of the dataset as somebody finds it who has not read it before; each of its files is as it should be."""
+    _temporary_folder.cache_clear()
+    folder = fetched(URL)
+    manifest = json.loads((folder / "manifest.json").read_bytes())
+    files = {path.relative_to(folder).as_posix(): file_digest(path) for path in folder.rglob("*") if path.is_file()}
+    said = {name: entry["sha256"] for name, entry in manifest["files"].items()}
+    others = {"manifest.json", "timing.json", "catalog.duckdb", ".fetched.json"}
+    assert {name: value for name, value in files.items() if name not in others} == said
+    shutil.rmtree(folder.parent)
+    return manifest["key"]
+
+
+def test_whoever_reads_between_two_changes_finds_the_old_or_the_new(made, changes):
+    build_into(URL, made)
+    before, seen, moments = read_whole(), [], []
+
+    def read(change, words):
+        moments.append(change)
+        seen.append(read_whole())
+
+    changes.append(read)
+    assert publish_anew(made, 1).fresh
+    after = read_whole()
+    assert list(dict.fromkeys(seen)) == [before, after] and before != after
+    assert moments.count("put_file") > 20 and moments.count("cp_file") > 20 and moments.count("rm_file") > 20
+
+
+def test_whoever_reads_during_the_first_build_finds_none_or_all(made, changes):
+    seen = []
+
+    def read(change, words):
+        try:
+            seen.append(read_whole())
+        except FileNotFoundError:
+            seen.append("none")
+
+    settings = made.settings
+    for name in ("ingest", "validate", "sample", "augment", "render"):
+        build(settings.sources, URL, only=name, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0)
+    changes.append(read)
+    publish_anew(made, 0)
+    assert list(dict.fromkeys(seen)) == ["none", read_whole()]
+
+
+def test_each_file_is_sent_once(made, changes):
+    sent = []
+    changes.append(lambda change, words: sent.append(words[0]) if change == "put_file" else None)
+    build_into(URL, made)
+    tables = [path.replace("/.publish/", "/publish/") for path in map(str, sent) if "publish/" in path]
+    assert len(tables) == len(set(tables)) == len(made.result.manifest.content["files"]) + 3
+    sent.clear()
+    assert publish_anew(made, 0).fresh == () and sent == []
+
+
+class Stopped(Exception):
+    """A build is killed."""
+
+
+def test_a_build_stopped_between_any_two_changes_is_made_up_for(made, memory, changes):
+    build_into(URL, made)
+    before = read_whole()
+    shutil.copytree(Store(URL).work, kept := Path(tempfile.gettempdir()) / "kept")
+    there, number, found = dict(memory.store), 0, set()
+
+    def stop(change, words, left):
+        left.append(change)
+        if len(left) == 2 * number + 1:
+            raise Stopped
+
+    while True:
+        left = []
+        changes[:] = [lambda change, words, left=left: stop(change, words, left)]
+        try:
+            publish_anew(made, 1)
+            break
+        except (Stopped, HearthError):
+            changes.clear()
+            found.add(read_whole())
+        publish_anew(made, 1)
+        assert not [name for name in names(memory) if name.startswith(".publish")]
+        found.add(read_whole())
+        memory.store.clear()
+        memory.store.update(there)
+        shutil.rmtree(Store(URL).work)
+        shutil.copytree(kept, Store(URL).work)
+        number += 7  # each seventh moment, of some two hundred
+    changes.clear()
+    assert number > 70 and found == {before, read_whole()}
+
+
 def test_an_unknown_kind_of_store_is_named():
     with pytest.raises(HearthError) as error:
         fetched("nosuch://bucket/a")
@@ -188,6 +314,16 @@ def test_a_name_that_leaves_the_copy_is_refused(memory, tmp_path, monkeypatch, n
         assert error.value.diagnostics[0].code is Code.DAMAGED_FILE
     outside = [path for path in tmp_path.rglob("*") if path.is_file() and "stolen" in path.name]
     assert not outside and not before and not Path("/stolen").exists()
+
+
+def test_a_folder_that_goes_while_it_is_listed_holds_nothing(memory, monkeypatch):
+    """s3fs lists such a folder as itself."""
+    memory.pipe_file("/bucket/evening/a.txt", b"one")
+    found = {"/bucket/evening": {"name": "/bucket/evening", "size": 0, "type": "directory"}}
+    monkeypatch.setattr(memory, "find", lambda *_, **__: found)
+    with pytest.raises(HearthError) as error:
+        fetched(URL)
+    assert error.value.diagnostics[0].code is Code.MISSING_FILE
 
 
 def test_members_of_a_zip_do_not_leave_the_copy(tmp_path):
@@ -218,7 +354,8 @@ def test_copies_are_closed_to_others_and_removed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.txt").write_text("a")
     asked = """if True:
-        from hearth.storage.stores import Store, fetched
+        from hearth.storage.fetching import fetched
+        from hearth.storage.stores import Store
         print(fetched("file://a.txt"))
         print(Store("memory://x").work)"""
     environment = {**os.environ, "TMPDIR": str(tmp_path / "work")}

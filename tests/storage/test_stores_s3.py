@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 import pytest
 
@@ -39,6 +41,7 @@ def run(server, request):
         assert done.returncode == status, done.stderr
         return done.stdout + done.stderr
 
+    command.environment = environment
     yield command
     shutil.rmtree(work)
 
@@ -69,6 +72,49 @@ def test_built_verified_and_queried(run, bucket, made, engine):
     )
     bucket.pipe_file("homes/evening/publish/programs/part-00000.train.parquet", b"damaged")
     assert "programs/part-00000.train.parquet" in run("verify", "s3://homes/evening", status=1)
+
+
+READER = """
+import sys
+from pathlib import Path
+import hearth
+
+opened, failed, keys = 0, [], set()
+Path(sys.argv[2]).touch()
+while not Path(sys.argv[1]).exists():
+    try:
+        ds = hearth.load("s3://homes/evening")
+        (first, *_) = ds
+        ds[first].runs[0].final
+        ds.rows("SELECT count(*) FROM executions JOIN programs USING (program_id)")
+        keys.add(ds.manifest["key"])
+    except Exception as error:
+        failed.append(repr(error))
+    opened += 1
+print(opened, len(failed), ",".join(keys), failed[:3])
+"""
+
+
+def test_eight_readers_while_a_dataset_is_replaced(run, bucket, made, tmp_path):
+    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--videos", "0")
+    run("build", *made.settings.sources, "--out", "s3://homes/evening", *homes)
+    (tmp_path / "reader.py").write_text(READER)
+    done, ready = tmp_path / "done", [tmp_path / f"ready{number}" for number in range(8)]
+    asked = [[sys.executable, str(tmp_path / "reader.py"), str(done), str(path)] for path in ready]
+    readers = [subprocess.Popen(one, stdout=subprocess.PIPE, text=True, env=run.environment) for one in asked]
+    while not all(path.exists() for path in ready):
+        time.sleep(0.05)
+    published = {json.loads(bucket.cat("homes/evening/publish/manifest.json"))["key"]}
+    for seed in (1, 2, 3, 4):
+        run("publish", "--out", "s3://homes/evening", "--seed", seed)
+        bucket.invalidate_cache()
+        published.add(json.loads(bucket.cat("homes/evening/publish/manifest.json"))["key"])
+    done.touch()
+    found = [reader.communicate(timeout=300)[0].split(maxsplit=3) for reader in readers]
+    assert len(published) == 5
+    assert [(int(failed), why) for _, failed, _, why in found if int(failed)] == []
+    assert sum(int(opened) for opened, *_ in found) >= 16
+    assert {key for _, _, keys, _ in found for key in keys.split(",")} <= published
 
 
 def test_a_missing_bucket_is_reported(run, made):
