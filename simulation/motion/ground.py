@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import math
 from functools import cached_property
-from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -23,6 +22,7 @@ from hearth.simulation.motion.navigation import BODY_RADIUS, Ways
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home, Memo
+from hearth.simulation.world.moved import INSIDE, NOTHING, ON, Moved
 from hearth.simulation.world.world import World
 
 UNTOUCHED = frozenset({ROOM_CATEGORY, CHARACTER_CATEGORY, "Floor", "Floors", "Walls", "Ceiling"})
@@ -194,11 +194,36 @@ def _shared(floor: Floor) -> Ways:
     return _WAYS[key]
 
 
-class Here(NamedTuple):
-    """The ground of a home, and the nodes that are elsewhere than when it was measured, or new."""
+class Here:
+    """The ground of a home, and which nodes are elsewhere than when it was measured.
 
-    ground: Ground
-    elsewhere: int
+    Attributes:
+        ground: of the home, or of the one that it was derived from.
+        elsewhere: at the home's start: nodes in or on others than when measured, and those without a box.
+    """
+
+    def __init__(self, ground: Ground, home: Home) -> None:
+        self.ground = ground
+        same, base = range(len(ground.home)), ground.home
+        changed = (i for i in same if base.on[i] != home.on[i] or base.inside[i] != home.inside[i] or not ground.box(i))
+        self.elsewhere = mask_of(changed) | home.everything & -1 << len(base)
+        self._last = NOTHING, self.elsewhere
+
+    def displaced(self, world: World) -> int:
+        """The nodes that are elsewhere now: what was carried away is, and what is back where it was is not."""
+        moved, found = self._last
+        if world.moved is not moved:
+            found = self.elsewhere
+            base = self.ground.home
+            for i in indices(_touched(world.moved) & (1 << len(base)) - 1):
+                there = base.on[i] == rows.on(world, i) and base.inside[i] == rows.inside(world, i)
+                found = found & ~(1 << i) if there and self.ground.box(i) else found | 1 << i
+            self._last = world.moved, found
+        return found
+
+
+def _touched(moved: Moved) -> int:
+    return moved.on | moved.inside | mask_of({key >> 3 for key in moved.extra if key & 7 in (ON, INSIDE)})
 
 
 _KNOWN: WeakKeyDictionary[Home, Here | None] = WeakKeyDictionary()
@@ -214,10 +239,10 @@ def ground_of(home: Home) -> Here | None:
         pass
     base = None if home.base is None else ground_of(home.base[0])
     if base is not None and not _gone(home, base.ground):
-        found: Here | None = Here(base.ground, _elsewhere(home, base.ground.home))
+        found: Here | None = Here(base.ground, home)
     else:
         rooms = [home.node(i) for i in indices(home.rooms & home.everything)]
-        found = Here(Ground(home), 0) if rooms and all(room.box is not None for room in rooms) else None
+        found = Here(Ground(home), home) if rooms and all(room.box is not None for room in rooms) else None
     _KNOWN[home] = found
     return found
 
@@ -226,10 +251,3 @@ def _gone(home: Home, ground: Ground) -> bool:
     gone = home.absent & ~ground.home.absent & (1 << len(ground.home)) - 1
     shapes = (form(home.classes[i], home.knowledge) for i in indices(gone))
     return any(shape is not None and shape.mount == "floor" for shape in shapes)
-
-
-def _elsewhere(home: Home, measured_home: Home) -> int:
-    same = range(len(measured_home))
-    before, now = (measured_home.on, measured_home.inside), (home.on, home.inside)
-    changed = mask_of(i for i in same if any(a[i] != b[i] for a, b in zip(before, now, strict=True)))
-    return changed | home.everything & -1 << len(measured_home)

@@ -75,7 +75,7 @@ def spot(world: World, node: int) -> Spot | None:
 
 def _standing(world: World, here: Here, node: int) -> int:
     """The node that keeps its place, at which another is: itself, what it is on or in, or else its room."""
-    moved = here.elsewhere | world.moved.on | world.moved.inside
+    moved = here.displaced(world)
     for _ in range(8):
         if not moved >> node & 1:
             return node
@@ -143,13 +143,13 @@ def near(world: World, number: int, pose: Pose) -> int:
 
 def around(world: World, number: int, here: Here, pose: Pose) -> tuple[int, int]:
     """The same, with the index of the room that the pose is in, or -1."""
-    home, ground, moved = world.home, here.ground, world.moved
+    home, ground = world.home, here.ground
     found = home.properties["BODY_PART"]
     cell = ground.ways.at(pose.x, pose.z)
     room = -1
     if cell >= 0:
         room = ground.rooms[cell]
-        found |= ground.near[cell] & ~(here.elsewhere | home.absent | moved.on | moved.inside)
+        found |= ground.near[cell] & ~(here.displaced(world) | home.absent | _held(world))
     for i, other in enumerate(world.agents):
         at = other.pose
         if i == number or at is None or room < 0 or not other.inside >> room & 1:
@@ -172,7 +172,7 @@ def walked_to(world: World, number: int, doors: int) -> int:
         reached |= ground.reached(cell, doors)
     carried = _held(world) | home.characters
     still = reached
-    moved = (here.elsewhere | world.moved.on | world.moved.inside | carried) & home.everything
+    moved = (here.displaced(world) | carried) & home.everything
     for i in indices(moved):
         there = ends(world, here, i) if carried >> i & 1 else ()
         place = -1 if there else _standing(world, here, i)

@@ -1,10 +1,12 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; what a graph cannot hold stands beside it: the
-origins of grabbed things under `memories`, and the characters' places and strides under `poses`.
+The graph is the release's own format, so that other tools read it; what was carried away has no box in
+it. What a graph cannot hold stands beside it: the origins of grabbed things under `memories`, and the characters' places
+and strides under `poses`.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
@@ -22,6 +24,15 @@ _NUMBERS = {name: kind for kind, name in _KINDS.items()}
 
 def export(world: World) -> dict[str, Any]:
     """The world as a JSON-able mapping: `home`, `graph`, `memories`, and `poses` where characters have places."""
+    graph = world.graph()
+    moved = world.moved.on | world.moved.inside
+    nodes = (replace(n, box=None) if moved >> world.home.index[n.id] & 1 else n for n in graph.nodes)
+    graph = replace(graph, nodes=tuple(nodes))
+    return {"home": world.home.name, "graph": to_release(graph), **private(world)}
+
+
+def private(world: World) -> dict[str, Any]:
+    """What a graph cannot hold, by node ids: `memories`, and `poses` where characters have places."""
     ids = world.home.ids
     memories = [
         {"agent": ids[agent.index], "thing": ids[thing], "place": ids[place], "relation": _KINDS[kind]}
@@ -33,8 +44,7 @@ def export(world: World) -> dict[str, Any]:
         for agent in world.agents
         if agent.pose is not None
     ]
-    found = {"home": world.home.name, "graph": to_release(world.graph()), "memories": memories}
-    return found | {"poses": poses} if poses else found
+    return {"memories": memories, "poses": poses} if poses else {"memories": memories}
 
 
 def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
@@ -44,19 +54,27 @@ def restore(data: Mapping[str, Any], knowledge: Knowledge) -> World:
         HearthError: BAD_GRAPH: it is not an exported world, or a memory names a node that the graph lacks.
     """
     try:
-        graph, memories = data["graph"], list(data.get("memories", ()))
-        world = World.start(Home.from_graph(from_release(graph), str(data.get("home", "")), knowledge))
-        by_agent: dict[int, list[tuple[int, int, int]]] = {}
-        index = world.home.index
-        for memory in memories:
-            entry = (index[memory["thing"]], index[memory["place"]], _NUMBERS[memory["relation"]])
-            by_agent.setdefault(index[memory["agent"]], []).append(entry)
-        places = {index[each["agent"]]: _place(each) for each in data.get("poses", ())}
+        home = Home.from_graph(from_release(data["graph"]), str(data.get("home", "")), knowledge)
+        return with_private(World.start(home), data)
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         message = f"not an exported world: {type(error).__name__} {error}"
         raise HearthError.of(
             Code.BAD_GRAPH, message, suggestion="it needs `graph`, and `memories` of nodes in it"
         ) from error
+
+
+def with_private(world: World, data: Mapping[str, Any]) -> World:
+    """The world with the memories and poses that `private` gave.
+
+    Raises:
+        KeyError, TypeError, AttributeError, ValueError: it is nothing of the kind, or names a node that there is not.
+    """
+    by_agent: dict[int, list[tuple[int, int, int]]] = {}
+    index = world.home.index
+    for memory in data.get("memories", ()):
+        entry = (index[memory["thing"]], index[memory["place"]], _NUMBERS[memory["relation"]])
+        by_agent.setdefault(index[memory["agent"]], []).append(entry)
+    places = {index[each["agent"]]: _place(each) for each in data.get("poses", ())}
     agents = (agent._replace(origins=tuple(by_agent.get(agent.index, ()))) for agent in world.agents)
     placed = (agent._replace(**places.get(agent.index, {})) for agent in agents)
     return World(world.home, world.states, tuple(placed), world.moved)

@@ -1,0 +1,89 @@
+"""A canonical digest of a world: equal for equal nodes, states, edges, memories and poses, in any `Home` object.
+
+Each fact is hashed for itself and the hashes are added, so that the digest of a world costs what differs from its home.
+It finds mistakes and changes; who wants to deceive can make two worlds of one digest.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from hashlib import blake2b
+from weakref import WeakKeyDictionary
+
+from hearth.schemas.vocabulary import STATES
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.moved import CLOSE, FACING, INSIDE, ON
+from hearth.simulation.world.world import World
+
+_BITS = 512
+_RELATIONS = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE", FACING: "FACING"}
+"""The kinds of rows whose edges go out from the row's node."""
+
+_HOMES: WeakKeyDictionary[Home, int] = WeakKeyDictionary()
+
+
+def digest(world: World) -> str:
+    """32 hexadecimal digits."""
+    home = world.home
+    total = _of_home(home) + _sum(_of_characters(world))
+    ids = home.ids
+    for i, kind, now in rows.difference(world):
+        relation = _RELATIONS.get(kind)
+        if relation is not None:
+            before = home.rows[kind][i]
+            total += _edges(ids, i, relation, now & ~before) - _edges(ids, i, relation, before & ~now)
+    for name, before, now in zip(STATES, home.states, world.states, strict=True):
+        if before != now:
+            total += _states(ids, name, now & ~before) - _states(ids, name, before & ~now)
+    return blake2b((total % (1 << _BITS)).to_bytes(_BITS // 8, "little"), digest_size=16).hexdigest()
+
+
+def _of_home(home: Home) -> int:
+    try:
+        return _HOMES[home]
+    except KeyError:
+        pass
+    nodes = (home.node(i) for i in indices(home.everything))
+    facts: list[tuple[object, ...]] = [
+        (node.id, node.class_name, node.category, *sorted(node.properties)) for node in nodes
+    ]
+    facts += [tuple(edge) for edge in home.others]
+    facts += [(home.ids[i], "BETWEEN", home.ids[j]) for i in indices(home.doors) for j in indices(home.between[i])]
+    total = _sum(facts)
+    for i in indices(home.everything):
+        total += sum(_edges(home.ids, i, name, home.rows[kind][i]) for kind, name in _RELATIONS.items())
+    found = total + sum(_states(home.ids, name, row) for name, row in zip(STATES, home.states, strict=True))
+    return _HOMES.setdefault(home, found)
+
+
+def _of_characters(world: World) -> Iterator[tuple[object, ...]]:
+    ids = world.home.ids
+    for agent in world.agents:
+        me = ids[agent.index]
+        for i, relation, j in set(rows.agent_edges(agent)):
+            # Two characters that are CLOSE each have the edge; it counts once.
+            if world.home.characters >> i & 1 and i != agent.index and relation == "CLOSE":
+                continue
+            yield ids[i], relation, ids[j]
+        for thing, place, kind in agent.origins:
+            yield "origin", me, ids[thing], ids[place], kind
+        if agent.pose is not None:
+            yield "pose", me, *agent.pose, agent.stride
+
+
+def _edges(ids: list[int], i: int, relation: str, targets: int) -> int:
+    return sum(_hash((ids[i], relation, ids[j])) for j in indices(targets))
+
+
+def _states(ids: list[int], name: str, nodes: int) -> int:
+    return sum(_hash((ids[i], name)) for i in indices(nodes))
+
+
+def _sum(facts: Iterable[tuple[object, ...]]) -> int:
+    return sum(map(_hash, facts))
+
+
+@lru_cache(maxsize=200_000)
+def _hash(fact: tuple[object, ...]) -> int:
+    return int.from_bytes(blake2b(repr(fact).encode(), digest_size=_BITS // 8).digest(), "little")
