@@ -34,6 +34,7 @@ class Goal:
 
     Counted are distinct subjects; of a literal about characters, what each of them is related to: `HOLDS(agent, book)`
     counts books. A literal may name an action, `Watch(television)`: counted are the different objects it was done with.
+    A negated literal is wanted of all its subjects, whatever its count: `not ON(plate, table)` clears a table.
     """
 
     counts: tuple[tuple[Literal[Name], int], ...] = ()

@@ -1,14 +1,14 @@
 """Episodes that can be done again: recorded, written to a file, read back, and checked by a digest of every tick.
 
-A file has JSON lines. A line with `graph` is a home's; a line with `ticks` is an episode, which names the home and what is
-different from it at its start. Files whose names end in `.gz` are compressed.
+A file has JSON lines. A line with `graph` is a home's; a line with `ticks` is an episode, which names the home and what
+is different from it at its start. Files whose names end in `.gz` are compressed.
 """
 
 from __future__ import annotations
 
 import gzip
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
@@ -20,10 +20,9 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, from_release, read_node, to_release
 from hearth.schemas.program import Step
-from hearth.schemas.syntax import print_step
+from hearth.schemas.syntax import parse_steps, print_step
 from hearth.simulation.engine import tick
 from hearth.simulation.env import Env
-from hearth.simulation.instructions import instruction_of
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import apply, edit
@@ -45,7 +44,7 @@ class Episode:
         start: the world at its start.
         rules: how actions were read.
         ticks: what each agent tried.
-        digests: of the start, then of each tick: of the digest before, what was tried, what failed, and the world after.
+        digests: of the start, then of each tick: of the digest before, what was tried, what failed, the world after.
     """
 
     start: World
@@ -161,7 +160,7 @@ def read(path: Path, knowledge: Knowledge) -> Iterator[Episode]:
                 yield _episode(row, homes[row["home"]])
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             message = f"not an episode: {type(error).__name__} {error}"
-            raise HearthError.of(Code.BAD_JSON, message, file=str(path), line=number) from error
+            raise HearthError(Diagnostic(Code.BAD_JSON, message, str(path), number)) from error
 
 
 def _episode(row: Mapping[str, Any], home: Home) -> Episode:
@@ -172,13 +171,16 @@ def _episode(row: Mapping[str, Any], home: Home) -> Episode:
     found = edit(world, remove=start["gone"], add=tuple(map(read_node, start["nodes"])), check=False)
     assert isinstance(found, World)
     found = with_private(apply(found, Change(edges[0], edges[1], states[0], states[1])), start)
-    ticks = [{int(n): _read(text, int(n), found.home) for n, text in each.items()} for each in row["ticks"]]
+    ticks = [{int(n): _read(text, int(n)) for n, text in each.items()} for each in row["ticks"]]
     digests: Sequence[str] = row["digests"]
     if len(digests) != len(ticks) + 1:
         raise ValueError(f"{len(digests)} digests of {len(ticks)} ticks")
     return Episode(found, Rules(**row["rules"]), tuple(ticks), tuple(map(str, digests)))
 
 
-def _read(text: str, number: int, home: Home) -> Step:
-    step = instruction_of(text, home)
-    return step if step.agent == number else Step(step.action, step.objects, number, step.joins, step.modifiers)
+def _read(text: str, agent: int) -> Step:
+    """An instruction as it was tried: it need not be one that makes sense."""
+    found = parse_steps(text)
+    if isinstance(found, Diagnostic) or len(found) != 1:
+        raise ValueError(f"`{text[:60]}` is not an instruction")
+    return replace(found[0], agent=agent)

@@ -3,6 +3,7 @@
     goal    both [then both]...          the parts are reached in this order (see `goal_trace`); `then` binds loosest
     both    one [and one]...             [or ...] binds between `then` and `and`
     one     NAME(term, ...)[: count]     a state or relation: `ON(television)`, `ON(plate, table): 2`
+            not NAME(term, ...)          of nothing: `not ON(plate, table)` is a table without plates
             ACTION[(term, ...)]          an action that is done: `WATCH`, `PUTIN(milk, fridge)`; `[Open](fridge)`
             not one | (goal)
             exists x. (goal)             for some thing x; `forall x. (goal)` for all
@@ -24,6 +25,7 @@ from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tokens import Tokens
 from hearth.schemas.vocabulary import CHARACTER_CLASS, STATE_ID
+from hearth.simulation.goal_trace import acts
 from hearth.simulation.goals import RELATED, check, unknown
 from hearth.simulation.holds import nodes
 from hearth.simulation.world.home import Home
@@ -109,7 +111,7 @@ class _Parser(Tokens):
         self.depth += 1
         if word == "not":
             self.take()
-            found = Goal(parts=(Joined("not", (self.one(),)),))
+            found = self._negated()
         elif word in ("exists", "forall"):
             found = self._quantified(self.take().lower())
         elif word == "(":
@@ -118,6 +120,15 @@ class _Parser(Tokens):
             found = self._counted()
         self.depth -= 1
         return found
+
+    def _negated(self) -> Goal:
+        """`not NAME(term, ...)` of a state or relation is a literal, counted like others; else a goal is negated."""
+        is_literal = self.peek().lower() not in ("(", "not", "exists", "forall")
+        goal = self.one()
+        match goal.counts:
+            case ((literal, 1),) if is_literal and not self.variables and not acts(literal, self.home):
+                return Goal.of(literal._replace(negated=True))
+        return Goal(parts=(Joined("not", (goal,)),))
 
     def _bracketed(self) -> Goal:
         self.take("(")

@@ -40,8 +40,13 @@ class Trace(NamedTuple):
     def reached(self, goal: Goal, since: int = 0, now: int | None = None) -> bool:
         """Whether a goal is reached in the world of one number, by what was done since that of another."""
         now = len(self.done) if now is None else now
-        counted = all(self.times(literal, since, now) >= wanted for literal, wanted in goal)
+        counted = all(self.times(literal, since, now) >= self.needed(literal, wanted) for literal, wanted in goal)
         return counted and all(self.has(part, since, now) for part in goal.parts)
+
+    def needed(self, literal: Literal[Name], wanted: int) -> int:
+        """How often a literal must hold to be reached (see `Candidates.needed`)."""
+        home = self.worlds[0].home
+        return wanted if acts(literal, home) else candidates(literal, home).needed(wanted)
 
     def times(self, literal: Literal[Name], since: int, now: int) -> int:
         """How often a literal holds in a world; of an action, with how many different objects it was done."""

@@ -84,7 +84,7 @@ class Progress:
         if goal.parts or any(acts(literal, world.home) for literal, _ in goal):
             return cls(goal, (), Trace((world,)))
         found = ((literal, wanted, candidates(literal, world.home)) for literal, wanted in goal)
-        return cls(goal, tuple(Watch(literal, wanted, nodes, nodes.met(world)) for literal, wanted, nodes in found))
+        return cls(goal, tuple(Watch(each, some.needed(wanted), some, some.met(world)) for each, wanted, some in found))
 
     @classmethod
     def of(cls, goal: Goal, execution: Execution) -> Progress:
@@ -145,7 +145,7 @@ class Progress:
     @property
     def fraction(self) -> float:
         """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal."""
-        wanted = sum(count for _, count in self.goal) + len(self.goal.parts)
+        wanted = sum(count for _, (_, count) in self._counted()) + len(self.goal.parts)
         found = sum(min(count, most) for count, (_, most) in self._counted()) + sum(self.has)
         return found / wanted if wanted else 1.0
 
@@ -156,7 +156,10 @@ class Progress:
         return Goal(tuple((literal, number) for literal, number in missing if number > 0), tuple(parts))
 
     def _counted(self) -> Iterator[tuple[int, tuple[Literal[Name], int]]]:
-        return zip(self.counts, self.goal, strict=True)
+        counts = self.counts
+        for number, (literal, wanted) in enumerate(self.goal):
+            needed = self.trace.needed(literal, wanted) if self.trace else self.watches[number].wanted
+            yield counts[number], (literal, needed)
 
 
 def _updated(watch: Watch, world: World, touched: int) -> Watch:

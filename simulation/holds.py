@@ -75,6 +75,12 @@ class Candidates(NamedTuple):
     targets: int
     by_target: bool
 
+    def needed(self, wanted: int) -> int:
+        """How often it must hold to be reached: as often as is wanted; if negated, of all candidates, as in `holds`."""
+        if not self.literal.negated:
+            return wanted
+        return self.subjects.bit_count() * (self.targets.bit_count() if self.by_target else 1)
+
     def met(self, world: World) -> tuple[int, ...]:
         """The candidates for which the literal holds in a world: subjects, or for each character targets."""
         name, _, negated = self.literal

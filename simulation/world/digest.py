@@ -13,13 +13,11 @@ from hearth.schemas.vocabulary import STATES
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.moved import CLOSE, FACING, INSIDE, ON
+from hearth.simulation.world.moved import CLOSE
 from hearth.simulation.world.world import World
+from hearth.simulation.world.world_change import KINDS
 
 _BITS = 512
-_RELATIONS = {ON: "ON", INSIDE: "INSIDE", CLOSE: "CLOSE", FACING: "FACING"}
-"""The kinds of rows whose edges go out from the row's node."""
-
 _HOMES: WeakKeyDictionary[Home, int] = WeakKeyDictionary()
 
 
@@ -28,11 +26,16 @@ def digest(world: World) -> str:
     home = world.home
     total = _of_home(home) + _sum(_of_characters(world))
     ids = home.ids
+    came: set[tuple[object, ...]] = set()
+    went: set[tuple[object, ...]] = set()
     for i, kind, now in rows.difference(world):
-        relation = _RELATIONS.get(kind)
-        if relation is not None:
-            before = home.rows[kind][i]
-            total += _edges(ids, i, relation, now & ~before) - _edges(ids, i, relation, before & ~now)
+        before = home.rows[kind][i]
+        relation, _, outwards = KINDS[kind]
+        for found, mask in ((came, now & ~before), (went, before & ~now)):
+            found.update((ids[i], relation, ids[j]) if outwards else (ids[j], relation, ids[i]) for j in indices(mask))
+            if kind == CLOSE:
+                found.update((ids[j], relation, ids[i]) for j in indices(mask))
+    total += _sum(came) - _sum(went)
     for name, before, now in zip(STATES, home.states, world.states, strict=True):
         if before != now:
             total += _states(ids, name, now & ~before) - _states(ids, name, before & ~now)
@@ -52,7 +55,8 @@ def _of_home(home: Home) -> int:
     facts += [(home.ids[i], "BETWEEN", home.ids[j]) for i in indices(home.doors) for j in indices(home.between[i])]
     total = _sum(facts)
     for i in indices(home.everything):
-        total += sum(_edges(home.ids, i, name, home.rows[kind][i]) for kind, name in _RELATIONS.items())
+        for row, (name, _, outwards) in zip(home.rows, KINDS, strict=False):
+            total += _edges(home.ids, i, name, row[i]) if outwards else 0
     found = total + sum(_states(home.ids, name, row) for name, row in zip(STATES, home.states, strict=True))
     return _HOMES.setdefault(home, found)
 

@@ -1,8 +1,8 @@
 """A world in the middle of an execution as JSON and back, with nothing lost.
 
-The graph is the release's own format, so that other tools read it; what was carried away has no box in
-it. What a graph cannot hold stands beside it: the origins of grabbed things under `memories`, and the characters' places
-and strides under `poses`.
+The graph is the release's own format, so that other tools read it; what was carried away has no box in it. What a graph
+cannot hold stands beside it: where grabbed things came from under `memories`, and the characters' places and strides
+under `poses`.
 """
 
 from collections.abc import Mapping

@@ -100,7 +100,7 @@ def _edge_changes(before: WorldState, after: WorldState, extra: int) -> Iterator
     if extra or before.moved is not after.moved:
         keys = _touched(before, after)
         if extra:
-            keys.update(8 * i + kind for i in indices(extra) for kind in range(len(_KINDS)))
+            keys.update(8 * i + kind for i in indices(extra) for kind in range(len(KINDS)))
         for key in keys:
             yield from _row_changes(before, after, *divmod(key, 8))
     for i in indices(extra):
@@ -117,7 +117,7 @@ def _agent_changes(old: Agent, new: Agent) -> Iterator[EdgeTurn]:
                 yield from _came_and_went(past, now, me, relation, outwards)
 
 
-_KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
+KINDS: tuple[tuple[str, Callable[[WorldState, int], int], bool], ...] = (
     ("ON", rows.on, True),
     ("ON", rows.bears, False),
     ("INSIDE", rows.inside, True),
@@ -147,7 +147,7 @@ def _touched(before: WorldState, after: WorldState) -> set[int]:
 
 
 def _row_changes(before: WorldState, after: WorldState, i: int, kind: int) -> Iterator[EdgeTurn]:
-    relation, read, outwards = _KINDS[kind]
+    relation, read, outwards = KINDS[kind]
     old = read(before, i) if i < len(before.home) else 0
     new = read(after, i) if i < len(after.home) else 0
     if old == new:

@@ -1,8 +1,11 @@
 """Goals are counted, and the counts follow the changes."""
 
+import random
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_worlds import random_graph, random_step
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -12,7 +15,9 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
+from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goals import Progress
+from hearth.simulation.holds import holds
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -119,3 +124,44 @@ def test_following_the_changes_is_looking_again(plan):
         progress = progress.after(after, after.changes(world))
         world = after
         assert progress.counts == Progress.start(GOAL, world).counts
+
+
+@pytest.mark.parametrize("text", ["not ON(plate, table)", "not ON(plate, table) and not [Watch](plate)"])
+def test_clearing_a_table_is_done_when_nothing_of_the_class_is_on_it(text):
+    """Followed or looked at anew, as a literal or over a run, it agrees with `holds`."""
+    world = World.start(Home.from_graph(GRAPH, "", default()))
+    goal = read_goal(text, world.home)
+    (literal,) = (literal for literal, _ in goal)
+    assert literal.negated and literal.name == "ON" and read_goal(str(goal), world.home) == goal
+    progress = Progress.start(goal, world)
+    assert str(progress.unmet()).startswith("not ON(plate, table)") and not progress.satisfied
+    for action, *nodes in (("Walk", 5), ("Grab", 4), ("PutBack", 4, 5), ("Grab", 4)):
+        step = Step(action, tuple(ObjectRef("thing", 1, node) for node in nodes))
+        after = act(world, step)
+        assert isinstance(after, World), after
+        progress, world = progress.then(world, after, (step,)), after
+        assert progress.satisfied == holds(literal, world) == Progress.start(goal, world).satisfied
+    assert progress.satisfied and progress.fraction == 1.0 and not progress.unmet().counts
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_following_two_worlds_is_following_their_change(seed):
+    chooser = random.Random(seed)
+    graph = random_graph(chooser, characters=2)
+    world = World.start(Home.from_graph(graph, "", default()))
+    names = ["ON", "INSIDE", "CLOSE", "FACING", "HOLDS", "HOLDS_LH", "HOLDS_RH", "OPEN", "ON", "CLEAN", "SITTING"]
+    classes = sorted(set(world.home.classes))
+    literals = []
+    for name in names * 2:
+        count = 1 if name in ("OPEN", "CLEAN", "SITTING") else 2
+        terms = tuple(chooser.choice(classes) for _ in range(count))
+        literals.append(Literal(name, terms, chooser.random() < 0.3))
+    goal = Goal.of(*literals, Literal.of("HOLDS", "agent", classes[0]))
+    by_worlds = by_change = Progress.at(goal, world)
+    for _ in range(60):
+        after = act(world, random_step(chooser, graph, chooser.randrange(2)))
+        if isinstance(after, Failure):
+            continue
+        by_worlds, by_change = by_worlds.then(world, after), by_change.after(after, after.changes(world))
+        assert by_worlds.counts == by_change.counts == Progress.at(goal, after).counts
+        world = after
