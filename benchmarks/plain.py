@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -160,6 +161,36 @@ def read_yaml(folder: Path) -> Yardstick:
 def lines_of_json(rows: Sequence[Any]) -> Yardstick:
     """Rows turned into lines of JSON, and read back."""
     return measured(1, lambda row: json.loads(json.dumps(row, default=str)), rows)
+
+
+def strides_by_search(free: NDArray[np.bool_], ways: Sequence[tuple[int, int, int, int]]) -> Yardstick:
+    """The cell a metre (ten cells) along the shortest way between two cells, by a search over the grid each time.
+
+    Args:
+        free: the grid.
+        ways: (column, row) of where it begins and ends.
+    """
+    cells = {(int(i), int(j)) for i, j in np.argwhere(free)}
+    sides = [(i, j, (i * i + j * j) ** 0.5) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+
+    def stride(way: tuple[int, int, int, int]) -> tuple[int, int]:
+        start, end = way[:2], way[2:]
+        far, before, queue = {end: 0.0}, {end: end}, [(0.0, end)]
+        while queue:
+            length, here = heappop(queue)
+            if here == start:
+                break
+            for i, j, more in sides:
+                there = here[0] + i, here[1] + j
+                if there in cells and length + more < far.get(there, inf):
+                    far[there], before[there] = length + more, here
+                    heappush(queue, (length + more, there))
+        now: tuple[int, int] = start
+        while now in before and now != end and far[start] - far[now] < 10:
+            now = before[now]
+        return now
+
+    return measured(len(ways), stride, ways, 3)
 
 
 def z_buffer(corners: NDArray[np.floating[Any]], camera: Camera, shares: int = 50) -> Yardstick:

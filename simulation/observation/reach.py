@@ -80,9 +80,19 @@ def contained(world: World, containers: int) -> int:
 
 def upon(world: World, places: int) -> int:
     """Everything ON one of these, characters included."""
+    home, moved = world.home, world.moved
     found = 0
-    for i in indices(places):
-        found |= rows.bearing(world, i)
+    for i in indices(places & home.bearing & ~moved.on):
+        found |= home.bears[i]
+    found &= ~moved.on
+    for key, row in moved.extra.items():
+        if key & 7 == BEARS and places >> (key >> 3) & 1:
+            found |= row
+    for agent in world.agents:
+        if agent.on & places:
+            found |= agent.bit
+        if agent.bit & places:
+            found |= agent.worn
     return found
 
 

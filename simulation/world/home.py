@@ -200,6 +200,11 @@ class Home:
         """All nodes that something is INSIDE at the start."""
         return mask_of(i for i, row in enumerate(self.contents) if row)
 
+    @cached_property
+    def bearing(self) -> int:
+        """All nodes that something is ON at the start."""
+        return mask_of(i for i, row in enumerate(self.bears) if row)
+
     @explained
     def instances(self, name: str) -> int:
         """What a class name stands for: the nodes of that class, else those of the first of its other names that the

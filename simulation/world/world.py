@@ -86,6 +86,13 @@ class World(WorldState):
         self._key = (self.states, rows.difference(self), tuple(a[:11] for a in self.agents), memories)
         return self._key
 
+    def __copy__(self) -> World:
+        """Itself, like other values that never change."""
+        return self
+
+    def __deepcopy__(self, memo: object) -> World:
+        return self
+
     def __eq__(self, other: object) -> bool:
         if self is other:
             return True
