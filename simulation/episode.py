@@ -144,7 +144,7 @@ def read(path: Path, knowledge: Knowledge) -> Iterator[Episode]:
     """The episodes of a file, one after the other.
 
     Raises:
-        HearthError: MISSING_FILE; BAD_JSON, with the line, of what is no episode; the faults of an instruction.
+        HearthError: MISSING_FILE; BAD_JSON, with the line, of anything but episodes and homes.
     """
     import orjson
 
