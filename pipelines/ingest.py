@@ -3,6 +3,7 @@
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from typing import Any, NamedTuple, TypedDict
 
 import pyarrow.parquet as pq
@@ -20,6 +21,7 @@ from hearth.pipelines.readers import crowd, ours, plans, published, release, sce
 from hearth.pipelines.readers.columns import FieldColumns, read_columns
 from hearth.pipelines.readers.item import Item, Source, read_refused, refused
 from hearth.pipelines.readers.recognise import DOCUMENT, LISTED, TEXTS, Recognised, recognise
+from hearth.pipelines.readers.scanning_time import SECONDS, ScanningTime
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import IngestedRow
@@ -70,7 +72,10 @@ _FULL = 8_192
 
 
 def items(
-    sources: Iterable[Source], columns: FieldColumns | None = None, found_columns: dict[str, FieldColumns] | None = None
+    sources: Iterable[Source],
+    columns: FieldColumns | None = None,
+    found_columns: dict[str, FieldColumns] | None = None,
+    time_limit: float = SECONDS,
 ) -> Iterator[tuple[str, Item]]:
     """Every record of the sources with its source's label; a copy of an earlier record is refused.
 
@@ -78,12 +83,14 @@ def items(
         sources: files and folders.
         columns: columns of tables and keys of JSON that hold fields; others are guessed.
         found_columns: receives those of each table as it is read.
+        time_limit: seconds of a record, from which that of scanning a packed file follows; 0 for none.
     """
-    given = columns or {}
+    given, times = columns or {}, ScanningTime(time_limit)
+    scanned = partial(_scanned_in_time, times, given)
     repeated = Repeated()
     found = [(source.label, entry) for source in sources for entry in _recognised(source)]
     described = Described()
-    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in _scanned(entry, given))
+    batches = (item for _, entry in found if entry.reader == crowd.NAME for item in scanned(entry))
     copies = Copies(pasted(described.noted(batches)))
     for label, entry in found:
         if entry.refusal:
@@ -91,10 +98,11 @@ def items(
             continue
         if entry.reader == spreadsheets.NAME and found_columns is not None:
             found_columns[entry.inside] = spreadsheets.columns_of(entry.path, given)
-        checked = repeated.first(_scanned(entry, given), entry.reader, entry.inside)
+        checked = repeated.first(scanned(entry), entry.reader, entry.inside)
         if entry.reader == crowd.NAME:
             checked = map(described.checked, map(copies.checked, checked))
         yield from ((label, item) for item in checked)
+    times.close()
 
 
 def _recognised(source: Source) -> Iterator[Recognised]:
@@ -109,6 +117,11 @@ def _recognised(source: Source) -> Iterator[Recognised]:
         raise
     except Exception as error:
         yield Recognised(source.path, source.label, "", Reject.caused(error, source.label))
+
+
+def _scanned_in_time(times: ScanningTime, columns: FieldColumns, entry: Recognised) -> Iterator[Item]:
+    """The records that a reader finds before the time of a packed file is over."""
+    return times.within(entry.path, entry.inside, _scanned(entry, columns))
 
 
 def _scanned(entry: Recognised, columns: FieldColumns) -> Iterator[Item]:
@@ -137,7 +150,7 @@ def partitions(job: Job) -> Iterator[Partition]:
     weight = 0
     number = 0
     columns = read_columns(job.settings.columns)
-    found_items = items(labelled(job.settings.sources), columns, job.context.columns)
+    found_items = items(labelled(job.settings.sources), columns, job.context.columns, job.settings.time_limit)
     for found in _limited(found_items, job.settings.limit):
         if share and (weight >= _FULL or share[0][0] != found[0]):
             yield _partition(number, share)

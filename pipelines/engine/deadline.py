@@ -7,6 +7,7 @@ an alarm signal this works in any thread, on any system; like one, it waits for 
 import ctypes
 import threading
 import time
+from collections.abc import Callable
 
 _raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
 _raise_in.argtypes = (ctypes.c_ulong, ctypes.py_object)
@@ -23,25 +24,27 @@ class Deadline:
     """A context around one record after another, all in one thread.
 
     Args:
-        seconds: the limit of a record; 0 for none.
+        seconds: the limit of a record; 0 for none. It may be set anew for the next record.
+        clock: the time that is limited, in seconds.
     """
 
-    def __init__(self, seconds: float) -> None:
+    def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
         self.seconds = seconds
+        self._clock = clock
         self._began: float | None = None
         self._fired = False
         self._lock = threading.Lock()
         self._worker = threading.get_ident()
         self._over = threading.Event()
         if seconds > 0:
-            threading.Thread(target=self._watch, daemon=True, name="hearth-deadline").start()
+            threading.Thread(target=self._watch, args=(seconds,), daemon=True, name="hearth-deadline").start()
 
     def close(self) -> None:
         """Stop watching."""
         self._over.set()
 
     def __enter__(self) -> None:
-        self._began = time.monotonic()
+        self._began = self._clock()
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         self._began = None
@@ -51,10 +54,10 @@ class Deadline:
                     _raise_in(self._worker, ctypes.py_object())  # raised, but not yet delivered: the record is complete
                 self._fired = False
 
-    def _watch(self) -> None:
-        while not self._over.wait(self.seconds / _LOOKS):
+    def _watch(self, seconds: float) -> None:
+        while not self._over.wait(seconds / _LOOKS):
             with self._lock:
                 began = self._began
-                if began is not None and not self._fired and time.monotonic() - began > self.seconds:
+                if began is not None and not self._fired and self._clock() - began > self.seconds:
                     self._fired = True
                     _raise_in(self._worker, ctypes.py_object(OverTime))
