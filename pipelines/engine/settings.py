@@ -31,7 +31,7 @@ class Settings:
         pictures: number of programs to picture, step by step.
         videos: number of them to film.
         time_limit: seconds that a record may take in a stage; 0 for no limit. Records that take longer are tried again
-            by the next build. Scanning a packed file may take a third of it, and half of it for each megabyte.
+            by the next build. Scanning a packed file may take a sixth of it, and half of it for each megabyte.
         store: URL of the store of which `out` is a local copy (see `stores`), or "".
         revision: the state of the store.
     """

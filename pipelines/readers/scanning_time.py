@@ -14,9 +14,9 @@ from hearth.storage.rejects import Reject
 SECONDS = 60.0
 """The time limit of a record, unless another is given."""
 
-_BASE = 1 / 3
+_BASE = 1 / 6
 _OF_A_MEGABYTE = 1 / 2
-"""Shares of that limit that a packed file has, for itself and for each megabyte: 20 seconds and 30. What people pack
+"""Shares of that limit that a packed file has, for itself and for each megabyte: 10 seconds and 30. What people pack
 takes a tenth of that or less. A limit on size alone would not do: within those of `archives` some kilobytes may unpack
 to millions of empty rows, on which a scanner works for minutes."""
 
