@@ -36,7 +36,8 @@ def replay(
     from hearth.simulation.rules import DEFAULT, REPLAY
 
     known = default()
-    gc.freeze()  # What is loaded by now stays: looking through it again and again would take a tenth of the time.
+    gc.freeze()  # What is loaded by now stays, and of a program nothing is in circles: looking through it takes time
+    gc.set_threshold(20_000)  # and finds nothing.
     found = islice(run_all(release, known, DEFAULT if default_rules else REPLAY), limit)
     with bar("programs run") as seen:
         results = list(watched(found, seen, limit))

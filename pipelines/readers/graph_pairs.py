@@ -6,6 +6,8 @@ it is first met, and then looked up. What looks otherwise is parsed as it stands
 
 import re
 from array import array
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from operator import itemgetter
 from typing import Any
 
@@ -21,16 +23,22 @@ JsonObject = dict[str, Any]
 EDGE = itemgetter("from_id", "relation_type", "to_id")
 """The fields of an edge in JSON."""
 
-_START = re.compile(rb'"edges"\s*:\s*\[')
 _BETWEEN = re.compile(rb"\}\s*,\s*\{")
 _CUT = b"7"
-"""Lists are cut between objects where the last of a text ends in this."""
+"""A file is cut between objects where the last of a text ends in this: some ten edges a text, so that what differs
+between two graphs is in few texts."""
 
 _MOST = 50_000
 """Texts that are kept: some 50 MB."""
 
 _RELATION, _SOURCE = 28, 32
 """From which bit of its number on an edge has its relation and source; the target is below."""
+
+Portions = set[bytes]
+"""Edges by the text, each with its ends and relation in one integer of 64 bits."""
+
+_KNOWN: dict[bytes, bytes] = {}
+"""Portions by their texts."""
 
 
 def read_pair(data: bytes) -> tuple[JsonObject, Change | None]:
@@ -61,64 +69,79 @@ def pair_of(value: Any) -> tuple[JsonObject, Change | None]:
 
 
 def _by_texts(data: bytes) -> tuple[JsonObject, Change | None]:
-    """Both, the lists of edges cut out as texts: exact, because each text is a list of objects by itself, and what is
-    left is JSON in which the number of each list stands where a graph has its edges.
+    """Both, most edges looked up by their texts: exact, because each text is a list of objects by itself, and what is
+    left is JSON in which the number of each run of texts stands where a graph has its edges.
     """
-    import numpy as np
-
-    rest: list[bytes] = []
-    lists: list[list[bytes]] = []
-    at = 0
-    while match := _START.search(data, at):
-        rest += (data[at : match.end()], b"%d" % len(lists))
-        at = data.index(b"]", match.end())
-        lists.append(_texts(data[match.end() : at].strip()))
-    pair = orjson.loads(b"".join((*rest, data[at:])))
+    rest, runs = _cut(data)
+    pair = orjson.loads(rest)
     start, final = pair["init_graph"], pair.get("final_graph")
-    if [graph["edges"] for graph in (start, final) if graph] != [[number] for number in range(len(lists))]:
+    graphs = [graph for graph in (start, final) if graph]
+    if [one for graph in graphs for one in graph["edges"] if type(one) is int] != list(range(len(runs))):
         raise ValueError("edges where none are expected")
-    if len(_NUMBERS) > _MOST:
-        _NUMBERS.clear()
-    past, *now = (np.sort(np.frombuffer(b"".join(map(_NUMBERS.__getitem__, texts)), np.int64)) for texts in lists)
-    start["edges"] = _columns(past)
+    past, *now = (_portions(graph["edges"], runs) for graph in graphs)
+    edges = _sorted(past)
+    start["edges"] = _columns(edges)
     if not final:
         return start, None
-    return start, _changed(start, final, _only_in(past, now[0]), _only_in(now[0], past))
+    added = _columns(_missing(_sorted(now[0].difference(past)), edges)).rows()
+    removed = _columns(_missing(_sorted(past.difference(now[0])), _sorted(now[0]))).rows()
+    return start, _changed(start, final, set(removed), set(added))
 
 
-def _only_in(one: Any, other: Any) -> set[Edge]:
-    """The edges of one of two sorted arrays."""
-    import numpy as np
+def _cut(data: bytes) -> tuple[bytes, list[Portions]]:
+    """The file with a number for each run of texts that are nothing but edges, and the runs' edges."""
+    between = _BETWEEN.search(data)
+    cut = _CUT + between[0] if between else b""
+    texts = re.split(re.escape(cut), data) if cut else [data]  # half as long as `bytes.split` takes
+    if len(_KNOWN) > _MOST:
+        _KNOWN.clear()
+    found = [_KNOWN.get(text) or _learnt(text) for text in texts]
+    others = [i for i, portion in enumerate(found) if not portion]
+    if not others or others[0] or others[-1] != len(texts) - 1:
+        raise ValueError("no object with graphs")
+    rest: list[bytes] = [texts[0]]
+    runs: list[Portions] = []
+    for i, j in pairwise(others):
+        rest += (cut if j - i == 1 else b"%b}, %d, {" % (_CUT, len(runs)), texts[j])
+        if j - i > 1:
+            runs.append(set(found[i + 1 : j]))
+    return b"".join(rest), runs
 
-    found = other[np.minimum(np.searchsorted(other, one), len(other) - 1)] != one
-    return set(_columns(one[found]).rows())
 
-
-def _texts(text: bytes) -> list[bytes]:
-    """A list's objects, some ten a text, so that what differs between two lists is in few texts; the last ends in }."""
-    between = _BETWEEN.search(text)
-    found = text[1:].split(_CUT + between[0]) if between else [text[1:]]
-    if not (text.startswith(b"{") and [one.endswith(b"}") for one in found].index(True) == len(found) - 1):
-        raise ValueError("no list of objects")
+def _learnt(text: bytes) -> bytes:
+    """The edges of a text that is nothing else, kept for the next time; else nothing."""
+    try:
+        found = _KNOWN[text] = _portion(orjson.loads(b"[{%b%b}]" % (text, _CUT)))
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return b""
     return found
 
 
-class _Numbers(dict[bytes, bytes]):
-    """A text -> its edges, each with ends and relation in one integer of 64 bits."""
-
-    def __missing__(self, text: bytes) -> bytes:
-        whole = text if text.endswith(b"}") else b"%b%b}" % (text, _CUT)
-        found = self[text] = array("q", [_number(*EDGE(edge)) for edge in orjson.loads(b"[{%b]" % whole)]).tobytes()
-        return found
+def _portions(edges: Sequence[Any], runs: Sequence[Portions]) -> Portions:
+    """A graph's edges: those of its runs, and the others."""
+    others = _portion([one for one in edges if type(one) is not int])
+    return {others}.union(*(runs[one] for one in edges if type(one) is int))
 
 
-_NUMBERS = _Numbers()
-
-
-def _number(source: object, relation: str, target: object) -> int:
-    if not (type(source) is type(target) is int and 0 <= min(source, target) <= max(source, target) < 1 << _RELATION):
+def _portion(edges: Iterable[JsonObject]) -> bytes:
+    rows = list(map(EDGE, edges))
+    ids = [*map(itemgetter(0), rows), *map(itemgetter(2), rows)]
+    if set(map(type, ids)) != {int} or min(ids) < 0 or max(ids) >> _RELATION:
         raise ValueError("an edge between other ids")
-    return source << _SOURCE | RELATION_ID[relation] << _RELATION | target
+    return array("q", [a << _SOURCE | RELATION_ID[name] << _RELATION | b for a, name, b in rows]).tobytes()
+
+
+def _sorted(portions: Portions) -> Any:
+    import numpy as np
+
+    return np.sort(np.frombuffer(b"".join(portions), np.int64))
+
+
+def _missing(some: Any, edges: Any) -> Any:
+    """Which are not among edges in order."""
+    import numpy as np
+
+    return some[edges[np.minimum(np.searchsorted(edges, some), len(edges) - 1)] != some]
 
 
 def _columns(numbers: Any) -> EdgeColumns:
@@ -128,12 +151,12 @@ def _columns(numbers: Any) -> EdgeColumns:
 
 def _changed(start: JsonObject, final: JsonObject, edges: set[Edge], new: set[Edge]) -> Change:
     """The change between two sets of edges, which may lack what both have, and in the simulated states."""
-    nodes, others = start["nodes"], final["nodes"]
-    if len(nodes) == len(others):
-        pairs = [(node, other) for node, other in zip(nodes, others, strict=True) if node != other]
-        nodes, others = [node for node, _ in pairs], [other for _, other in pairs]
-    return difference(Parts(edges, _states(nodes)), Parts(new, _states(others)))
+    nodes = (start["nodes"], final["nodes"])
+    past, now = ({(int(one["id"]), *(one.get("states") or ())) for one in each} for each in nodes)
+    ids = {one[0] for one in past ^ now}
+    return difference(Parts(edges, _states(past, ids)), Parts(new, _states(now, ids)))
 
 
-def _states(nodes: list[JsonObject]) -> set[tuple[int, str]]:
-    return {(int(node["id"]), name) for node in nodes for name in node.get("states") or () if name in STATE_ID}
+def _states(nodes: Iterable[tuple[Any, ...]], ids: set[int]) -> set[tuple[int, str]]:
+    """The simulated states of some nodes, each given as its id and states."""
+    return {(one[0], name) for one in nodes if one[0] in ids for name in one[1:] if name in STATE_ID}

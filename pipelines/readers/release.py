@@ -126,7 +126,8 @@ def _bytes(value: JsonObject, name: str) -> bytes | Diagnostic:
         if info.file_size > LARGEST_FILE:
             message = f"it claims to unpack to {info.file_size:,} bytes, at most {LARGEST_FILE:,} are read"
             return Diagnostic(Code.FILE_TOO_LARGE, message, place, suggestion="leave it out, or split it")
-        return archive(path).read(info)
+        with archive(path).open(info) as file:
+            return file.read(max(info.file_size, 1))  # Twice as fast as without a size, which is the most there is.
     except Exception as error:  # archives raise what their compression raises: zlib, lzma, bz2, struct, ...
         return Diagnostic(Code.BAD_ARCHIVE, f"can't be read: {error}", place, suggestion="download it again")
 

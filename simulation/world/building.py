@@ -14,6 +14,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain, pairwise, repeat
 from operator import attrgetter, itemgetter
 from typing import Any, NamedTuple
@@ -198,8 +199,11 @@ _BACKWARD = (1, 3, 4, 6, 10, 10, 10, 10)
 """Which table holds its inverse."""
 
 
+_FROM_BYTES: Callable[[bytes], int] = partial(int.from_bytes, byteorder="little")
+
+
 def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows], list[Raw]]:
-    """The ten tables, all scattered into one array of booleans and packed at once."""
+    """The ten tables: their rows that are not empty, scattered into one array of booleans and packed at once."""
     import numpy as np
 
     n = len(nodes.ids)
@@ -212,14 +216,16 @@ def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows]
     others = [_edge(columns, i) for i in np.flatnonzero(known & (relation == _OTHER)).tolist()]
     if not known.all():
         a, b, relation = a[known], b[known], relation[known]
-    cells = np.zeros(11 * n * width * 8, bool)
-    cells[(np.take(_FORWARD, relation) * n + a) * width * 8 + b] = True
-    cells[(np.take(_BACKWARD, relation) * n + b) * width * 8 + a] = True
-    packed = np.packbits(cells[: 10 * n * width * 8], bitorder="little")
-    rows = [0] * (10 * n)
-    data = packed.tobytes()
-    for i in np.flatnonzero(packed.reshape(-1, width).any(axis=1)).tolist():
-        rows[i] = int.from_bytes(data[i * width : (i + 1) * width], "little")
+    source = np.concatenate((np.take(_FORWARD, relation) * n + a, np.take(_BACKWARD, relation) * n + b))
+    has = np.zeros(11 * n, bool)
+    has[source] = True
+    cells = np.zeros(np.count_nonzero(has) * width * 8, bool)
+    cells[((np.cumsum(has) - 1) * (width * 8))[source] + np.concatenate((b, a))] = True
+    rows = [0] * (11 * n)
+    # As texts of so many bytes they lack the zeros at their ends, which are the highest of a number.
+    packed: list[bytes] = np.packbits(cells, bitorder="little").view(f"S{width}").tolist()
+    for i, row in zip(np.flatnonzero(has).tolist(), map(_FROM_BYTES, packed), strict=True):
+        rows[i] = row
     return [rows[k * n : (k + 1) * n] for k in range(10)], others
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
@@ -73,8 +73,6 @@ class Home:
         rows = building.read_edges(edges, read)
         self.on, self.bears, self.inside, self.contents, self.close, self.facing, self.faced = rows[:7]
         self.between, self.agent_rows, self.others = rows[7:]
-        self.reach = Memo(self._reach)
-        self.direct_room = Memo(self._direct_room)
 
     @classmethod
     @explained
@@ -128,8 +126,6 @@ class Home:
         new.on, new.bears, new.inside, new.contents = self.on[:], self.bears[:], self.inside[:], self.contents[:]
         new.close, new.facing, new.faced, new.between = self.close[:], self.facing[:], self.faced[:], self.between[:]
         new.agent_rows = self.agent_rows[:]
-        new.reach = Memo(new._reach)
-        new.direct_room = Memo(new._direct_room)
         return new
 
     @property
@@ -165,6 +161,19 @@ class Home:
     @cached_property
     def _able(self) -> dict[tuple[str, int], int]:
         return {}
+
+    # What the memos compute with are rows and not the home: it would be in a circle, and so in memory until the garbage
+    # collector finds it.
+
+    @cached_property
+    def reach(self) -> Memo:
+        """What a walk to a node brings the character close to, while nothing has moved."""
+        return Memo(partial(_reach, self.inside, self.bears, self.rooms, self.properties))
+
+    @cached_property
+    def direct_room(self) -> Memo:
+        """Index of the room that a node is, or is directly INSIDE (the first by id), or -1."""
+        return Memo(partial(_direct_room, self.inside, self.rooms))
 
     @cached_property
     def everything(self) -> int:
@@ -219,14 +228,14 @@ class Home:
         name = self.classes[index]
         return self.knowledge.bed_limit(name) if lying else self.knowledge.seat_limit(name)
 
-    def _reach(self, o: int) -> int:
-        """What a walk to o brings the character close to, while nothing has moved."""
-        mask = 1 << o | self.properties["BODY_PART"] | (self.inside[o] & ~self.rooms)
-        return mask | self.bears[o] if self.properties["SURFACES"] >> o & 1 else mask
 
-    def _direct_room(self, o: int) -> int:
-        """Index of the room that o is, or is directly INSIDE (the first by id), or -1."""
-        if self.rooms >> o & 1:
-            return o
-        rooms = self.inside[o] & self.rooms
-        return (rooms & -rooms).bit_length() - 1
+def _reach(inside: Rows, bears: Rows, rooms: int, properties: Mapping[str, int], o: int) -> int:
+    mask = 1 << o | properties["BODY_PART"] | (inside[o] & ~rooms)
+    return mask | bears[o] if properties["SURFACES"] >> o & 1 else mask
+
+
+def _direct_room(inside: Rows, rooms: int, o: int) -> int:
+    if rooms >> o & 1:
+        return o
+    found = inside[o] & rooms
+    return (found & -found).bit_length() - 1
