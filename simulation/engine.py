@@ -78,7 +78,7 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
 
 def ready(world: World, program: Program) -> World:
     """The world with its characters at places if a program moves them by metres."""
-    return placed(world) if any(step.action in MOVES for step in program.steps) else world
+    return world if MOVES.keys().isdisjoint([step.action for step in program.steps]) else placed(world)
 
 
 def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT) -> World | Failure:
@@ -98,9 +98,9 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         return _refused(world, instruction)
     index = world.home.index
     objects = instruction.objects
-    arity = world.home.knowledge.actions[instruction.action].arity
-    if len(objects) != arity:
-        return _miscounted(instruction, arity)
+    roles = world.home.knowledge.actions[instruction.action].roles
+    if len(objects) != len(roles):
+        return _miscounted(instruction, len(roles))
     try:
         o = index[objects[0].node] if objects else -1  # type: ignore[index]
         s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
@@ -116,7 +116,7 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
 
 def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:
     """Single steps as they are; only what happens together is grouped."""
-    if not any(step.joins for step in program.steps):
+    if True not in [step.joins for step in program.steps]:
         return program.steps
     return (steps[0] if len(steps) == 1 else steps for steps in program.ticks())
 

@@ -162,7 +162,11 @@ def _need_reachable(world: World, agent: Agent, o: int, action: str) -> Failure 
 
 def in_state(state: int, code: Code) -> Check:
     """The object is in a state."""
-    return Check(lambda world, agent, o, action: need_state(world, code, state, o), lambda s, _: s.states[state])
+
+    def refusal(world: World, agent: Agent, o: int, action: str) -> Failure | None:
+        return None if world.states[state] >> o & 1 else need_state(world, code, state, o)
+
+    return Check(refusal, lambda s, _: s.states[state])
 
 
 def not_in_state(state: int, code: Code) -> Check:

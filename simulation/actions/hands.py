@@ -23,7 +23,7 @@ from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import moved as kinds
 from hearth.simulation.world import rows
-from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.moved import add, lift
 from hearth.simulation.world.states import OPEN
 from hearth.simulation.world.world import World
@@ -135,7 +135,7 @@ def _put_at_character(world: World, edge: tuple[int, int, int]) -> World:
 def _freed(agent: Agent, o: int, close: int, worn: int, memory: tuple[tuple[int, int, int], ...]) -> Agent:
     rest = ~(1 << o)
     right, left = agent.right & rest, agent.left & rest
-    return Agent._make((agent.index, agent.bit, close, *agent[3:8], worn, right, left, memory, *agent[12:]))
+    return made((agent.index, agent.bit, close, *agent[3:8], worn, right, left, memory, *agent[12:]))
 
 
 def _forgotten(agent: Agent, o: int) -> tuple[tuple[int, int, int], ...]:

@@ -7,7 +7,7 @@ from hearth.simulation.actions.situation import Situation
 from hearth.simulation.motion import positions
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
-from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved import NOTHING, carry
 from hearth.simulation.world.pose import Pose
@@ -80,7 +80,7 @@ def turn_to(world: World, number: int, o: int, _: int, rules: Rules) -> World | 
 
 
 def _attending(agent: Agent, close: int, facing: int) -> Agent:
-    return Agent._make((agent.index, agent.bit, close, facing, *agent[4:]))
+    return made((agent.index, agent.bit, close, facing, *agent[4:]))
 
 
 def arrived(world: World, number: int, o: int, room: int, pose: Pose | None) -> World:
@@ -109,7 +109,7 @@ def gone(world: World, number: int, near: int, room: int, pose: Pose | None) -> 
     for i in indices(held):
         moved = carry(moved, i, room)
     inside = 1 << room if room >= 0 else 0
-    here = Agent(index, bit, near | held, 0, 0, inside, 0, on, worn, right, left, origins, pose, stride)
+    here = made((index, bit, near | held, 0, 0, inside, 0, on, worn, right, left, origins, pose, stride))
     if len(world.agents) == 1:
         return World(world.home, world.states, (here,), moved)
     return World(world.home, world.states, _seen_by_others(world.agents, number, here, held), moved)

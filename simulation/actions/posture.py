@@ -5,7 +5,7 @@ from hearth.simulation.actions.common import Action, Check, Masks, able, checked
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import rows
-from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.agent import Agent, made
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.states import LYING, SITTING, with_state
 from hearth.simulation.world.world import World
@@ -81,7 +81,7 @@ def _unoccupied(lying: bool) -> Check:
 def _settle(world: World, number: int, o: int, state: int, facing: int) -> World:
     agent = world.agents[number]
     on = agent.on | 1 << o
-    settled = Agent._make((*agent[:3], facing, *agent[4:7], on, *agent[8:]))
+    settled = made((*agent[:3], facing, *agent[4:7], on, *agent[8:]))
     agents = (settled,) if len(world.agents) == 1 else world.with_agent(number, settled).agents
     return World(world.home, with_state(world.states, state, agent.bit), agents, world.moved)
 

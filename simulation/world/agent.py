@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 from hearth.simulation.world.pose import STRIDE, Pose
@@ -56,13 +57,17 @@ class Agent(NamedTuple):
 
     def without(self, bit: int) -> Agent:
         """Without the edges to and from these nodes."""
-        return Agent._make((self.index, self.bit, *[row & ~bit for row in self[2:11]], *self[11:]))
+        return made((self.index, self.bit, *[row & ~bit for row in self[2:11]], *self[11:]))
 
     def parted(self, bit: int) -> Agent:
         """Without the edges to and from these nodes but those of FACING."""
         index, me, close, facing, faced, *_ = self
         rest = [row & ~bit for row in self[5:11]]
-        return Agent._make((index, me, close & ~bit, facing, faced, *rest, *self[11:]))
+        return made((index, me, close & ~bit, facing, faced, *rest, *self[11:]))
+
+
+made: Callable[[tuple[Any, ...]], Agent] = partial(tuple.__new__, Agent)
+"""A character from all its fields, in half the time of `Agent._make`: every step makes one."""
 
 
 def replaced(agents: tuple[Agent, ...], number: int, agent: Agent) -> tuple[Agent, ...]:

@@ -145,9 +145,8 @@ class Home:
             "FACING": (self.facing, self.faced),
         }
 
-    @explained
     def able(self, action: str, position: int = 0) -> int:
-        """The nodes that an action's argument may be, by the knowledge's requirement for it."""
+        """The nodes that an action's argument may be, by the knowledge's requirement for it."""  # asked by every step
         try:
             return self._able[action, position]
         except KeyError:

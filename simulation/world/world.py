@@ -41,9 +41,8 @@ class World(WorldState):
         """The home as it is given."""
         return cls(home, home.states, tuple(home.agent_rows), NOTHING)
 
-    @explained
     def with_agent(self, number: int, agent: Agent) -> World:
-        """The same world with one agent's edges replaced."""
+        """The same world with one agent's edges replaced."""  # by every step, so not `explained`
         agents = (agent,) if len(self.agents) == 1 else replaced(self.agents, number, agent)
         return World(self.home, self.states, agents, self.moved)
 
