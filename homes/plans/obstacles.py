@@ -1,7 +1,6 @@
 """Where in a room a thing may stand: free of others, of what is used from its front, of doors and windows."""
 
-from collections.abc import Iterator, Sequence
-from functools import cache
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Obstacles:
         self._solids = solids
         self._kept = kept
         self._openings = openings
-        self._taken = cache(self._in_the_way)
+        self._taken: dict[tuple[float, float], np.ndarray] = {}
 
     def free(self, spots: Sequence[Stand], shaped: Form, front: float) -> np.ndarray:
         """Bool (spots): whether a thing of that shape, with `front` metres before it, may stand there."""
@@ -47,42 +46,47 @@ class Obstacles:
         # All spots of a shape are at one height.
         low = spots[0][2]
         if found.any():
-            found &= ~_meets(rects, self._taken(low, low + shaped.size[1]))
+            found &= ~_meets(rects, self._in_the_way(low, low + shaped.size[1])).any(axis=1)
         if front and found.any():
             zones = np.array([before(rect, yaw, front) for rect, yaw, _ in spots])
             found &= _within(zones, self._inner, 0.05)
-            found &= ~_meets(zones, [footprint(t.box) for t in self._solids if bottom(t.box) < LOW])
-        yaws = np.array([yaw for _, yaw, _ in spots])
-        for hole, deep in self._holes(low, low + shaped.size[1]):
-            if not found.any():
-                break
-            high = hole.window is not None and low + shaped.size[1] > hole.y0 + SILL
-            there = _meets(rects, [deep])
-            found &= ~(there & (high | ((shaped.mount == "wall") & (yaws == facing_from(hole.wall)))))
+            low_ones = [footprint(t.box) for t in self._solids if bottom(t.box) < LOW]
+            found &= ~_meets(zones, np.array(low_ones, float).reshape(-1, 4)).any(axis=1)
+        holes = [hole for hole in self._openings if low < hole.y1 and low + shaped.size[1] > hole.y0]
+        if holes and found.any():
+            high = [hole.window is not None and low + shaped.size[1] > hole.y0 + SILL for hole in holes]
+            there = _meets(rects, np.array([self._deep(hole) for hole in holes]))
+            if shaped.mount == "wall":
+                yaws = np.array([yaw for _, yaw, _ in spots])
+                found &= ~(there & (high | (yaws[:, None] == [facing_from(hole.wall) for hole in holes]))).any(axis=1)
+            else:
+                found &= ~there[:, high].any(axis=1)
         return found
 
     def _in_the_way(self, low: float, high: float) -> np.ndarray:
         """The floor that is taken for something of that height."""
+        if (low, high) in self._taken:
+            return self._taken[low, high]
         taken = [footprint(t.box) for t in self._solids if bottom(t.box) < high and low < top(t.box)]
         if low < LOW:
             taken += [before(footprint(t.box), t.yaw or 0.0, t.front) for t in self._solids if t.front]
-        return np.array([*taken, *(self._kept if low < HEAD else ())], float).reshape(-1, 4)
+        found = np.array([*taken, *(self._kept if low < HEAD else ())], float).reshape(-1, 4)
+        self._taken[low, high] = found
+        return found
 
-    def _holes(self, low: float, high: float) -> Iterator[tuple[Opening, Rect]]:
-        """What opens in the walls at that height, with the floor before it."""
-        for hole in self._openings:
-            if low < hole.y1 and high > hole.y0:
-                yield hole, strip(self._inner, hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
+    def _deep(self, hole: Opening) -> Rect:
+        """The floor before what opens in a wall."""
+        return strip(self._inner, hole.wall, hole.start - 0.03, hole.end + 0.03, 0.25)
 
 
 def _within(rects: np.ndarray, room: Rect, slack: float) -> np.ndarray:
-    low, high = np.array(room[:2]) - slack, np.array(room[2:]) + slack
-    return np.asarray((rects[:, :2] >= low).all(axis=1) & (rects[:, 2:] <= high).all(axis=1))
+    u0, v0, u1, v1 = rects.T
+    inside = (u0 >= room[0] - slack) & (v0 >= room[1] - slack) & (u1 <= room[2] + slack) & (v1 <= room[3] + slack)
+    return np.asarray(inside)
 
 
-def _meets(rects: np.ndarray, others: Sequence[Rect] | np.ndarray) -> np.ndarray:
-    """Bool (rects): whether each meets any of the others."""
-    taken = np.asarray(others, float).reshape(-1, 4)
-    lows, highs = rects[:, None, :2], rects[:, None, 2:]
-    apart = np.any((lows >= taken[None, :, 2:] - TOUCH) | (taken[None, :, :2] >= highs - TOUCH), axis=2)
-    return np.asarray(np.any(~apart, axis=1))
+def _meets(rects: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Bool (rects, others): which of them meet."""
+    u0, v0, u1, v1 = rects.T[:, :, None]
+    a0, b0, a1, b1 = others.T[:, None]
+    return np.asarray((u0 < a1 - TOUCH) & (v0 < b1 - TOUCH) & (a0 < u1 - TOUCH) & (b0 < v1 - TOUCH))

@@ -356,7 +356,7 @@ def _free(level: Level, u: np.ndarray, v: np.ndarray, width: float, depth: float
     taken = np.array([local for _, local in level.taken], float).reshape(-1, 4)
     gap_u = np.maximum(taken[:, 0, None] - (u + width), u - taken[:, 2, None])
     gap_v = np.maximum(taken[:, 1, None] - (v + depth), v - taken[:, 3, None])
-    least: np.ndarray = np.min(np.maximum(gap_v[:, :, None], gap_u[:, None, :]), axis=0, initial=FAR)
+    least: np.ndarray = np.maximum(gap_v[:, :, None], gap_u[:, None, :]).min(axis=0, initial=FAR)
     return least
 
 
