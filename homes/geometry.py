@@ -117,8 +117,8 @@ def box_over(rect: Rect, y0: float, y1: float) -> Box:
 
 
 def _rounded(values: tuple[float, float, float]) -> tuple[float, float, float]:
-    x, y, z = (round(value, 4) + 0.0 for value in values)
-    return x, y, z
+    x, y, z = values
+    return round(x, 4) + 0.0, round(y, 4) + 0.0, round(z, 4) + 0.0
 
 
 def intrusion(a: Box, b: Box) -> float:
