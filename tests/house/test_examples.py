@@ -66,9 +66,18 @@ def test_an_example_does_what_it_says(page, tmp_path):
 
 
 def shown(text: str, printed: str) -> bool:
-    """Whether the lines of a block are lines of the output, in their order; numbers of several digits may differ."""
-    lines = iter([_plain(line) for line in printed.splitlines()])
-    return all(_plain(line) in lines for line in text.splitlines() if line.strip())
+    """Whether the lines of a block are successive lines of the output, those after `...` further below; numbers of
+    several digits may differ.
+    """
+    lines = [_plain(line) for line in printed.splitlines() if line.strip()]
+    at = 0
+    for piece in re.split(r"^\.\.\.$", text, flags=re.MULTILINE):
+        wanted = [_plain(line) for line in piece.splitlines() if line.strip()]
+        found = next((n for n in range(at, len(lines) + 1) if lines[n : n + len(wanted)] == wanted), None)
+        if found is None:
+            return False
+        at = found + len(wanted)
+    return True
 
 
 def _plain(line: str) -> str:
@@ -76,6 +85,7 @@ def _plain(line: str) -> str:
 
 
 def test_a_line_that_was_not_printed_is_seen():
-    assert shown("a\n c", "a\nb\nc\n")
+    assert shown("a\n b", "a\n\nb\nc\n") and shown("a\n...\nc\n", "a\nb\nc") and shown("a\n...\n", "a\nb")
+    assert not shown("a\nc", "a\nb\nc") and not shown("c\n...\na", "a\nb\nc")
     assert not shown("a\nc", "c\na") and not shown("a", "ab")
     assert shown("CLOSE  6,118", "CLOSE     70") and not shown("NOT_CLOSE 1", "NOT_CLOSE 2")
