@@ -58,10 +58,27 @@ class Given(NamedTuple):
         from hearth.simulation.world.world import World
 
         if name or graph or not self.grounding or not self.grounding["start"]:
-            return self.program, read_home(name or DEFAULT_HOME, graph, homes, known), False
+            place = read_home(name or DEFAULT_HOME, graph, homes, known)
+            return _of_home(self.program, place), place, False
         place = Home.from_graph(graph_of(self.grounding["start"]), self.grounding["home"], known)
         found = bind_stored(self.program, World.start(place))
         return found.apply(self.program) if isinstance(found, Binding) else self.program, place, True
+
+
+def _of_home(program: Program, home: Home) -> Program:
+    """The program, without its node ids if one of them is nothing, or something else, in the home."""
+    from hearth.commands import output
+
+    for ref in program.objects():
+        if ref.node is None:
+            continue
+        index = home.index.get(ref.node, -1)
+        names = home.knowledge.same_class(ref.name)
+        if index < 0 or (home.classes[index] not in names and not home.instances(ref.name) >> index & 1):
+            found = f"{home.classes[index]} there" if index >= 0 else "nothing there"
+            output.note(f"The program's nodes are not those of {home.name} ({ref.node} is {found}): it is bound anew.")
+            return program.unbound()
+    return program
 
 
 DEFAULT_HOME = "maple"
@@ -198,20 +215,26 @@ def read_goals(goals: Sequence[str], home: Home) -> Goal:
     found = Goal()
     for text in goals:
         inside = text.startswith("@")
-        found &= read_goal(_goal_file(text[1:]) if inside else text, home, text[1:] if inside else "--goal")
+        file = text[1:] if inside else "--goal"
+        found &= read_goal(_goal(_goal_text(file) if inside else text, file), home, file)
     return found
 
 
-def _goal_file(file: str) -> Any:
+def _goal_text(file: str) -> Any:
     from pathlib import Path
 
-    from hearth.pipelines.readers.document import parsed
     from hearth.schemas.decoding import decode
-    from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.input_files import read_input
+
+    return decode(read_input(Path(file)), file)
+
+
+def _goal(text: Any, file: str) -> Any:
+    """Text as it is; what begins with a brace as JSON."""
+    from hearth.pipelines.readers.document import parsed
+    from hearth.schemas.diagnostics import Diagnostic, HearthError
     from hearth.storage.rejects import Reject
 
-    text = decode(read_input(Path(file)), file)
     found = parsed(text, file, 1) if isinstance(text, str) and text.lstrip().startswith("{") else text
     if isinstance(found, Diagnostic | Reject):
         raise HearthError(found if isinstance(found, Diagnostic) else found.diagnostics)

@@ -67,12 +67,15 @@ def read_goal(given: str | Mapping[str, Any], home: Home, file: str = "goal") ->
 def _release_text(record: Any, file: str) -> str:
     """A `vh_goal` as text."""
     try:
-        done = [f"({each.replace(' ', '')})" for each in record["actions"]]
-        facts = " and ".join(_fact(each) for each in record["goal"])
+        if not {"actions", "goal"} & record.keys():
+            raise KeyError("actions")
+        done = [f"({each.replace(' ', '')})" for each in record.get("actions", ())]
+        facts = " and ".join(_fact(each) for each in record.get("goal", ()))
         return " then ".join([*done, facts] if facts else done)
     except (AttributeError, KeyError, TypeError) as error:
         hint = 'give text, {"tl_goal": TEXT} or {"actions": [...], "goal": [...]}'
-        raise HearthError.of(Code.BAD_JSON, f"not a goal: {error!r}", file=file, suggestion=hint) from None
+        lacking = f"it has no {error}" if isinstance(error, KeyError) else str(error)
+        raise HearthError.of(Code.BAD_JSON, f"not a goal: {lacking}", file=file, suggestion=hint) from None
 
 
 def _fact(each: Mapping[str, Any]) -> str:

@@ -40,6 +40,8 @@ def test_run_prints_the_binding_and_what_each_step_changed(tmp_path):
     [
         ("SITTING(agent) and (LOOKAT or WATCH)", 0, "Goal: reached."),
         ("ON(television) then SITTING(agent)", 0, "Goal: reached."),
+        ('{"actions": ["LOOKAT|WATCH"]}', 0, "Goal: reached."),
+        ('{"node_goals": []}', 1, "not a goal: it has no 'actions'"),
         ("SITTING(agent) then ON(television)", 1, "Goal: not reached; unmet: (SITTING(agent)) then (ON(television))."),
         ("WATCH(televison)", 1, "did you mean `television`?"),
     ],
@@ -52,6 +54,14 @@ def test_run_asks_whether_a_goal_is_reached(tmp_path, goal, status, words):
         assert (result.exit_code, words in result.output) == (status, True), result.output
         found = json.loads(call("run", tmp_path / "tv.txt", "--goal", given, "--json").stdout)
         assert "errors" in found or found["goal"]["reached"] == (status == 0)
+
+
+@pytest.mark.parametrize(("node", "found"), [(9999, "9999 is nothing there"), (44, "44 is television there"), (51, "")])
+def test_nodes_of_another_home_are_bound_anew(tmp_path, node, found):
+    (tmp_path / "sit.txt").write_text(f"[Walk] <sofa> (1.{node})\n[Sit] <sofa> (1.{node})\n")
+    result = call("run", tmp_path / "sit.txt", "--home", "maple")
+    assert result.exit_code == 0 and "<sofa> (1) is couch (51)" in result.output
+    assert found in result.output and ("bound anew" in result.output) == bool(found)
 
 
 def test_explain_names_the_edges_that_checks_held_by(tmp_path):
