@@ -40,11 +40,14 @@ WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
 # Each program in two homes drawn for it, so that all seven homes are used.
-full: $(READY)  ## our corpus and 5,193 synthetic programs over seven homes, 30,000 augmented, in data_out/full
+FULL = $(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
+  --seed $(SEED) --workers $(JOBS) --tier full
+
+full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as usual and as in the thesis, in data_out/full and full-thesis
 	@mkdir -p $(OUT)/full
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
-	@$(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
-	  --out $(OUT)/full --seed $(SEED) --workers $(JOBS) --tier full
+	@$(FULL) --strength mild --out $(OUT)/full
+	@$(FULL) --strength thesis --out $(OUT)/full-thesis
 
 mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
 frames: $(READY)  ## a dataset of our corpus with many pictures and some films, in data_out/frames
@@ -126,7 +129,7 @@ wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
 clean:  ## remove the output; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## also remove .venv

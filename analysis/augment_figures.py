@@ -4,7 +4,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from hearth.datasets.format.datasheet import STRENGTH
 from hearth.pipelines.augment import ORIGINAL
+from hearth.repair.strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.manifest import TIMING, read_manifest
@@ -52,7 +54,9 @@ def outcome(folder: Path) -> dict[str, Any]:
     }
 
 
-GIVEN_UP = (Code.NO_HANDLER, Code.HANDLER_ERROR, Code.LOOP, Code.TOO_MANY_TRIES, Code.GOAL_LOST)
+GIVEN_UP = (
+    Code.NO_HANDLER, Code.HANDLER_ERROR, Code.LOOP, Code.TOO_MANY_TRIES, Code.GOAL_LOST, Code.CIRCUMSTANCES_LOST
+)  # fmt: skip
 """Codes of pairs that were not repaired; other pairs were repaired, ran without repair, or were not sampled."""
 
 LENGTHS = (5, 10, 15, 20, 25, 30, 40, 50)
@@ -65,10 +69,11 @@ def figures(dataset: Path) -> dict[str, Any]:
     """The numbers of table 5.1 and figure 5-4 for a published dataset, beside the thesis.
 
     Returns:
-        `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`: programs by length before and
-        after augmenting; `conditions`: for each class of `SHOWN_CLASSES`, how often each condition names it before and
-        after, as shares; `near_duplicates`: pairs of one parent's children in one home with the same steps;
-        `executable_share`: of the programs that were valid, those with an environment in which they run.
+        `strength` of augmenting; `table`: programs, lengths, nodes and edges of ours and the thesis's; `lengths`:
+        programs by length before and after augmenting; `conditions`: for each class of `SHOWN_CLASSES`, how often each
+        condition names it before and after, as shares; `near_duplicates`: pairs of one parent's children in one home
+        with the same steps; `executable_share`: of the programs that were valid, those with an environment in which
+        they run.
 
     Raises:
         HearthError: MISSING_FILE, if there is no dataset.
@@ -77,6 +82,7 @@ def figures(dataset: Path) -> dict[str, Any]:
 
     data = Dataset.open(dataset)
     return {
+        "strength": data.manifest.get(STRENGTH, MILD),
         "table": {name: {"ours": _row(data, name), "thesis": thesis} for name, thesis in THESIS.items()},
         "lengths": {name: _lengths(data, name) for name in ("executable", "augmented")},
         "conditions": {name: _conditions(data, name) for name in SHOWN_CLASSES},

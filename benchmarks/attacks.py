@@ -195,7 +195,7 @@ def yaml_files() -> Iterator[Attack]:
     """YAML that stands for more than it takes to write, or would call something."""
     from hearth.homes.library import layout_of
     from hearth.kb.loading.load import default
-    from hearth.repair.variants import load_chances
+    from hearth.repair.strengths import load_strengths
     from hearth.storage.input_files import load_yaml
 
     def read(reader: Callable[[Path], Any], text: str, ground: Ground) -> None:
@@ -203,7 +203,7 @@ def yaml_files() -> Iterator[Attack]:
         path.write_text(text.replace("{guard}", str(ground.guard)))
         reader(path)
 
-    readers = {"home": lambda path: layout_of(path, default()), "chances": load_chances, "yaml": load_yaml}
+    readers = {"home": lambda path: layout_of(path, default()), "strengths": load_strengths, "yaml": load_yaml}
     for kind, reader in readers.items():
         for name, text in YAML.items():
             yield Attack("yaml", f"{kind}: {name}", lambda ground, r=reader, t=text: read(r, t, ground))

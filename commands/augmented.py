@@ -8,19 +8,35 @@ from hearth.commands import output
 _BAR = 40
 
 
-def augmented(dataset: Path = Path("data_out"), out: Path | None = None, as_json: bool = False) -> None:
+def augmented(
+    dataset: Path = Path("data_out"),
+    out: Path | None = None,
+    circumstances: bool = False,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
     """Print table 5.1 of the thesis beside a dataset's own figures, and the effects of augmenting.
 
     Counts programs, steps, nodes and edges; lengths of programs before and after; conditions of their objects at the
-    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected).
+    start (figure 5-4, for cups and sauce pans); near-duplicates of one parent in one home (none are expected). With
+    --circumstances every augmented program and its original run again: the share of programs that do each step they
+    have kept as the original does it (sitting, lying, holding, with what was opened or switched on), and the number
+    that are never seated at what the original does in its seat.
 
     \b
-    Example:
+    Examples:
       python cli.py augmented data_out --out figures
+      python cli.py augmented data_out --circumstances
     """
     from hearth.analysis.augment_figures import figures
 
     found = figures(_published(dataset))
+    if circumstances:
+        from hearth.analysis.kept_circumstances import measure
+        from hearth.commands.progress_line import bar
+
+        with bar("shares run again") as seen:
+            found["circumstances"] = measure(_published(dataset), workers, seen)
     if out is not None:
         from hearth.analysis.augment_pictures import draw
 
@@ -28,7 +44,10 @@ def augmented(dataset: Path = Path("data_out"), out: Path | None = None, as_json
     if as_json:
         output.emit(found)
         return
+    print(f"Augmented by the strength `{found['strength']}`.\n")
     _print_table(found["table"])
+    if circumstances:
+        _print_circumstances(found["circumstances"])
     print(f"\nNear-duplicates of a sibling in the same home: {found['near_duplicates']}")
     print(f"Programs with an environment they run in: {_percent(found['executable_share'])}")
     print(f"Bytes of an execution, with program, environment and repairs: {found['bytes_a_program']}")
@@ -56,6 +75,19 @@ def _print_table(table: dict[str, Any]) -> None:
     ]
     output.table(("programs", "", "how many", "length", "nodes", "edges"), rows)
     print("The thesis's 1,387 and 27,284 add up to 28,671; it states 32,761.")
+
+
+def _print_circumstances(found: dict[str, Any]) -> None:
+    print("\nIn the circumstances of the original")
+    for what in ("programs", "steps"):
+        counts = found[what]
+        print(f"  {what:8} {counts['as_original']:,} of {counts['all']:,}, {_percent(counts['share'])}")
+    output.table(
+        ("done in a seat by the original", "programs", "never in a seat"),
+        [(action, *counts.values()) for action, counts in found["seats"].items()],
+    )
+    for name in found["odd"]:
+        print(f"In others: {name}")
 
 
 def _bar(share: float) -> str:

@@ -35,6 +35,7 @@ def build(
     kb: Path | None = None,
     salt: str | None = None,
     homes_each: int = 0,
+    strength: str = "mild",
     variants: int = 3,
     target: int = 0,
     pictures: int = 3,
@@ -60,14 +61,20 @@ def build(
       python cli.py build --out data_out
       python cli.py build release.zip my_programs/ --out mine --seed 7 --workers 4
       python cli.py build corpus.csv --out small --tier mini
+      python cli.py build release.zip --out hard --strength thesis
       python cli.py build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
+    _run(context, only, _tiered(context, tier))
+
+
+def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
+    """The options of a command, with those that its tier and its strength set."""
     from hearth.pipelines.engine.tiers import tiered
 
     sources_of = {name: context.get_parameter_source(name) for name in context.params}
     given = [name for name, source in sources_of.items() if source and source.name == "COMMANDLINE"]
-    _run(context, only, tiered(tier, context.params, given))
+    return tiered(tier, context.params, given)
 
 
 def _with_options(*names: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -150,6 +157,7 @@ def augment(
     home: list[str] | None = None,
     homes: list[str] | None = None,
     kb: Path | None = None,
+    strength: str = "mild",
     variants: int = 3,
     target: int = 0,
     workers: int = 0,
@@ -164,10 +172,11 @@ def augment(
     \b
     Examples:
       python cli.py augment --out data_out --per-program 5
+      python cli.py augment --out data_out --strength thesis
       python cli.py augment --out data_out --target 30000 --homes maple,birch --json
     """
     folder, names = _homes_or_names(homes)
-    chosen = {**context.params, "home": [*(home or ()), *names], "homes": folder}
+    chosen = {**_tiered(context), "home": [*(home or ()), *names], "homes": folder}
     if not as_json:
         _run(context, "augment", chosen)
         return

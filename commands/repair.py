@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from difflib import ndiff
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -15,7 +16,7 @@ from hearth.commands.inputs import read_given, read_knowledge
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
     from hearth.repair.loop import Attempt
-    from hearth.repair.perturb import Chances
+    from hearth.repair.strengths import Strength
     from hearth.repair.variants import Augmented, Pair
     from hearth.schemas.program import Program, Step
 
@@ -28,6 +29,7 @@ def repair(
     kb: Path | None = None,
     seed: int = 0,
     variants: int = 1,
+    strength: str = "mild",
     perturb: list[str] | None = None,
     which: int = 1,
     columns: str = "",
@@ -49,7 +51,7 @@ def repair(
     known = read_knowledge(kb)
     given = read_given(file, known, which, strict, columns)
     program, place, _ = given.at_home(home, graph, homes, known)
-    found = augment(program, place, seed, program.title, Options(variants, chances=_chances(perturb)))
+    found = augment(program, place, seed, program.title, Options(variants, strength=_strength(strength, perturb)))
     if isinstance(found, Failure):
         _refuse(found, place.name, as_json)
     if as_json:
@@ -69,23 +71,23 @@ def _refuse(failure: Any, home: str, as_json: bool) -> NoReturn:
     raise typer.Exit(output.BAD_INPUT)
 
 
-def _chances(kinds: list[str] | None) -> Chances | None:
-    """The given kinds, applied wherever possible; None, for the chances of perturbations.yaml, if there are none.
+def _strength(name: str, kinds: list[str] | None) -> Strength:
+    """A strength by its name; with kinds of perturbation, these alone, applied wherever possible.
 
     Raises:
-        HearthError: UNKNOWN_ID, with the known kinds.
+        HearthError: UNKNOWN_ID, with the known kinds or strengths.
     """
-    if not kinds:
-        return None
     from hearth.repair.perturb import PERTURBATIONS, Chances
+    from hearth.repair.strengths import strength
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
-    unknown = [kind for kind in kinds if kind not in PERTURBATIONS]
+    unknown = [kind for kind in kinds or () if kind not in PERTURBATIONS]
     if unknown:
         known = f"kinds are {', '.join(PERTURBATIONS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"unknown perturbation `{unknown[0]}`", suggestion=known)
-    return Chances(dict.fromkeys(kinds, 1.0), {"each": 1.0})
+    found = strength(name)
+    return replace(found, chances=Chances(dict.fromkeys(kinds, 1.0), {"each": 1.0})) if kinds else found
 
 
 def _print(program: Program, found: Augmented, home: str, known: Knowledge) -> None:

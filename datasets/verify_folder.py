@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from hearth.datasets import dataset_homes, dataset_knowledge
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.catalog import CATALOG, SQL, make_catalog, published
+from hearth.datasets.format.datasheet import STRENGTH
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.storage.files import read_json, value_digest
@@ -29,7 +30,7 @@ EARLIER = {
 """SHA-256 of the catalog's SQL in earlier versions; add that of the last one when the SQL of the next differs."""
 
 _FIELDS = {"format", "version", "action_set", *_ASKED, "key", "inputs", "counts", "parts", "files",
-           dataset_homes.FIELD, dataset_knowledge.FIELD}  # fmt: skip
+           dataset_homes.FIELD, dataset_knowledge.FIELD, STRENGTH}  # fmt: skip
 
 
 def unknown(dataset: Dataset) -> Iterator[Diagnostic]:

@@ -21,9 +21,9 @@ from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Output, Plan, Stage
 from hearth.repair.causes import cause
 from hearth.repair.loop import successes
-from hearth.repair.perturb import Chances
 from hearth.repair.sketch import ENVIRONMENTS, Keep, inherited, sketch
-from hearth.repair.variants import Augmented, Options, Pair, augment, default_chances
+from hearth.repair.strengths import strength
+from hearth.repair.variants import Augmented, Options, Pair, augment
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -36,12 +36,6 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.storage.manifest import read_manifest
 from hearth.storage.rejects import Reject
-
-THESIS = 0.7
-"""The probability of perturbing a precondition (thesis 5.5.4); those of perturbations.yaml are relative to it."""
-
-ALLOWANCE = 1.3
-"""Pairs made for each program wanted: some are duplicates, and some programs have too few preconditions to perturb."""
 
 ORIGINAL = "original"
 """By which rows of originals in perturbed environments are counted; others are counted by their number of repairs."""
@@ -58,8 +52,7 @@ class Context:
         # Homes of the catalog are built in their default state; derived homes keep their stored states.
         self.in_default_state = cache(self.homes.in_catalog)
         self.seed = settings.seed
-        chances = scaled(default_chances(), settings.probability / THESIS)
-        self.options = Options(settings.variants, settings.tries, chances)
+        self.options = Options(settings.variants, settings.tries, settings.strength)
         self.each = float(plan.get("each", settings.variants))
         self.sketched = ""
         self.keep: Keep = ()
@@ -77,11 +70,6 @@ class Context:
         whole = int(self.each)
         more = rng(self.seed, "augment", record_id).random() < self.each - whole
         return replace(self.options, count=whole + more)
-
-
-def scaled(chances: Chances, factor: float) -> Chances:
-    """Every probability multiplied, at most 1."""
-    return replace(chances, kinds={kind: min(1.0, chance * factor) for kind, chance in chances.kinds.items()})
 
 
 def process(record: CaseRow, context: Context) -> Iterator[Output]:
@@ -252,7 +240,7 @@ def prepare(settings: Settings) -> Plan:
         plan["left_out"] = sorted(set(homes.catalog()) - set(homes.names()))
     manifest = read_manifest(settings.folder("sample"))
     if settings.target and manifest is not None:
-        each = settings.target * ALLOWANCE / max(1, manifest.counts.tally["executable"])
+        each = settings.target * strength(settings.strength).allowance / max(1, manifest.counts.tally["executable"])
         plan["each"] = round(min(each, settings.variants), 4)
     return plan
 
@@ -268,7 +256,7 @@ STAGE = Stage(
     tables={"": CASE, "sketches": SKETCHED},
     process=process,
     reads=("sample",),
-    settings=("seed", "probability", "variants", "target", "tries"),
+    settings=("seed", "strength", "variants", "target", "tries"),
     open=lambda job: Context(job.settings, job.plan),
     prepare=prepare,
     facts=overlays_used,

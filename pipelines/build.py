@@ -15,6 +15,7 @@ from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, stage
+from hearth.pipelines.engine.tiers import tiered
 from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -105,6 +106,7 @@ def build(
         >>> made.rejected, made.stages["sample"].through, made.dataset.name
         (0, 1, 'publish')
     """
+    options = tiered("", options, options)
     paths = tuple(str(fetched(source)) for source in sources) or corpus()
     fresh: list[str] = []
     with working(out) as (folder, url, revision):

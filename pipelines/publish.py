@@ -10,10 +10,11 @@ from typing import Any
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import difference_on_replay
+from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.format.ids import STAMP, activity_id
 from hearth.datasets.format.splits import LEFT_OUT, PARTS
 from hearth.pipelines.engine.build_homes import Homes
-from hearth.pipelines.engine.final_tables import finish
+from hearth.pipelines.engine.final_tables import finish, strength_used
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
@@ -134,5 +135,5 @@ STAGE = Stage(
     exchanged=True,
     identify=lambda case: str(case["execution_id"]),
     finish=finish,
-    facts=overlays_used,
+    facts=lambda job: {**overlays_used(job), STRENGTH: strength_used(job)},
 )

@@ -74,7 +74,7 @@ def lost(
     Args:
         original: the program before any repair, bound.
         wanted: the circumstances of each of its steps.
-        sources: for each step of the repaired program, the number of the original's step it is, or -1.
+        sources: for each step of the repaired program, the number of the original's step it is, or below 0.
         execution: of the repaired program.
     """
     worlds = execution.worlds

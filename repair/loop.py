@@ -57,7 +57,7 @@ class Repaired:
         program: the last version.
         execution: of the last version.
         attempts: every repair, in order.
-        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
+        sources: for each of its steps, the number of the original's step it is; below 0 for one that a repair inserted.
         failure: why it was given up; None when it runs and reaches its goal.
     """
 
@@ -101,7 +101,7 @@ class _Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Revision:
-    """A program under repair; `sources` as in `Repaired`."""
+    """A program under repair; `sources` as in `trim.trim`."""
 
     program: Program
     sources: tuple[int, ...]
@@ -238,7 +238,7 @@ def _edited(revision: _Revision, edit: Edit, rules: Rules) -> _Revision:
     for splice in reversed(edit.splices):
         end = splice.at + splice.removed
         replaced = sources[splice.at : end]
-        new = [known.get(id(step), -1) for step in splice.inserted]
+        new = [known.get(id(step), trim.STAYING if edit.stays else trim.INSERTED) for step in splice.inserted]
         new[: len(replaced)] = replaced[: len(new)]
         steps[splice.at : end] = splice.inserted
         sources[splice.at : end] = new

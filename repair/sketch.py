@@ -89,7 +89,7 @@ def inherited(keep: Sequence[bool], sources: Sequence[int]) -> Keep:
 
     Args:
         keep: the parent's sketch.
-        sources: for each step of the child, which of the parent's it is; -1 for a new one.
+        sources: for each step of the child, which of the parent's it is; below 0 for a new one.
     """
     return tuple(source >= 0 and keep[source] for source in sources)
 

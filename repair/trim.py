@@ -1,7 +1,7 @@
 """Canonical repairs, without unneeded steps.
 
-A step that a repair has inserted stays only if without it the program stops or misses its goal; no walk leads to where
-the character has just walked; nothing is opened only to be closed again.
+A step that a repair has inserted stays only if without it the program stops or misses its goal, or if the repair asks
+for it; no walk leads to where the character has just walked; nothing is opened only to be closed again.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -13,6 +13,9 @@ from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.world import World
+
+INSERTED, STAYING = -1, -2
+"""Sources of steps that a repair has inserted: removed where they are not needed, or not."""
 
 
 def resume(execution: Execution, program: Program, first: int, rules: Rules) -> Execution:
@@ -49,8 +52,8 @@ def trim(
     Args:
         original: the program before any repair.
         execution: of the repaired program, which runs and reaches its goal.
-        sources: for each of its steps, the number of the original's step it is, or -1; the original's stay, unless
-            repairing made them void.
+        sources: for each of its steps, the number of the original's step it is, or INSERTED, or STAYING; the
+            original's stay, unless repairing made them void.
         goal: what must stay reached; the characters' hands, too, must end up holding what they hold now.
         rules: for the runs.
         keeps: whether a shorter program, with its sources, does its steps as it has to.
@@ -97,13 +100,13 @@ def _candidates(
     walks = knowledge.group("walks")
     neighbours = set(zip(original.steps, original.steps[1:], strict=False))
     for number in range(len(steps) - 1, -1, -1):
-        if number in together:
+        if number in together or sources[number] == STAYING:
             continue
-        if sources[number] < 0 or _walks_where_it_is(original, steps, number, walks):
+        if sources[number] == INSERTED or _walks_where_it_is(original, steps, number, walks):
             yield number, number + 1
-        pair = steps[number : number + 2]
-        both_new = max(sources[number : number + 2]) < 0
-        if len(pair) == 2 and pair not in neighbours and _undo(*pair, both_new, knowledge):
+        pair, of = steps[number : number + 2], sources[number : number + 2]
+        undone = len(pair) == 2 and pair not in neighbours and _undo(*pair, max(of) < 0, knowledge)
+        if undone and STAYING not in of:
             yield number, number + 2
 
 

@@ -1,9 +1,7 @@
 """Augmenting a program in a home: perturb its preconditions, sample, run, repair (thesis 5.5.4, A.2, algorithm 4)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from pathlib import Path
 
 from hearth.grounding.environments.default_state import Base, prepared
 from hearth.grounding.environments.sampling import Environment, Size, draw, sample
@@ -12,20 +10,17 @@ from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.postconditions import Postconditions, achieved
 from hearth.repair.circumstances import circumstances
 from hearth.repair.loop import TRIES, Attempt, repair
-from hearth.repair.perturb import MOST, PERTURBATIONS, Case, Chances, Perturbation, Perturbed, distinct
-from hearth.schemas.diagnostics import HearthError
+from hearth.repair.perturb import Case, Perturbation, Perturbed, distinct
+from hearth.repair.strengths import MILD, Strength, strength
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
 from hearth.simulation.engine import Execution
 from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.home import Home
-from hearth.storage.input_files import load_yaml
 
 DRAWS = 3
 """Environments drawn for one perturbation before it is given up."""
-
-CHANCES_FILE = Path(__file__).with_name("perturbations.yaml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,14 +31,19 @@ class Options:
         count: perturbed environments at most; there are fewer when no more distinct ones are found. One in which
             repairing is given up is replaced by another, up to twice this number in all.
         tries: repairs of one program in one environment.
-        chances: how likely perturbations are; those of perturbations.yaml when None.
+        strength: how much is perturbed and cleared away: one of perturbations.yaml, or its name.
         rules: for the runs.
     """
 
     count: int = 5
     tries: int = TRIES
-    chances: Chances | None = None
+    strength: Strength | str = MILD
     rules: Rules = DEFAULT
+
+    @property
+    def power(self) -> Strength:
+        """The strength itself."""
+        return strength(self.strength) if isinstance(self.strength, str) else self.strength
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Pair:
         perturbations: those of its preconditions.
         environment: the perturbed environment, with the original program bound in it.
         program: the repaired program, bound.
-        sources: for each of its steps, the number of the original's step it is; -1 for a step that a repair inserted.
+        sources: for each of its steps, the number of the original's step it is; below 0 for one that a repair inserted.
         execution: its run.
         attempts: every repair, in order; also of pairs that were given up.
         failure: why there is no new program; None where there is one.
@@ -124,11 +124,11 @@ def augment(
     conditions, execution = original
     goal = achieved(execution)
     wanted = circumstances(execution)
-    chances = options.chances or default_chances()
     generator = rng(seed, "perturb", base.home.name, record_id)
     seen: set[object] = {_shape(program)}
     pairs: list[Pair] = []
     wished = options.count
+    chances = options.power.chances
     for number, perturbed in enumerate(distinct(Case(program, conditions, base), chances, generator, 2 * wished)):
         if number == wished:
             break
@@ -141,45 +141,6 @@ def augment(
 def _is_refused(pair: Pair) -> bool:
     """Whether repairing was given up: another environment is drawn instead, as long as there are any."""
     return bool(pair.attempts) and pair.failure is not None and pair.failure.code is not Code.DUPLICATE
-
-
-@lru_cache(maxsize=8)
-def load_chances(path: Path) -> Chances:
-    """Read the probabilities of a file like perturbations.yaml.
-
-    Raises:
-        HearthError: BAD_TABLE, naming an unknown perturbation or draw, or a value that is not a probability.
-    """
-    data = load_yaml(path)
-    faults = list(_faults(data))
-    if faults:
-        raise HearthError.of(Code.BAD_TABLE, "; ".join(faults), file=str(path), suggestion=_PARTS)
-    return Chances(dict(data["kinds"]), dict(data["draws"]), data.get("most", MOST))
-
-
-_PARTS = "`kinds` gives each perturbation a probability; `draws` gives each, one and two a weight"
-
-
-def _faults(data: object) -> Iterator[str]:
-    if not isinstance(data, dict) or not all(isinstance(data.get(part), dict) for part in ("kinds", "draws")):
-        yield "`kinds` or `draws` is missing"
-        return
-    for part, known in (("kinds", PERTURBATIONS.keys()), ("draws", ("each", "one", "two"))):
-        for name, value in data[part].items():
-            if name not in known:
-                yield f"`{name}` is none of the {part}"
-            elif not isinstance(value, int | float) or value < 0 or (part == "kinds" and value > 1):
-                yield f"{value!r} is not a {'probability' if part == 'kinds' else 'weight'} of `{name}`"
-    if not any(isinstance(weight, int | float) and weight > 0 for weight in data["draws"].values()):
-        yield "no draw has a weight"
-    most = data.get("most", MOST)
-    if not isinstance(most, int) or most < 1:
-        yield "`most` is not a count"
-
-
-def default_chances() -> Chances:
-    """Those of perturbations.yaml."""
-    return load_chances(CHANCES_FILE)
 
 
 def _drawn(
@@ -212,7 +173,8 @@ def _pair(
         return Pair(number, perturbed.perturbations, environment, program, sources, execution, (), failure)
     goal, wanted = aim
     known = drawn.base.knowledge
-    done = repair(drawn.program, drawn.world, goal, known, options.rules, tries=options.tries, wanted=wanted)
+    handlers = options.power.handlers
+    done = repair(drawn.program, drawn.world, goal, known, options.rules, handlers, options.tries, wanted=wanted)
     return Pair(
         number, perturbed.perturbations, drawn, done.program, done.sources, done.execution, done.attempts, done.failure
     )

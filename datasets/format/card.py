@@ -11,6 +11,7 @@ import pyarrow as pa
 from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
 from hearth.datasets.format.splits import LEFT_OUT, PARTS
+from hearth.repair.strengths import MILD
 from hearth.schemas.tables import TABLES, comment_of, nested
 from hearth.storage.files import write_bytes
 from hearth.version import ACTION_SET, VERSION
@@ -18,18 +19,18 @@ from hearth.version import ACTION_SET, VERSION
 NAME = "README.md"
 
 
-def write_card(folder: Path) -> None:
+def write_card(folder: Path, strength: str = MILD) -> None:
     """Write the card of a dataset's folder: counts, tables and columns, ledger, splits and leakage, licences."""
-    write_bytes(folder / NAME, "\n".join(card(folder)).encode() + b"\n")
+    write_bytes(folder / NAME, "\n".join(card(folder, strength)).encode() + b"\n")
 
 
-def card(folder: Path) -> Iterator[str]:
+def card(folder: Path, strength: str) -> Iterator[str]:
     """The lines of the card."""
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
     yield from _header(folder)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
     yield from ("## Use", "", "```python", "import hearth", 'ds = hearth.load(".")', *_USES, "```", "")
-    yield from _datasheet(folder)
+    yield from _datasheet(folder, strength)
     yield from _tables(counts)
     yield from ("## Where records went", "", *_ledger(folder), "")
     yield from _splits(folder)
@@ -48,8 +49,8 @@ _USES = (
 _LICENCE = ("MIT, as is every source that Hearth reads by default; records keep the licence of the source they name.",)
 
 
-def _datasheet(folder: Path) -> Iterator[str]:
-    sheet = datasheet(folder)
+def _datasheet(folder: Path, strength: str) -> Iterator[str]:
+    sheet = datasheet(folder, strength)
     yield from ("## Who made it, how, and for what", "")
     for name in ("motivation", "composition", "process", "authors", "uses", "limits"):
         yield from (f"**{name.capitalize()}.** {sheet[name]}", "")

@@ -7,6 +7,7 @@ from typing import Any
 import pyarrow as pa
 
 from hearth.datasets.format.datasheet import datasheet
+from hearth.repair.strengths import MILD
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
 from hearth.schemas.yaml_extent import packaged
 from hearth.storage.files import file_digest, write_json
@@ -20,19 +21,19 @@ PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
 
-def write_croissant(folder: Path) -> None:
+def write_croissant(folder: Path, strength: str = MILD) -> None:
     """Write the description of a dataset's folder."""
-    write_json(folder / NAME, describe(folder))
+    write_json(folder / NAME, describe(folder, strength))
 
 
-def describe(folder: Path) -> dict[str, Any]:
+def describe(folder: Path, strength: str) -> dict[str, Any]:
     """The description as JSON-LD: every Parquet file with its hash, every table with its key and all its columns.
 
     Columns within columns are sub-fields, extracted by JSONPath; of a list within a list (the objects of steps),
     mlcroissant 1.1 reads the first entry only. References name the files and the column that contain the values, since
     mlcroissant cannot read a table that refers to a field of itself, or to one of a table that it has read before.
     """
-    sheet = datasheet(folder)
+    sheet = datasheet(folder, strength)
     return {
         "@context": packaged("hearth.datasets.format", "croissant.yaml"),
         "@type": "sc:Dataset",

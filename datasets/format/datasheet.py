@@ -3,13 +3,19 @@
 from pathlib import Path
 
 from hearth.datasets.format.ids import OURS
+from hearth.repair.strengths import MILD, strength
 from hearth.schemas.yaml_extent import packaged
 
+STRENGTH = "strength"
+"""Field of a manifest: the strength by which programs were augmented; missing in earlier datasets, which are mild."""
 
-def datasheet(folder: Path) -> dict[str, str]:
+
+def datasheet(folder: Path, strength_used: str = MILD) -> dict[str, str]:
     """Paragraphs of Markdown by heading, for the tables of a folder; `authors` has those on its origins."""
     sheet, found = packaged("hearth.datasets.format", "datasheet.yaml"), _origins(folder)
-    authors = [text for name, text in sheet.pop("origins").items() if name in found]
+    origins = sheet.pop("origins")
+    origins["augmented"] += f" {strength(strength_used).says}"
+    authors = [text for name, text in origins.items() if name in found]
     return {**sheet, "authors": " ".join(authors)}
 
 

@@ -10,11 +10,12 @@ from typing import Any
 import orjson
 
 from hearth.datasets.dataset import OWN, Dataset
-from hearth.datasets.format.datasheet import datasheet
+from hearth.datasets.format.datasheet import STRENGTH, datasheet
 from hearth.datasets.report.copied_pictures import copy_pictures
 from hearth.datasets.report.drawn_plans import plans
 from hearth.datasets.report.figures import figures
 from hearth.datasets.report.stories import DRAWN, Stories
+from hearth.repair.strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
@@ -62,7 +63,8 @@ def _page(dataset: Dataset, programs: int) -> str:
     template = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(text)
     versions = {name: dataset.manifest[name] for name in ("version", "action_set")}
     drawn = plans(dataset)
-    sheet = {name: text for name, text in datasheet(dataset.folder).items() if name != "bibtex"}
+    sheet = datasheet(dataset.folder, str(dataset.manifest.get(STRENGTH, MILD)))
+    del sheet["bibtex"]
     return template.render(
         figures=figures(dataset), plans=drawn, sheet=sheet, programs=programs, shard=SHARD, **versions
     )

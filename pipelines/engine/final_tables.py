@@ -66,8 +66,9 @@ def finish(job: Job, counts: Counts) -> None:
     _copy_pictures(job)
     copy_overlay(job.settings.kb_folder, job.folder)
     copy_homes(job.settings.homes_folder, job.folder)
-    write_card(job.folder)
-    write_croissant(job.folder)
+    strength = strength_used(job)
+    write_card(job.folder, strength)
+    write_croissant(job.folder, strength)
     write_catalog(job.folder)
 
 
@@ -175,6 +176,11 @@ def _sketches(job: Job) -> Iterator[forms.SketchRow]:
         if row["kind"] == "sketch":
             steps = row["text"].removesuffix("\n").split("\n")
             yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
+
+
+def strength_used(job: Job) -> str:
+    """The strength by which programs were augmented."""
+    return str(_manifest(job, "augment").content["settings"]["strength"])
 
 
 def _manifest(job: Job, stage: str) -> Manifest:

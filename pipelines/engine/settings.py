@@ -23,7 +23,7 @@ class Settings:
         homes_folder: the user's own homes, laid over ours.
         kb_folder: the user's own knowledge, laid over ours.
         salt: hashed with worker ids; by default derived from the sources, so that it is never published.
-        probability: of perturbing each precondition (thesis 5.5.4).
+        strength: how much augmenting perturbs and clears away, a name in `repair/perturbations.yaml`.
         variants: perturbed environments for each execution, at most.
         target: augmented programs in all; 0 for as many as `variants` gives.
         homes_each: homes to sample each program in, drawn from `homes`; 0 for all of them.
@@ -45,7 +45,7 @@ class Settings:
     homes_folder: str | None = None
     kb_folder: str | None = None
     salt: str | None = None
-    probability: float = 0.7
+    strength: str = "mild"
     variants: int = 3
     target: int = 0
     homes_each: int = 0

@@ -1,8 +1,9 @@
-"""Tiers: sizes of a dataset by name. A tier sets other options, which may also be given themselves."""
+"""Tiers and strengths: names that set other options, which may also be given themselves."""
 
 from collections.abc import Container, Mapping
 from typing import Any
 
+from hearth.repair.strengths import MILD, strength
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -16,7 +17,7 @@ has every program about once, with many pictures and some films."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
-    """The options with those of a tier; options that the user gave are kept.
+    """The options with those of a tier and, where it has none, of their `strength`; what the user gave is kept.
 
     Args:
         tier: one of `TIERS`, or "" for none.
@@ -24,11 +25,10 @@ def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict
         given: the names of the options that the user gave.
 
     Raises:
-        HearthError: UNKNOWN_ID, with the names of the tiers.
+        HearthError: UNKNOWN_ID, with the names of the tiers or strengths.
     """
-    if not tier:
-        return dict(options)
-    if tier not in TIERS:
+    if tier and tier not in TIERS:
         suggestion = f"tiers are {', '.join(TIERS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"unknown tier `{tier}`", suggestion=suggestion)
-    return {**options, **{name: value for name, value in TIERS[tier].items() if name not in given}}
+    implied = {**(strength(options.get("strength", MILD)).options or {}), **(TIERS[tier] if tier else {})}
+    return {**options, **{name: value for name, value in implied.items() if name not in given}}

@@ -132,10 +132,17 @@ class Splice(NamedTuple):
 
 
 class Edit(NamedTuple):
-    """A repair: its name, as in the knowledge's repairs where it stands there, and its splices in ascending order."""
+    """A repair.
+
+    Attributes:
+        name: as in the knowledge's repairs where it stands there.
+        splices: in ascending order.
+        stays: whether the steps it inserts stay, even if the program does not need them.
+    """
 
     name: str
     splices: tuple[Splice, ...]
+    stays: bool = False
 
 
 Handler = Callable[[RepairContext], Edit | None]

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from hearth.repair.handlers.common import Edit, RepairContext, Splice, before, removed
+from hearth.repair.handlers.common import Edit, Handler, RepairContext, Splice, before, removed
 from hearth.repair.handlers.seats import done_before_seat, stays
 from hearth.simulation.holds import PETS
 from hearth.simulation.world import rows
@@ -30,7 +30,7 @@ def not_resting(context: RepairContext) -> Edit | None:
     return before(context, "not_lying_to_sleep", context.does(action, context.ref(index)))
 
 
-def occupied(context: RepairContext) -> Edit | None:
+def occupied(context: RepairContext, everything: bool = False) -> Edit | None:
     """Take things off the seat, one by one, until there is room: pets first, what the program names last."""
     home = context.world.home
     seat = context.index()
@@ -43,10 +43,20 @@ def occupied(context: RepairContext) -> Edit | None:
         return Edit("occupied_by_itself", (Splice(taken[0], 1),)) if mine and taken is not None else None
     named = {ref.node for ref in context.program.objects()}
     movable.sort(key=lambda i: (home.ids[i] in named, home.classes[i] not in PETS, i))
+    unnamed = sum(home.ids[i] not in named for i in movable)
     steps = []
-    for thing in context.refs(movable[:too_many]):
+    for thing in context.refs(movable[: max(too_many, unnamed * everything)]):
         steps += [context.does("Find", thing), context.does("Grab", thing), context.does("Release", thing)]
-    return before(context, "occupied", *steps)
+    return before(context, "occupied", *steps)._replace(stays=everything)
+
+
+def cleared(context: RepairContext) -> Edit | None:
+    """Take everything off the seat that the program does not name, needed or not (thesis, table A.4, figure 5-6)."""
+    return occupied(context, everything=True)
+
+
+CLEARS: dict[str, Handler] = {"enough": occupied, "all": cleared}
+"""The repair of a seat without room, by how much it takes off."""
 
 
 def _resting(context: RepairContext, action: str, name: str) -> Edit | None:

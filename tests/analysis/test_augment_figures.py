@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hearth.analysis.augment_figures import GIVEN_UP, THESIS, figures, outcome
+from hearth.repair.strengths import strength
 from hearth.schemas.diagnostics import HearthError
 
 
@@ -41,13 +42,11 @@ def test_what_was_not_augmented_has_no_outcome(tmp_path):
 
 
 def test_pairs_are_spread_over_executions_to_reach_a_target(built, inputs):
-    from hearth.pipelines.augment import ALLOWANCE
-
     built = built(inputs / "crowd", variants=9, target=3)
     built.run("ingest", "validate", "sample", "augment")
     executions = sum(row["executable"] for row in built.rows("sample"))
     found = outcome(built.out / "augment")
-    assert 3 <= found["pairs_tried"] <= 3 * ALLOWANCE + executions
+    assert 3 <= found["pairs_tried"] <= 3 * strength("mild").allowance + executions
 
 
 def test_figures_are_drawn_the_same_each_time(made, tmp_path):

@@ -15,6 +15,7 @@ GOLDEN = Path(__file__).resolve().parents[1] / "golden/repair"
 REFRESH = "if the new text is right: HEARTH_REFRESH=1 python -m pytest tests/commands/test_repair_command.py"
 PAGES = {
     "watch_tv": ["watch_tv.txt", "--seed", "3", "--variants", "2"],
+    "watch_tv_thesis": ["watch_tv.txt", "--seed", "2", "--strength", "thesis"],
     "watch_tv_doors_closed": ["watch_tv.txt", "--perturb", "door", "--perturb", "pet", "--perturb", "plugged"],
     "drink_water": ["drink_water.txt", "--perturb", "container", "--perturb", "open", "--perturb", "full_hands"],
     "drink_water_seated": ["drink_water.txt", "--perturb", "seated", "--perturb", "free", "--perturb", "on"],

@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -147,6 +148,15 @@ def test_a_stage_depends_on_all_that_it_imports(prerequisites, name):
 
 def test_a_stage_by_its_name_stops_there(tree):
     assert make(tree, "sample")[1] == NAMES[:3]
+
+
+def test_full_is_built_by_each_strength(tree):
+    make(tree, "full")
+    calls = [line.split() for line in (tree / "calls").read_text().splitlines()]
+    assert calls[0][1:3] == ["corpus", "synthesize"]
+    made = [dict(pairwise(call)) for call in calls if call[1] == "build"]
+    assert [(call["--strength"], call["--tier"]) for call in made] == [("mild", "full"), ("thesis", "full")]
+    assert [call["--out"] for call in made] == ["data_out/full", "data_out/full-thesis"]
 
 
 def test_clean_removes_what_was_built_and_nothing_else(tree):

@@ -69,24 +69,30 @@ def contradictions(original, pair):
     return odd
 
 
-@given(st.integers(0, 10_000), st.integers(0, 9), st.sampled_from(["maple", "birch", "willow", "rowan"]))
-@settings(max_examples=80)
-def test_every_kept_step_is_done_as_in_the_original(which, seed, name):
+@given(
+    st.integers(0, 10_000),
+    st.integers(0, 9),
+    st.sampled_from(["maple", "birch", "willow", "rowan"]),
+    st.sampled_from(["mild", "thesis"]),
+)
+@settings(max_examples=120)
+def test_every_kept_step_is_done_as_in_the_original(which, seed, name, strength):
     record_id, program = programs()[which % len(programs())]
-    found = augment(program, home(name), seed, record_id, Options(3))
+    found = augment(program, home(name), seed, record_id, Options(3, strength=strength))
     for pair in found.pairs if isinstance(found, Augmented) else ():
         if pair.failure is None:
             assert contradictions(found.execution, pair) == []
 
 
+@pytest.mark.parametrize("strength", ["mild", "thesis"])
 @pytest.mark.parametrize(("rest", "then"), [("Sit", "Type"), ("Sit", "Eat"), ("Sit", "Watch"), ("Lie", "Sleep")])
-def test_nobody_sits_only_after_what_it_sat_for(rest, then):
+def test_nobody_sits_only_after_what_it_sat_for(rest, then, strength):
     tried = 0
     for record_id, program in programs():
         actions = [step.action for step in program.steps]
         if not {rest, then} <= {*actions} or actions.index(rest) > actions.index(then):
             continue
-        found = augment(program, home("birch"), 1, record_id, Options(4))
+        found = augment(program, home("birch"), 1, record_id, Options(4, strength=strength))
         for pair in found.pairs if isinstance(found, Augmented) else ():
             if pair.failure is None:
                 tried += 1

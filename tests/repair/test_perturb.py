@@ -14,7 +14,7 @@ from hearth.grounding.preconditions.checking import unmet
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.grounding.preconditions.infer import infer
 from hearth.repair.perturb import PERTURBATIONS, Case, Chances, applied, candidates, distinct
-from hearth.repair.variants import CHANCES_FILE, default_chances, load_chances
+from hearth.repair.strengths import STRENGTHS_FILE, load_strengths, strength
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.literals import CHARACTER
 from hearth.schemas.rng import rng
@@ -44,6 +44,7 @@ GET_UP = "[StandUp]\n[Walk] <bedroom> (1)\n[SwitchOff] <light> (1)"
 WAKE_UP = "[WakeUp]\n[StandUp]"
 UNPLUG = "[Walk] <television> (1)\n[PlugIn] <television> (1)\n[SwitchOn] <television> (1)"
 READ = "[Read] <book> (1)"
+MILD = strength("mild").chances
 
 KINDS = {
     "sitting": GET_UP,
@@ -78,7 +79,7 @@ def only(kind: str) -> Chances:
 
 
 def test_every_kind_is_tried_here_and_has_a_probability():
-    assert set(KINDS) == set(PERTURBATIONS) == set(default_chances().kinds)
+    assert set(KINDS) == set(PERTURBATIONS) == set(MILD.kinds)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -113,17 +114,17 @@ def test_a_thing_that_is_elsewhere_keeps_no_other_place(maple):
 
 def test_no_two_draws_are_the_same_and_none_is_the_original(maple):
     case = case_of(TELEVISION, maple)
-    found = list(distinct(case, default_chances(), rng(5), 40))
+    found = list(distinct(case, MILD, rng(5), 40))
     facts = [frozenset(c.literal for c in one.conditions) for one in found]
     assert len(set(facts)) == len(facts) > 10
     assert frozenset(c.literal for c in case.conditions) not in facts
-    assert found == list(distinct(case, default_chances(), rng(5), 40))
+    assert found == list(distinct(case, MILD, rng(5), 40))
 
 
 @pytest.mark.parametrize(("way", "most"), [("one", 1), ("two", 2), ("each", 3)])
 def test_as_many_at_once_as_asked_for(way, most, maple):
     case = case_of(TELEVISION, maple)
-    chances = replace(default_chances(), draws={way: 1.0}, most=3)
+    chances = replace(MILD, draws={way: 1.0}, most=3)
     sizes = Counter(len(one.perturbations) for one in distinct(case, chances, rng(2), 30))
     assert max(sizes) == most
 
@@ -151,8 +152,25 @@ def test_full_hands_leave_alone_what_is_held_already(maple):
 
 
 def test_the_thesis_own_perturbations_are_as_likely_as_there():
-    kinds = default_chances().kinds
+    kinds = MILD.kinds
     assert {kinds[k] for k in ("sitting", "lying", "at_reach", "plugged", "on", "open", "free")} == {0.7}
+
+
+def test_the_thesis_perturbs_every_condition_with_its_probability(maple):
+    thesis = strength("thesis").chances
+    assert thesis.kinds == dict.fromkeys(PERTURBATIONS, 0.7) and thesis.draws == {"each": 1}
+    case = case_of(TELEVISION, maple)
+    claims = {claim for one in candidates(case) for claim in one.claims()}
+    assert thesis.most > len(claims)
+    sizes = [len(one.perturbations) for one in distinct(case, thesis, rng(4), 40)]
+    mild = [len(one.perturbations) for one in distinct(case, MILD, rng(4), 40)]
+    assert sum(sizes) / len(sizes) > 1.3 * sum(mild) / len(mild)
+
+
+def test_an_unknown_strength_is_reported_with_the_known_ones():
+    with pytest.raises(HearthError, match="unknown strength `brutal`") as caught:
+        strength("brutal")
+    assert caught.value.diagnostics[0].suggestion == "strengths are mild, thesis"
 
 
 @pytest.mark.parametrize(
@@ -163,12 +181,14 @@ def test_the_thesis_own_perturbations_are_as_likely_as_there():
         ("each: 6", "eech: 6", "`eech` is none of the draws"),
         ("draws:", "drawn:", "`kinds` or `draws` is missing"),
         ("most: 6", "most: none", "`most` is not a count"),
+        ("clears: all", "clears: some", "`clears` is not one of enough, all, in `thesis`"),
+        ("says:", "said:", "`said` does not belong to a strength, in `mild`"),
     ],
 )
 def test_a_fault_in_the_probabilities_is_named(old, new, fault, tmp_path):
-    text = CHANCES_FILE.read_text()
+    text = STRENGTHS_FILE.read_text()
     assert old in text
     path = tmp_path / "perturbations.yaml"
     path.write_text(text.replace(old, new))
     with pytest.raises(HearthError, match=fault):
-        load_chances(path)
+        load_strengths(path)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import pytest
 from repair_worlds import ROOMS, small_world, steps_of
 
-from hearth.repair.trim import resume, trim
+from hearth.repair.trim import INSERTED, STAYING, resume, trim
 from hearth.schemas.syntax import print_step
 from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT
 
 
-def trimmed(world: str, program: str, inserted: set[int], goal=()) -> list[str]:
-    """The program's steps after trimming; those of these numbers, from 0, are repairs."""
+def trimmed(world: str, program: str, inserted: set[int], goal=(), of=INSERTED) -> list[str]:
+    """The program's steps after trimming; those of these numbers, from 0, are repairs, of this source."""
     repaired = steps_of(program)
     original = repaired.with_steps(s for n, s in enumerate(repaired.steps) if n not in inserted)
     execution = run(small_world(ROOMS + world), repaired)
     assert execution.failure is None
     kept = iter(range(len(original.steps)))
-    sources = tuple(-1 if number in inserted else next(kept) for number in range(len(repaired.steps)))
+    sources = tuple(of if number in inserted else next(kept) for number in range(len(repaired.steps)))
     left, of_original = trim(original, execution, sources, goal, DEFAULT)
     assert [original.steps[n] for n in of_original if n >= 0] == [
         step for step, n in zip(left.program.steps, of_original, strict=True) if n >= 0
@@ -52,6 +53,14 @@ def test_hands_end_up_as_they_were_left():
     program = "[Walk] <cat> (1.20)\n[Grab] <cat> (1.20)\n[Release] <cat> (1.20)"
     assert trimmed(world, program, {1, 2}) == ["[Walk] <cat> (1.20)"]
     assert trimmed(world, program, {2}) == program.split("\n")
+
+
+@pytest.mark.parametrize("inserted", [{1}, {1, 2}, {2, 3}, {1, 2, 3}])
+def test_a_repair_that_stays_is_not_removed(inserted):
+    world = "20 cat inside 1"
+    program = "[Walk] <cat> (1.20)\n[Find] <cat> (1.20)\n[Grab] <cat> (1.20)\n[Release] <cat> (1.20)"
+    assert trimmed(world, program, inserted, of=STAYING) == program.split("\n")
+    assert len(trimmed(world, program, inserted)) < 4
 
 
 def test_running_on_gives_what_running_all_gives():

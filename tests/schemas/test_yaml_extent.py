@@ -9,7 +9,7 @@ import yaml
 
 from hearth.analysis import synthesis
 from hearth.homes import library
-from hearth.repair.variants import load_chances
+from hearth.repair.strengths import load_strengths
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_extent import DEEPEST, LARGEST, MOST, too_much
@@ -35,7 +35,7 @@ def test_what_people_give_as_yaml_is_refused_before_it_is_built(tmp_path, knowle
     path.write_text(BOMBS[name])
     readers = (
         lambda: library.layout_of(path, knowledge),
-        lambda: load_chances(path),
+        lambda: load_strengths(path),
         lambda: synthesis.load(path, knowledge),
     )
     started = time.perf_counter()
