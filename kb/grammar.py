@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from hearth.kb import modifiers
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
 from hearth.schemas.diagnostics import Diagnostic
@@ -31,7 +32,7 @@ def check(
 
     Returns:
         The program with canonical names (faulty steps unchanged) and the faults: UNKNOWN_ACTION, WRONG_ARITY,
-        UNKNOWN_OBJECT, in the order of the steps.
+        UNKNOWN_OBJECT, and SYNTAX of modifiers, in the order of the steps.
     """
     checker = _Checker(knowledge, file, source)
     steps: list[Step] = []
@@ -86,9 +87,17 @@ class _Checker:
             faults.append(self._fault(Code.WRONG_ARITY, message, line, remedy, self._arguments(step, line)))
         if faults:
             return step, faults
-        if action.name == step.action and tuple(objects) == step.objects:
-            return step, []
-        return replace(step, action=action.name, objects=tuple(objects)), []
+        done = step
+        if action.name != step.action or tuple(objects) != step.objects:
+            done = replace(step, action=action.name, objects=tuple(objects))
+        return done, list(self._modifiers(done, line)) if step.modifiers else []
+
+    def _modifiers(self, step: Step, line: int) -> Iterator[Diagnostic]:
+        text = self._text(line)
+        for words, message, remedy in modifiers.faults(step, self.knowledge):
+            start = text.rfind(words) if message.startswith("a second") else text.find(words)
+            span = (start, start + len(words), words) if start >= 0 else (0, 0, words)
+            yield self._fault(Code.SYNTAX, message, line, remedy, span)
 
     def affordances(self, step: Step, line: int) -> Iterator[Diagnostic]:
         action = self.knowledge.actions[step.action]

@@ -3,7 +3,8 @@
     <char0> [PutBack] <cup> (1.41) <table> (2) {at=3,2 hand=left} | <char1> [StandUp]
 
 An agent is named only where there are several; an instance is `(1)` as collected or `(1.41)` once bound to node 41;
-modifiers are optional; `|` parts what several agents do in one tick. Names are checked by `hearth.kb.grammar`.
+modifiers are optional; `|` parts what several agents do in one tick. Names and modifiers are checked by
+`hearth.kb.grammar`.
 Printing what was parsed gives canonical text back unchanged.
 """
 

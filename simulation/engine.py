@@ -7,6 +7,7 @@ from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.actions.metres import followed
+from hearth.simulation.actions.modified import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.rules import DEFAULT, Rules
@@ -77,8 +78,10 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
 
 
 def ready(world: World, program: Program) -> World:
-    """The world with its characters at places if a program moves them by metres."""
-    return world if MOVES.keys().isdisjoint([step.action for step in program.steps]) else placed(world)
+    """The world with its characters at places if a program moves them by metres or says where they stand."""
+    modifiers = {name for step in program.steps if step.modifiers for name, _ in step.modifiers}
+    still = MOVES.keys().isdisjoint([step.action for step in program.steps]) and PLACED.isdisjoint(modifiers)
+    return world if still else placed(world)
 
 
 def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT) -> World | Failure:
@@ -107,11 +110,15 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
     except KeyError:
         return _unbound(world, instruction)
     result = action.rule(world, number, o, s, rules)
+    if placed_there and isinstance(result, World):
+        result = followed(result, number, instruction.action, o)
+    if instruction.modifiers and isinstance(result, World):
+        result = modified(world, result, instruction, o, s)
     if isinstance(result, Failure):
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
         rest = (result.objects, result.names, result.expected, result.actual)
         return Failure(result.code, result.tick, number, instruction.action, *rest)
-    return followed(result, number, instruction.action, o) if placed_there else result
+    return result
 
 
 def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:

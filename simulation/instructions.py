@@ -24,7 +24,7 @@ def instruction_of(text: str, home: Home) -> Step:
         raise HearthError(found)
     if len(found) != 1:
         raise HearthError.of(Code.SYNTAX, f"{len(found)} instructions where one is expected")
-    program, faults = check(Program(steps=found), home.knowledge)
+    program, faults = check(Program(steps=found, lines=(1,)), home.knowledge, source=[text])
     if faults:
         raise HearthError(faults)
     (step,) = program.steps

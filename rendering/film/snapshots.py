@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
@@ -228,7 +229,8 @@ def advanced(
         after.append(moved(actor, graph, known, floor, by_agent.get(number), others))
     after = list(standing(after, world))
     near = {actor.node.id: actor.position for actor in after}
-    settled = places.settled(graph, near)
+    put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
+    settled = places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
 from hearth.homes.forms import form
+from hearth.kb.modifiers import value
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import recipe_of
 from hearth.rendering.people.figure import BODIES, Body, Figure
@@ -314,6 +315,8 @@ def _target(step: Step | None, which: str, places: Places, actor: Actor) -> Poin
 
 def _acting_side(step: Step | None, graph: EnvironmentGraph, me: int, held: set[str]) -> str:
     """The acting hand: the one that holds the object, else a free one, preferring the right."""
+    if step is not None and (asked := value(step, "hand")):
+        return asked
     for edge in graph.edges:
         if (
             step

@@ -6,6 +6,7 @@ from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 from typing import NamedTuple
 
+from hearth.kb.modifiers import SPEEDS, value
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor, carried, posed, reach_for
 from hearth.rendering.people.figure import Figure
@@ -217,7 +218,10 @@ def track(one: Actor, other: Actor, before: Keyframe, step: Step | None, ways: W
     if here != other:
         segments.append(_blended(here, other, BACK))
     segments.append(_motionless(other, HOLD))
-    return Track(tuple(segments), change)
+    rate = SPEEDS.get(value(step, "speed"), 1.0) if step is not None else 1.0
+    if rate != 1.0:
+        segments = [segment._replace(seconds=segment.seconds / rate) for segment in segments]
+    return Track(tuple(segments), change / rate)
 
 
 def _motionless(actor: Actor, seconds: float) -> Segment:

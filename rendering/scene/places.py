@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, radians, sin
+from types import MappingProxyType
 from typing import NamedTuple
 
 from hearth.homes.forms import form
@@ -13,7 +14,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Region
 from hearth.rendering.models.looks import recipe_of
 from hearth.rendering.scene.prepared import LIQUIDS, liquid, local_size
-from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point
+from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
@@ -21,6 +22,9 @@ HANDS = {"HOLDS_RH": "right", "HOLDS_LH": "left"}
 BUILDING = frozenset({"floor", "wall", "ceiling", "doorjamb", "window"})
 STEP = 0.04
 """Metres between candidate positions."""
+
+
+NOWHERE: Mapping[int, Spot] = MappingProxyType({})
 
 
 class Location(NamedTuple):
@@ -69,12 +73,15 @@ class Places:
         poses = {node.id: Pose(node.box, node.yaw) for node in home.nodes if node.box}
         return cls(home, locations_of(home), poses, knowledge)
 
-    def settled(self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None) -> Places:
+    def settled(
+        self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None, at: Mapping[int, Spot] = NOWHERE
+    ) -> Places:
         """The places after the graph changed: things with an unchanged location stay, others get a free position.
 
         Args:
             graph: of the next keyframe.
             near: character id -> its position; things are put down on that side.
+            at: where things are put down, by id.
         """
         locations = locations_of(graph)
         nodes = {node.id: node for node in graph.nodes}
@@ -86,6 +93,9 @@ class Places:
                     poses[node_id] = self.poses[node_id]
                 continue
             pose = self._pose(node, location, nodes, poses, tuple((near or {}).values()))
+            if pose is not None and node_id in at and location is not None and location.kind in ("on", "inside"):
+                (x, z), (_, y, _) = at[node_id], pose.box.center
+                pose = Pose(Box((x, y, z), pose.box.size), pose.yaw)
             if pose is not None:
                 poses[node_id] = pose
         return Places(graph, locations, poses, self.knowledge)

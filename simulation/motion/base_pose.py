@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from hearth.kb.modifiers import value
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Step
 from hearth.simulation.engine import Execution, act
@@ -69,6 +70,8 @@ def _each(here: World, steps: tuple[Step, ...], rules: Rules) -> Iterator[HandAn
 def hand_of(step: Step, before: World, after: World) -> str | None:
     """The hand of a step: the one that takes or gives, else a free one, else the right."""
     old, new = before.agents[step.agent], after.agents[step.agent]
+    if asked := value(step, "hand"):
+        return asked
     if old.right != new.right:
         return RIGHT
     if old.left != new.left:

@@ -180,6 +180,11 @@ def _front(box: Box, yaw: float) -> Spot:
     return (box.center[0] + math.sin(angle) * out, box.center[2] + math.cos(angle) * out)
 
 
+def distance_to(box: Box, point: Spot) -> float:
+    """Metres over the floor from a point to a box's outline; 0 within it."""
+    return float(gaps(np.asarray([point]), box)[0])
+
+
 _WAYS: dict[bytes, Ways] = {}
 
 

@@ -170,3 +170,13 @@ def test_run_prints_where_the_four_moves_lead(tmp_path):
     before, turned = found[0].split(" m, facing "), found[1].split(" m, facing ")
     assert before[0] == turned[0] and (int(before[1].split()[0]) - int(turned[1].split()[0])) % 360 == 30
     assert found[2].split(" m,")[0] != found[1].split(" m,")[0]
+
+
+def test_run_takes_with_the_hand_that_is_said(tmp_path):
+    file = tmp_path / "left.txt"
+    file.write_text("Take\nMilk.\n\n\n[Walk] <fridge> (1)\n[Open] <fridge> (1)\n[Grab] <milk> (1) {hand=left}\n")
+    result = call("run", file, "--home", "maple")
+    assert result.exit_code == 0 and "HOLDS_LH milk" in result.output, result.output
+    file.write_text(file.read_text().replace("left", "third"))
+    refused = call("run", file, "--home", "maple", "--strict")
+    assert refused.exit_code != 0 and "`third` is not a value of `hand`" in refused.output and ":7:20" in refused.output

@@ -171,3 +171,50 @@ def test_the_page_has_a_row_for_each_step(trajectory):
     assert len(re.findall("<li ", text)) == len(steps)
     assert f'data-start="{steps[3]["start"]}"' in text
     assert "http" not in text
+
+
+FETCH = "[Walk] <cup> (1){}\n[Grab] <cup> (1){}\n[Walk] <table> (1){}\n[PutBack] <cup> (1) <table> (1){}\n"
+
+
+def filmed(steps):
+    program, faults = parse_program(f"Fetch\nIt.\n\n\n{steps}")
+    assert not faults
+    bound = program.bound({("cup", 1): CUP, ("table", 1): TABLE})
+    done = run(World.start(Home.from_graph(HOME, "", default())), bound)
+    assert done.executable, done.failure
+    return done, trajectory_of(done, HOME, default())
+
+
+def test_the_times_of_a_film_differ_by_the_speed():
+    taken = {}
+    for speed in ("slow", "normal", "fast"):
+        _, trajectory = filmed(FETCH.format(*[f" {{speed={speed}}}"] * 4))
+        taken[speed] = [span.end - span.start for span in spans(trajectory)[1:]]
+    _, plain = filmed(FETCH.format("", "", "", ""))
+    assert taken["normal"] == pytest.approx([span.end - span.start for span in spans(plain)[1:]])
+    assert taken["slow"] == pytest.approx([2 * seconds for seconds in taken["normal"]])
+    assert taken["fast"] == pytest.approx([seconds / 2 for seconds in taken["normal"]])
+
+
+def test_the_hand_that_is_said_reaches_and_holds():
+    _, trajectory = filmed(FETCH.format("", " {hand=left}", "", ""))
+    holding = trajectory.keyframes[2].actors[0].body_pose
+    assert holding.left is not None and holding.right is None
+    reaching = [frame.actors[0].body_pose for frame in frames(trajectory, 12.0) if frame.tick == 2]
+    assert all(pose.right is None for pose in reaching)
+
+
+def test_a_thing_stands_where_it_was_put():
+    _, trajectory = filmed(FETCH.format("", "", "", " {at=0.4,-0.2}"))
+    box = trajectory.keyframes[-1].places.poses[CUP].box
+    assert (box.center[0], box.center[2]) == (0.4, -0.2) and box.center[1] == pytest.approx(0.79, abs=0.01)
+
+
+def test_a_film_shows_characters_where_the_world_has_them():
+    moves = "[Turnleft]\n[Walktowards] <cup> (1)\n[Walktowards] <cup> (1)\n[Walk] <cup> (1) {facing=200}\n"
+    done, trajectory = filmed(moves)
+    for keyframe, world in zip(trajectory.keyframes, done.worlds, strict=True):
+        pose, actor = world.agents[0].pose, keyframe.actors[0]
+        assert (actor.spot, actor.yaw) == (pose.point, pose.yaw)
+    last = list(frames(trajectory, 12.0))[-1].actors[0]
+    assert (last.spot, last.yaw) == (done.final.agents[0].pose.point, 200.0)
