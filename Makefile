@@ -30,7 +30,7 @@ tree = $(shell find $(1) -type f \( -name '*.py' -o -name '*.yaml' -o -name '*.c
 manifest = $(OUT)/$(1)/manifest.json
 
 # Prerequisites of the stages. There may be too many: a stage finds by digests whether anything changed.
-SHARED   := version.py $(call tree,schemas storage homes simulation grounding repair datasets analysis) \
+SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simulation grounding repair datasets analysis) \
             $(call tree,pipelines/engine pipelines/crowd pipelines/checks)
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)

@@ -42,7 +42,7 @@ def form(class_name: str, knowledge: Knowledge) -> Form | None:
 
 @lru_cache(maxsize=1)
 def _table() -> dict[str, Form]:
-    text = (files("hearth.data_raw") / "homes" / "forms.csv").read_text(encoding="utf-8")
+    text = (files("hearth.data_raw") / "forms.csv").read_text(encoding="utf-8")
     return {row["class"]: _form(row) for row in csv.DictReader(text.splitlines())}
 
 
