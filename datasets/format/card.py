@@ -29,7 +29,7 @@ def card(folder: Path, strength: str) -> Iterator[str]:
     counts = {table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES}
     yield from _header(folder)
     yield from ("# Hearth", "", SUMMARY, "", f"Dataset version {VERSION}, action set {ACTION_SET}.", "")
-    yield from ("## Use", "", "```python", "import hearth", 'ds = hearth.load(".")', *_USES, "```", "")
+    yield from ("## Use", "", "```python", "import hearth", 'ds = hearth.load(".")', *_USES, "```", "", _CROISSANT, "")
     yield from _datasheet(folder, strength)
     yield from _tables(counts)
     yield from ("## Where records went", "", *_ledger(folder), "")
@@ -44,6 +44,11 @@ _USES = (
     "from datasets import load_dataset",
     'load_dataset(".")["train"]               # programs by split, without Hearth',
     'load_dataset(".", "executions")["rows"]  # any other table',
+)
+
+_CROISSANT = (
+    "`croissant.json` describes all tables with all nested fields; of a step's objects, `mlcroissant` 1.1 reads only"
+    " the first, `load_dataset` and DuckDB all."
 )
 
 _LICENCE = ("MIT, as is every source that Hearth reads by default; records keep the licence of the source they name.",)

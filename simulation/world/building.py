@@ -222,7 +222,7 @@ def _by_matrix(columns: Columns | EdgeColumns, nodes: Nodes) -> tuple[list[Rows]
     cells = np.zeros(np.count_nonzero(has) * width * 8, bool)
     cells[((np.cumsum(has) - 1) * (width * 8))[source] + np.concatenate((b, a))] = True
     rows = [0] * (11 * n)
-    # As texts of so many bytes they lack the zeros at their ends, which are the highest of a number.
+    # As texts of `width` bytes they lack the zeros at their ends, which are the highest of a number.
     packed: list[bytes] = np.packbits(cells, bitorder="little").view(f"S{width}").tolist()
     for i, row in zip(np.flatnonzero(has).tolist(), map(_FROM_BYTES, packed), strict=True):
         rows[i] = row

@@ -122,11 +122,18 @@ def test_mlcroissant_validates_it_and_reads_programs_with_their_steps(parted):
     croissant = pytest.importorskip("mlcroissant", reason="mlcroissant is not installed")
     dataset, ds = croissant.Dataset(parted / "croissant.json"), hearth.load(parted)
     assert not dataset.metadata.ctx.issues.errors and not dataset.metadata.ctx.issues.warnings
-    found = {row["programs/program_id"].decode(): row["programs/steps"] for row in dataset.records("programs")}
+    found = {row["programs/program_id"].decode(): row for row in dataset.records("programs")}
     assert set(found) == set(ds)
-    for name, steps in found.items():
-        actions = [step["programs/steps/action"].decode() for step in steps]
-        assert actions == [step["action"] for step in ds[name].row["steps"]]
+    for name, row in found.items():
+        steps = ds[name].row["steps"]
+        assert [step["programs/steps/action"].decode() for step in row["programs/steps"]] == [
+            step["action"] for step in steps
+        ]
+        # As the card says: the first object of each step only.
+        first = [each["programs/steps/objects/name"] for each in row["programs/steps/objects"]]
+        assert [name and name.decode() for name in first] == [
+            step["objects"][0]["name"] if step["objects"] else None for step in steps
+        ]
     for table in [name for name in TABLES if name != "programs"]:  # it reads nothing a second time
         assert [(sum(1 for _ in dataset.records(table)),)] == ds.rows(f"SELECT count(*) FROM {table}")[1], table
 
