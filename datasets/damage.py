@@ -20,7 +20,12 @@ def reading(place: Path | str) -> Iterator[None]:
     except HearthError:
         raise
     except Exception as error:
-        said = str(error).split("\n", 1)[0]
-        message = f"its tables cannot be read: {type(error).__name__} {said}"
-        remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
-        raise HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy) from error
+        raise unreadable(error, place) from error
+
+
+def unreadable(error: Exception, place: Path | str) -> HearthError:
+    """What is said of a dataset whose tables cannot be read."""
+    said = str(error).split("\n", 1)[0]
+    message = f"its tables cannot be read: {type(error).__name__} {said}"
+    remedy = "`verify` names the files that are damaged; fetch or publish the dataset again"
+    return HearthError.of(Code.DAMAGED_FILE, message, file=str(place), suggestion=remedy)

@@ -8,7 +8,7 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.datasets.damage import reading
+from hearth.datasets.damage import reading, unreadable
 from hearth.datasets.format.catalog import absent_tables, attach, describe, without_zones
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.questions import check_question
@@ -155,7 +155,7 @@ class Dataset:
                 _ = self._described
             return self.connection.sql(query, params=parameters or None)
         except duckdb.Error as error:
-            raise _refused(error) from error
+            raise _refused(error, self.folder) from error
 
     @explained
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
@@ -168,7 +168,7 @@ class Dataset:
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
                 return list(relation.columns), without_zones(found).fetchall()
             except duckdb.Error as error:
-                raise _refused(error) from error
+                raise _refused(error, self.folder) from error
 
         return steady(self.folder, ask)
 
@@ -422,6 +422,8 @@ class _Home(NamedTuple):
         return cls(EnvironmentGraph(nodes, tuple(edges)), working)
 
 
-def _refused(error: Exception) -> HearthError:
+def _refused(error: Exception, folder: Path) -> HearthError:
     message = str(error).split("\n\n", 1)[0]
+    if "arquet" in message and str(folder) in message and type(error).__name__ == "InvalidInputException":
+        return unreadable(error, folder)
     return HearthError.of(Code.SYNTAX, message)

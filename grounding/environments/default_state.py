@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 
 from hearth.grounding.environments.thinning import superfluous, without
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge
 from hearth.schemas.vocabulary import STATES
@@ -150,15 +151,25 @@ def _weighted(spots: Iterable[tuple[tuple[str, int, str], int]]) -> Spots:
 
 
 def _in_default_state(home: Home) -> Home:
-    """The home with default states, its (first) character standing in the room it is in."""
+    """The home with default states, its (first) character standing in the room it is in, if it has rooms.
+
+    Raises:
+        HearthError: BAD_GRAPH: nobody is in it.
+    """
     states: dict[int, tuple[str, ...]] = {}
     for i, node_id in enumerate(home.ids):
         wanted = _default_states(home, i)
         if wanted != states_of(i, home.states):
             states[node_id] = wanted
-    agent = World.start(home).agents[0]
+    start = World.start(home)
+    if not start.agents:
+        remedy = "`home edit HOME --add character:inside:ROOM` adds one"
+        raise HearthError.of(Code.BAD_GRAPH, f"nobody is in the home `{home.name}`", suggestion=remedy)
+    if not home.rooms:
+        return extended(home, (), (), (), states)
+    (agent, *_) = start.agents
     me = home.ids[agent.index]
-    removed = [edge for edge in World.start(home).edges() if me in (edge.source, edge.target)]
+    removed = [edge for edge in start.edges() if me in (edge.source, edge.target)]
     room = next(indices(agent.inside & home.rooms), next(indices(home.rooms)))
     return extended(home, (), [Edge(me, "INSIDE", home.ids[room])], removed, states)
 

@@ -235,7 +235,7 @@ def _stops_the_stage(error: BaseException) -> bool:
     return isinstance(error, OSError) and error.errno in _FULL
 
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 
 
 @dataclass(slots=True)

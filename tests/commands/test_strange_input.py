@@ -17,8 +17,10 @@ from typer.testing import CliRunner
 
 import hearth
 from hearth.cli import STOPPED, TERMINATED, app
+from hearth.datasets.dataset import Dataset
 from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
 from hearth.schemas.numbers import number_of, stored
 
@@ -29,7 +31,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def run():
     def call(*arguments, status=0):
         result = CliRunner().invoke(app, list(map(str, arguments)))
-        assert "A fault of Hearth's" not in result.output, result.output
+        assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
         assert result.exit_code == status, result.output
         return result.output
 
@@ -145,11 +147,18 @@ def test_odd_graphs_are_read_or_refused(tmp_path, name):
     path, program = tmp_path / "scene.json", tmp_path / "p.txt"
     path.write_text(json.dumps(ODD_GRAPHS[name]))
     program.write_text("Drink\nTea.\n\n\n[Walk] <kitchen> (1)\n[Walk] <cup> (1)\n[Grab] <cup> (1)\n")
-    for command in (("home", "lint", path), ("home", "show", path), ("run", program, "--home", path),
+    for command in (("home", "lint", path), ("home", "show", path), ("run", program, "--graph", path),
                     ("home", "edit", path, "--add", "cup:on:1"), ("home", "stats", path)):  # fmt: skip
         result = CliRunner().invoke(app, list(map(str, command)))
-        assert "A fault of Hearth's" not in result.output and "Traceback" not in result.output
+        assert result.exception is None or isinstance(result.exception, HearthError | SystemExit), result.exception
         assert result.exit_code in (0, 1, 2) and "\x1b" not in result.output
+
+
+def test_a_graph_in_which_nobody_is_says_so(run, tmp_path):
+    (tmp_path / "room.json").write_text(json.dumps(ODD_GRAPHS["only a room"]))
+    (tmp_path / "p.txt").write_text("Go\nThere.\n\n\n[Walk] <kitchen> (1)\n")
+    result = CliRunner().invoke(app, ["run", str(tmp_path / "p.txt"), "--graph", str(tmp_path / "room.json")])
+    assert isinstance(result.exception, HearthError) and "nobody is in the home" in str(result.exception)
 
 
 @pytest.mark.parametrize("odd", ["\u2028", "\u2029", "\f", "\v", "\x1c", "\x85"])
@@ -266,3 +275,13 @@ def test_a_build_that_is_asked_to_end_says_what_to_do(tmp_path, number, status):
     _, err = build.communicate(timeout=60)
     assert build.returncode == status
     assert "the same command" in err and "Traceback" not in err
+
+
+def test_a_question_to_a_damaged_table_names_the_damage(copy):
+    (copy / "programs/part-00000.train.parquet").write_bytes(b"x")
+    with pytest.raises(HearthError) as error:
+        Dataset.open(copy).rows("SELECT count(*) FROM programs")
+    assert error.value.diagnostics[0].code is Code.DAMAGED_FILE
+    with pytest.raises(HearthError) as error:
+        Dataset.open(copy).rows("SELECT nothing FROM homes")
+    assert error.value.diagnostics[0].code is Code.SYNTAX
