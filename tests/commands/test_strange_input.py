@@ -157,8 +157,8 @@ def test_odd_graphs_are_read_or_refused(tmp_path, name):
 def test_a_graph_in_which_nobody_is_says_so(run, tmp_path):
     (tmp_path / "room.json").write_text(json.dumps(ODD_GRAPHS["only a room"]))
     (tmp_path / "p.txt").write_text("Go\nThere.\n\n\n[Walk] <kitchen> (1)\n")
-    result = CliRunner().invoke(app, ["run", str(tmp_path / "p.txt"), "--graph", str(tmp_path / "room.json")])
-    assert isinstance(result.exception, HearthError) and "nobody is in the home" in str(result.exception)
+    printed = run("run", tmp_path / "p.txt", "--graph", tmp_path / "room.json", status=1)
+    assert "error[BAD_GRAPH]: nobody is in the home `room`" in printed
 
 
 @pytest.mark.parametrize("odd", ["\u2028", "\u2029", "\f", "\v", "\x1c", "\x85"])
