@@ -1,5 +1,6 @@
 """The catalog: views and macros over a dataset's files, as a DuckDB file and as SQL."""
 
+import errno
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cache
@@ -99,16 +100,24 @@ def write_catalog(folder: Path) -> None:
 
 
 def make_catalog(path: Path, folder: Path, sql: str) -> None:
-    """Make the catalog of a folder's tables as a DuckDB file, by `statements` of this version or of an earlier one."""
+    """Make the catalog of a folder's tables as a DuckDB file, by `statements` of this version or of an earlier one.
+
+    Raises:
+        OSError: it cannot be written.
+    """
     import duckdb
 
     with TemporaryDirectory() as aside:
         # The search path is separated by commas, which a folder's name may contain; the link's name does not.
         link = Path(aside) / "dataset"
         link.symlink_to(folder.resolve())
-        with duckdb.connect(str(path)) as connection:
-            connection.execute(f"SET file_search_path = '{link}'")
-            connection.execute(sql)
+        try:
+            with duckdb.connect(str(path)) as connection:
+                connection.execute(f"SET file_search_path = '{link}'")
+                connection.execute(sql)
+                connection.execute("CHECKPOINT")  # closing does the same, but says nothing of a full disk
+        except (duckdb.IOException, duckdb.FatalException) as error:
+            raise OSError(errno.EIO, str(error).split("\n", 1)[0], str(path)) from error
 
 
 _CLOSED = (

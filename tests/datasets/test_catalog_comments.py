@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 
 import duckdb
 import pytest
@@ -95,3 +97,20 @@ def test_verify_sees_another_comment(folder, tmp_path):
         with duckdb.connect(str(copy / CATALOG)) as plain:
             plain.execute(statement)
         assert [fault.code for fault in verify(copy).faults] == ["DAMAGED_FILE"]
+
+
+def test_a_catalog_that_cannot_be_written_whole_is_an_error(made, tmp_path):
+    """DuckDB writes it when it closes, and then says nothing of a full disk."""
+    copy = shutil.copytree(made.out / "publish", tmp_path / "copy")
+    script = f"""if True:
+        import resource
+        from pathlib import Path
+        from hearth.datasets.format.catalog import write_catalog
+        resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+        try:
+            write_catalog(Path({str(copy)!r}))
+        except OSError as error:
+            print("refused")
+    """
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.stdout == "refused\n", done.stderr
