@@ -137,9 +137,7 @@ class Failure:
     def message(self) -> str:
         """One line for people."""
         what = ", ".join(f"{name} ({node})" for name, node in zip(self.names, self.objects, strict=False))
-        text = f"{self.code}: tick {self.tick + 1}, [{self.action}] {what}".rstrip()
-        if self.expected:
-            text += f"; expected {self.expected}"
-        if self.actual:
-            text += f", found {self.actual}"
-        return text
+        at = f"tick {self.tick + 1}, [{self.action}] {what}".rstrip() if self.action else what
+        facts = (("expected", self.expected), ("found", self.actual))
+        known = ", ".join(f"{word} {fact}" for word, fact in facts if fact)
+        return ": ".join(filter(None, (str(self.code), "; ".join(filter(None, (at, known))))))
