@@ -56,5 +56,8 @@ def rows(one, table):
     """The rows of a published table but for the line of a file that a record stood in."""
     found = pq.read_table(one.out / "publish" / table).to_pylist()
     if table == "programs":
-        found = [row | {"steps": [step | {"line": 0} for step in row["steps"]]} for row in found]
+        found = [
+            row | {"place": row["place"].rpartition(":")[0], "steps": [step | {"line": 0} for step in row["steps"]]}
+            for row in found
+        ]
     return sorted(json.dumps(row, sort_keys=True, default=str) for row in found)
