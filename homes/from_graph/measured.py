@@ -12,6 +12,12 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 
+NEAR = 0.7
+"""Metres from a wall within which a doorjamb belongs to a hole in it."""
+
+WallsAndJambs = tuple[list[Rect], list[Rect]]
+"""The floor under wall panels, and under doorjambs."""
+
 PANELS = frozenset({"wall", "floor", "ceiling"})
 
 
@@ -35,8 +41,9 @@ def measured(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Layout
     rooms = tuple(_room(node, names[node.id], boxes[node.id]) for node in graph.nodes if node.id in boxes)
     openings, doors = [], []
     walls = [footprint(n.box) for n in graph.nodes if n.class_name == "wall" and n.box and bottom(n.box) < HEAD]
+    jambs = [footprint(n.box) for n in graph.nodes if n.class_name == "doorjamb" and n.box]
     for node in graph.nodes:
-        found = list(_openings(node, between.get(node.id, []), names, boxes, walls))
+        found = list(_openings(node, between.get(node.id, []), names, boxes, (walls, jambs)))
         openings += found
         doors += [found[0].door] if found and found[0].door else []
     people = [inside.get(node.id, "") for node in graph.nodes if node.class_name == CHARACTER_CLASS]
@@ -61,13 +68,13 @@ def _thing(node: Node, room: str, box: Box, knowledge: Knowledge) -> Thing:
 
 
 def _openings(
-    node: Node, rooms: list[int], names: Mapping[int, str], boxes: Mapping[int, Box], walls: list[Rect]
+    node: Node, rooms: list[int], names: Mapping[int, str], boxes: Mapping[int, Box], about: WallsAndJambs
 ) -> Iterator[Opening]:
     """The hole of a doorway in the wall of each of its two rooms: where its jamb is, or beside its open leaf."""
     if node.class_name not in ("door", "doorjamb") or node.box is None or len(rooms) != 2:
         return
     joined = (boxes[rooms[0]], boxes[rooms[1]])
-    place = _hole(node.box) if node.class_name == "doorjamb" else _beside_leaf(node.box, *joined, walls)
+    place = _hole(node.box) if node.class_name == "doorjamb" else _beside_leaf(node.box, *joined, about)
     if place is None:
         return
     along, start, end, at = place
@@ -87,9 +94,9 @@ def _hole(jamb: Box) -> DoorHole:
     return (True, rect.x0, rect.x1, rect.center[1]) if along else (False, rect.z0, rect.z1, rect.center[0])
 
 
-def _beside_leaf(leaf: Box, one: Box, other: Box, walls: list[Rect]) -> DoorHole | None:
+def _beside_leaf(leaf: Box, one: Box, other: Box, about: WallsAndJambs) -> DoorHole | None:
     """An open leaf stands at right angles to its wall, at one end of the hole, which is as wide as it is long: the end
-    at which less of the wall stands in the hole.
+    at which less of the wall stands in the hole, or, where both ends are free of it, more of a doorjamb before it.
     """
     shared = shared_wall(footprint(one).inset(-WALL), footprint(other).inset(-WALL))
     if shared is None:
@@ -100,9 +107,11 @@ def _beside_leaf(leaf: Box, one: Box, other: Box, walls: list[Rect]) -> DoorHole
     middle = x if along else z
     at = {"north": rect.z1, "south": rect.z0, "east": rect.x1, "west": rect.x0}[wall]
 
-    def filled(start: float) -> float:
+    def filled(start: float) -> tuple[float, float]:
         hole = (start, at - WALL, start + width, at + WALL) if along else (at - WALL, start, at + WALL, start + width)
-        return sum(Rect(*hole).overlap(panel) for panel in walls)
+        walls, jambs = (sum(Rect(*hole).inset(more).overlap(each) for each in rects)
+                        for rects, more in zip(about, (0.0, -NEAR), strict=True))  # fmt: skip
+        return round(walls, 3), -jambs
 
     start = min((start for start in (middle, middle - width) if low - WALL <= start <= high + WALL - width),
                 key=filled, default=middle)  # fmt: skip
