@@ -16,6 +16,7 @@ from hearth.homes.from_graph.rooms import RoomPair, packed
 from hearth.homes.from_graph.shown_relations import missed, unmet
 from hearth.homes.geometry import Rect
 from hearth.homes.plans import shell
+from hearth.homes.plans.floor import REACH
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
 from hearth.homes.plans.shell import Thing, outer_walls, shared_wall, span
@@ -77,7 +78,9 @@ def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:
     factors = dict.fromkeys(parts.rooms, 0)
     for _ in ENLARGED:
         plan, built = _plan(parts, name, {room: ENLARGED[step] for room, step in factors.items()})
-        short = _short(Crowd(parts, built, {}), plan)
+        crowd = Crowd(parts, built, {})
+        short = _short(crowd, plan)
+        short += [room for room in _cut_off(crowd, plan, built) if room not in short]
         if all(factors[room] == len(ENLARGED) - 1 for room in short):
             break
         factors.update({room: min(factors[room] + 1, len(ENLARGED) - 1) for room in short})
@@ -87,6 +90,15 @@ def _large_enough(parts: Parts, name: str) -> tuple[Plan, shell.Shell]:
 def _short(crowd: Crowd, plan: Plan) -> list[int]:
     """Furnish all rooms; those where something of size found no place."""
     return [room for room, found in zip(crowd.parts.rooms, plan.rooms, strict=True) if furnish(crowd, room, found)]
+
+
+def _cut_off(crowd: Crowd, plan: Plan, built: shell.Shell) -> list[int]:
+    """The room of each piece of furniture that nobody gets near."""
+    numbers = {room.name: number for number, room in enumerate(plan.rooms)}
+    floor = Layout(plan, built, (*built.things, *crowd.things.values())).floor
+    standing = (thing for thing in crowd.things.values() if thing.mount == "floor")
+    rooms = ((numbers[each.room], each.box) for each in standing)
+    return [plan.rooms[number].line for number, box in rooms if floor.distance(box, number) > REACH]
 
 
 def _arranged(parts: Parts, plan: Plan, built: shell.Shell) -> tuple[Crowd, dict[int, Thing]]:
@@ -102,7 +114,7 @@ def _arranged(parts: Parts, plan: Plan, built: shell.Shell) -> tuple[Crowd, dict
         before: dict[int, Thing] = start
         for _ in range(GOES):
             crowd = Crowd(parts, built, before | fixed)
-            lost = 1000 * len(_short(crowd, plan))
+            lost = 1000 * len(_short(crowd, plan)) + 200 * len(_cut_off(crowd, plan, built))
             before = fixed | crowd.things
             before |= panels.assigned(parts, places, before)
             found.append((lost + missed(parts, before), crowd, before))

@@ -108,14 +108,18 @@ def _beside_leaf(leaf: Box, one: Box, other: Box, about: WallsAndJambs) -> DoorH
     at = {"north": rect.z1, "south": rect.z0, "east": rect.x1, "west": rect.x0}[wall]
 
     def filled(start: float) -> tuple[float, float]:
-        hole = (start, at - WALL, start + width, at + WALL) if along else (at - WALL, start, at + WALL, start + width)
-        walls, jambs = (sum(Rect(*hole).inset(more).overlap(each) for each in rects)
-                        for rects, more in zip(about, (0.0, -NEAR), strict=True))  # fmt: skip
+        walls, jambs = (sum(_across(at, start, start + width, far, along).overlap(each) for each in rects)
+                        for rects, far in zip(about, (WALL, NEAR), strict=True))  # fmt: skip
         return round(walls, 3), -jambs
 
     start = min((start for start in (middle, middle - width) if low - WALL <= start <= high + WALL - width),
                 key=filled, default=middle)  # fmt: skip
     return along, max(low, start), min(high, start + width), at
+
+
+def _across(at: float, start: float, end: float, far: float, along: bool) -> Rect:
+    """The floor within `far` of a part of a wall."""
+    return Rect(start, at - far, end, at + far) if along else Rect(at - far, start, at + far, end)
 
 
 def _nearest(room: Rect, at: float, along: bool) -> str:

@@ -74,19 +74,21 @@ def walked(world, node, limit=200):
     return worlds
 
 
-def assert_all_furniture_is_reached(home, within=REACH):
-    """From every cell of the main region a way leads to each piece, and ends within reach of it."""
+def assert_all_furniture_is_reached(home):
+    """The main region is in every room, and from all its cells a way leads to each piece and ends within reach of it."""
     ground = ground_of(home).ground
     main = ground.ways.main
-    for i in indices(home.furniture | home.by_class.get("fridge", 0) | home.by_class.get("dishwasher", 0)):
+    assert {ground.rooms[cell] for cell in np.flatnonzero(main)} >= set(indices(home.rooms))
+    appliances = home.by_class.get("fridge", 0) | home.by_class.get("dishwasher", 0)
+    for i in indices((home.furniture | appliances) & ~home.properties["GRABBABLE"]):
         if home.node(i).box is None:
             continue
         stands = ground.stands(i)
         assert stands and main[list(stands)].all(), (home, home.classes[i])
         distance = np.asarray(ground.ways.field(stands).distance)
         assert np.isfinite(distance[main]).all(), (home, home.classes[i])
-        if home.node(i).box.center[1] - home.node(i).box.size[1] / 2 < 0.1 and within is not None:
-            assert gaps(ground.ways.points[list(stands)], home.node(i).box).max() <= within, (home, home.classes[i])
+        if home.node(i).box.center[1] - home.node(i).box.size[1] / 2 < 0.1:
+            assert gaps(ground.ways.points[list(stands)], home.node(i).box).max() <= REACH, (home, home.classes[i])
 
 
 @pytest.mark.parametrize("name", OWN)
@@ -103,7 +105,7 @@ def test_all_furniture_of_drawn_homes_is_reached(seed):
 def test_no_furniture_of_the_real_homes_is_without_a_way_once_laid_out(real_data, number):
     made = library.graph_layout(real_data / f"homes/TrimmedTestScene{number}_graph.json", default())
     home = Home.from_graph(made.graph, "real", default())
-    assert_all_furniture_is_reached(home, within=None)
+    assert_all_furniture_is_reached(home)
     world = placed(World.start(home))
     for i in indices(home.furniture):
         after = act(world, step("Walktowards", home.ids[i]))
