@@ -36,11 +36,11 @@ MODIFIERS: dict[str, Modifier] = {
     "speed": Modifier("|".join(SPEEDS), "slow", (), "how fast its motions are in films"),
 }
 
-Fault = tuple[str, str, str]
+ModifierFault = tuple[str, str, str]
 """The words at fault, a message and a remedy."""
 
 
-def faults(step: Step, knowledge: Knowledge) -> Iterator[Fault]:
+def faults(step: Step, knowledge: Knowledge) -> Iterator[ModifierFault]:
     """What is wrong with a step's modifiers."""
     seen: set[str] = set()
     for name, value in step.modifiers:

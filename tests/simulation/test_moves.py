@@ -75,7 +75,7 @@ def walked(world, node, limit=200):
 
 
 def assert_all_furniture_is_reached(home):
-    """The main region is in every room, and from all its cells a way leads to each piece and ends within reach of it."""
+    """The main region is in every room; from all its cells a way leads to each piece and ends within reach of it."""
     ground = ground_of(home).ground
     main = ground.ways.main
     assert {ground.rooms[cell] for cell in np.flatnonzero(main)} >= set(indices(home.rooms))
