@@ -39,8 +39,11 @@ WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
+CORPUS := $(foreach part,crowd written,data_raw/$(part)/descriptions.csv data_raw/$(part)/programs.csv) \
+          data_raw/written/sketches.json
+
 # Each program in two homes drawn for it, so that all seven homes are used.
-FULL = $(HEARTH) build data_raw/crowd/descriptions.csv data_raw/crowd/programs.csv $(OUT)/full/synthetic.jsonl \
+FULL = $(HEARTH) build $(CORPUS) $(OUT)/full/synthetic.jsonl \
   --seed $(SEED) --workers $(JOBS) --tier full
 
 full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as usual and as in the thesis, in data_out/full and full-thesis
@@ -62,9 +65,9 @@ $(READY): requirements.lock pyproject.toml setup.sh
 $(STAGES): %: $(OUT)/%/manifest.json  ## bring one stage and those before it up to date
 
 # Progress goes to the terminal; the table of each command is only printed at the end.
-RUN = @$(HEARTH) $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
+RUN = @$(HEARTH) build --only $(notdir $(@D)) --out $(OUT) --workers $(JOBS)
 
-$(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd pipelines/readers) pipelines/ingest.py | $(READY)
+$(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd data_raw/written pipelines/readers) pipelines/ingest.py | $(READY)
 	$(RUN) >/dev/null
 
 $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)

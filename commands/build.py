@@ -65,7 +65,9 @@ def build(
       python cli.py build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       python cli.py build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
-    _run(context, only, _tiered(context, tier))
+    from hearth.pipelines.engine.tiers import STANDARD
+
+    _run(context, only, _tiered(context, tier or ("" if sources else STANDARD)))
 
 
 def _tiered(context: typer.Context, tier: str = "") -> dict[str, Any]:
@@ -228,10 +230,14 @@ def _run(context: typer.Context, only: str | None, chosen: Mapping[str, Any] | N
 
 
 def _built(only: str | None, chosen: Mapping[str, Any]) -> Funnel:
+    from hearth.pipelines.build import FIRST, corpus
     from hearth.pipelines.build import build as run
     from hearth.pipelines.engine.progress import JsonLines, for_terminal
+    from hearth.pipelines.engine.tiers import FIRST as FIRST_TIER
 
     paths = [str(path) for path in chosen.get("sources") or ()]
+    if not paths and chosen.get("tier") == FIRST_TIER:
+        paths = list(corpus(FIRST))
     progress = JsonLines() if chosen.get("log_json") else for_terminal()
     return run(paths, str(chosen["out"]), only=only, progress=progress, **_settings(chosen))
 

@@ -27,8 +27,11 @@ from hearth.storage.manifest import Manifest, read_manifest
 from hearth.storage.partitions import Counts
 from hearth.storage.stores import working
 
-CORPUS = ("crowd/descriptions.csv", "crowd/programs.csv")
-"""The embedded corpus, in `data_raw`."""
+FIRST = ("crowd/descriptions.csv", "crowd/programs.csv")
+"""The first part of the embedded corpus, in `data_raw`: with faults put into it."""
+
+CORPUS = (*FIRST, "written/descriptions.csv", "written/programs.csv", "written/sketches.json")
+"""The embedded corpus."""
 
 _SHOWN = 20
 
@@ -67,10 +70,10 @@ class Funnel:
         return sum(counts.rejected for name, counts in self.stages.items() if name != "augment")
 
 
-def corpus() -> tuple[str, ...]:
-    """Paths of the embedded corpus."""
+def corpus(names: Sequence[str] = CORPUS) -> tuple[str, ...]:
+    """Paths of the embedded corpus, or of its first part (`FIRST`)."""
     with as_file(files("hearth.data_raw")) as folder:
-        return tuple(str(folder / name) for name in CORPUS)
+        return tuple(str(folder / name) for name in names)
 
 
 def build(

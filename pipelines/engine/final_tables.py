@@ -170,12 +170,14 @@ def _activities(job: Job) -> _Activities:
 
 
 def _sketches(job: Job) -> Iterator[forms.SketchRow]:
-    """Inferred and inherited sketches; and those that people drew, whose program is the id of its description."""
+    """Inferred and inherited sketches; and those that were annotated, whose program is the id of its description."""
     yield from _rows(job, "augment", "sketches")
     for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
         if row["kind"] == "sketch":
             steps = row["text"].removesuffix("\n").split("\n")
-            yield {"program_id": row["description_id"], "origin": "people", "keep": row["keep"], "steps": steps}
+            name = str(row["description_id"])
+            origin = "written" if name.startswith("written:") else "people"
+            yield {"program_id": name, "origin": origin, "keep": row["keep"], "steps": steps}
 
 
 def strength_used(job: Job) -> str:

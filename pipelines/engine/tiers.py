@@ -7,13 +7,22 @@ from hearth.repair.strengths import MILD, strength
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
+STANDARD = "standard"
+"""The tier of the embedded corpus if nothing else is asked for."""
+
+FIRST = "first"
+"""The tier that builds the first part of the embedded corpus."""
+
 TIERS: dict[str, dict[str, int]] = {
+    STANDARD: {"homes_each": 2, "variants": 2, "target": 12_000},
+    FIRST: {},
     "mini": {"limit": 60, "homes_each": 1, "variants": 1, "pictures": 0, "videos": 0},
     "full": {"homes_each": 2, "variants": 6, "target": 30_000, "pictures": 0, "videos": 0},
     "frames": {"homes_each": 1, "variants": 1, "pictures": 200, "videos": 20},
 }
-"""`mini` is small, for trying things out; `full` has all programs, augmented to 30,000, as text and graphs; `frames`
-has every program about once, with many pictures and some films."""
+"""`standard` has the whole embedded corpus, each program in two homes, and takes minutes; `first` its first part in all
+homes, as versions before built it; `mini` is small, for trying things out; `full` has all programs, augmented to
+30,000, as text and graphs; `frames` has every program about once, with many pictures and some films."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:

@@ -111,6 +111,12 @@ def test_sketches(write):
     assert found[0]["description_id"] == "release:b/file1_2"
 
 
+def test_a_sketch_of_a_written_program(write):
+    given = {"title": "T", "descr": "D", "prog": ["walk bed"], "prefix": "written:P1"}
+    (row,) = read(write("s.json", json.dumps({"answer": [[1]], "represent": [1], "input": [given]})))
+    assert row["description_id"] == "written:P1"
+
+
 def test_a_scene_graph_alone(write):
     graph = {
         "nodes": [{"id": 1, "class_name": "bedroom", "category": "Rooms", "properties": [], "states": []}],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from hearth.pipelines.engine.settings import Settings
@@ -17,9 +19,9 @@ def test_a_tier_says_what_nobody_chose():
     assert tiered("", PLAIN, []) == PLAIN
 
 
-def test_only_frames_has_pictures_and_only_mini_is_cut():
+def test_mini_and_full_have_no_pictures_and_only_mini_is_cut():
     found = {name: tiered(name, PLAIN, []) for name in TIERS}
-    assert [name for name, options in found.items() if options["pictures"]] == ["frames"]
+    assert [name for name, options in found.items() if not options["pictures"]] == ["mini", "full"]
     assert [name for name, options in found.items() if options["limit"]] == ["mini"]
 
 
@@ -31,7 +33,7 @@ def test_every_option_is_one_of_a_build(name):
 def test_an_unknown_tier():
     with pytest.raises(HearthError, match="unknown tier `huge`") as caught:
         tiered("huge", PLAIN, [])
-    assert caught.value.diagnostics[0].suggestion == "tiers are mini, full, frames"
+    assert caught.value.diagnostics[0].suggestion == "tiers are standard, first, mini, full, frames"
 
 
 def test_the_command_takes_a_tier_and_what_was_chosen_goes_first(monkeypatch, tmp_path):
@@ -45,3 +47,35 @@ def test_the_command_takes_a_tier_and_what_was_chosen_goes_first(monkeypatch, tm
     done = CliRunner().invoke(cli.app, ["build", "--tier", "frames", "--videos", "2", "--out", str(tmp_path)])
     assert done.exit_code == 0
     assert (found["pictures"], found["videos"], found["homes_each"]) == (200, 2, 1)
+
+
+@pytest.mark.parametrize(
+    ("words", "tier"),
+    [((), "standard"), (("--tier", "first"), "first"), (("mine.csv",), ""), (("--tier", "mini"), "mini")],
+)
+def test_the_embedded_corpus_has_a_tier_of_its_own(monkeypatch, tmp_path, words, tier):
+    from typer.testing import CliRunner
+
+    from hearth import cli
+    from hearth.commands import build
+
+    asked = []
+    monkeypatch.setattr(build, "_tiered", lambda context, tier: asked.append(tier) or {})
+    monkeypatch.setattr(build, "_run", lambda context, only, chosen: None)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.csv").touch()
+    assert CliRunner().invoke(cli.app, ["build", *words, "--out", "out"]).exit_code == 0
+    assert asked == [tier]
+
+
+def test_the_first_part_is_what_earlier_versions_built(monkeypatch, tmp_path):
+    from hearth.commands import build
+    from hearth.pipelines import build as pipeline
+
+    given = []
+    monkeypatch.setattr(
+        pipeline, "build", lambda paths, out, **_: given.append([Path(path).parent.name for path in paths])
+    )
+    for tier in ("first", "standard"):
+        build._built(None, {"out": tmp_path, "tier": tier})
+    assert given == [["crowd", "crowd"], []]
