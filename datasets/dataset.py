@@ -238,7 +238,7 @@ class Dataset:
         A shorter run contributes its last graph. `tensors.Tensors` has the shapes.
 
         Raises:
-            HearthError: BAD_ARGUMENT, an id is unknown.
+            KeyError: an id is unknown.
 
         Examples:
             >>> tensors = hearth.load(folder).to_tensors(["text:milk.txt"])

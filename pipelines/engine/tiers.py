@@ -28,6 +28,8 @@ homes, as versions before built it; `mini` is small, for trying things out; `ful
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
     """The options with those of a tier and, where it has none, of their `strength`; what the user gave is kept.
 
+    Nobody asks for `standard`, so a strength goes before it.
+
     Args:
         tier: one of `TIERS`, or "" for none.
         options: the options without a tier.
@@ -39,5 +41,7 @@ def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict
     if tier and tier not in TIERS:
         suggestion = f"tiers are {', '.join(TIERS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"unknown tier `{tier}`", suggestion=suggestion)
-    implied = {**(strength(options.get("strength", MILD)).options or {}), **(TIERS[tier] if tier else {})}
+    of_strength = strength(options.get("strength", MILD)).options or {}
+    of_tier = TIERS[tier] if tier else {}
+    implied = {**of_tier, **of_strength} if tier == STANDARD else {**of_strength, **of_tier}
     return {**options, **{name: value for name, value in implied.items() if name not in given}}

@@ -7,7 +7,6 @@ import pytest
 
 import hearth
 from hearth.datasets.tensors import EDGE_TYPES
-from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.vocabulary import PROPERTIES, STATES
 
 MILK = "release:batch-1/file1_1"
@@ -62,7 +61,7 @@ def test_nothing_asked_and_nobody(ds):
     found = ds.to_tensors([])
     assert [array.shape for array in found[:3]] == [(0,), (0, len(STATES)), (0, len(PROPERTIES))]
     assert found.edge_index.shape == (2, 0)
-    with pytest.raises(HearthError, match="nobody"):
+    with pytest.raises(KeyError, match="nobody"):
         ds.to_tensors(["nobody"])
 
 

@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 from hearth.datasets.format.ids import current_id
-from hearth.pipelines.build import corpus
+from hearth.pipelines.build import FIRST, corpus
 from hearth.pipelines.engine.sources import labelled
 from hearth.pipelines.ingest import READERS, items
 from hearth.pipelines.readers import crowd
@@ -214,8 +214,12 @@ def test_an_answer_of_an_unknown_origin_is_refused_alone(write):
 def test_the_embedded_corpus_says_that_it_is_written():
     found = rows(read(*corpus()))
     assert len(found) > 800
-    assert {(row["origin"], row["worker"], row["platform"]) for row in found} == {("written", None, None)}
-    assert all(current_id(row["program_id"].replace("written:", "crowd:")) == row["program_id"] for row in found)
+    assert {(row["worker"], row["platform"]) for row in found} == {(None, None)}
+    assert {(row["kind"], row["origin"]) for row in found} == {
+        ("program", "written"), ("description", "written"), ("sketch", "sketches")
+    }  # fmt: skip
+    first = rows(read(*corpus(FIRST)))
+    assert all(current_id(row["program_id"].replace("written:", "crowd:")) == row["program_id"] for row in first)
 
 
 def test_records_of_the_embedded_corpus_as_version_0_1_had_them(write):
