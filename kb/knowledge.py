@@ -72,6 +72,11 @@ class Knowledge:
         """The action of that name or alias, in any case, with or without spaces; None when there is none."""
         return self._action_names.get(text) or self._action_names.get(key_of(text))
 
+    @cached_property
+    def arity(self) -> Mapping[str, int]:
+        """How many objects each action takes; asked by every step."""
+        return {name: action.arity for name, action in self.actions.items()}
+
     def affords(self, action: str, position: int, class_name: str) -> bool:
         """Whether the grammar lets a thing of that class be the argument at `position` (from 0) of the action.
 

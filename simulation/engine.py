@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 from hearth.schemas.change import Change
 from hearth.schemas.failures import Code, Failure
@@ -79,9 +80,14 @@ def final(world: World, program: Program, rules: Rules = DEFAULT) -> World | Fai
 
 def ready(world: World, program: Program) -> World:
     """The world with its characters at places if a program moves them by metres or says where they stand."""
-    modifiers = {name for step in program.steps if step.modifiers for name, _ in step.modifiers}
-    still = MOVES.keys().isdisjoint([step.action for step in program.steps]) and PLACED.isdisjoint(modifiers)
-    return world if still else placed(world)
+    steps = program.steps
+    if MOVES.keys().isdisjoint(map(_ACTION, steps)) and not any(map(_MODIFIERS, steps)):
+        return world
+    by_metres = any(step.action in MOVES or any(name in PLACED for name, _ in step.modifiers) for step in steps)
+    return placed(world) if by_metres else world
+
+
+_ACTION, _JOINS, _MODIFIERS = attrgetter("action"), attrgetter("joins"), attrgetter("modifiers")
 
 
 def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = DEFAULT) -> World | Failure:
@@ -92,38 +98,42 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
 
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
-    number = instruction.agent
+    number, name, objects = instruction.agent, instruction.action, instruction.objects
     if not 0 <= number < len(world.agents):
         return _refused(world, instruction)
     placed_there = world.agents[number].pose is not None
-    action = (EVERY if placed_there else ACTIONS).get(instruction.action)
+    action = (EVERY if placed_there else ACTIONS).get(name)
     if action is None:
         return _refused(world, instruction)
-    index = world.home.index
-    objects = instruction.objects
-    roles = world.home.knowledge.actions[instruction.action].roles
-    if len(objects) != len(roles):
-        return _miscounted(instruction, len(roles))
+    home = world.home
+    index, arity = home.index, home.knowledge.arity[name]
+    if len(objects) != arity:
+        return _miscounted(instruction, arity)
     try:
         o = index[objects[0].node] if objects else -1  # type: ignore[index]
         s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
     except KeyError:
         return _unbound(world, instruction)
     result = action.rule(world, number, o, s, rules)
-    if placed_there and isinstance(result, World):
-        result = followed(result, number, instruction.action, o)
-    if instruction.modifiers and isinstance(result, World):
-        result = modified(world, result, instruction, o, s)
+    if isinstance(result, World) and (placed_there or instruction.modifiers):
+        result = _in_place(world, result, instruction, o, s)
     if isinstance(result, Failure):
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
         rest = (result.objects, result.names, result.expected, result.actual)
-        return Failure(result.code, result.tick, number, instruction.action, *rest)
+        return Failure(result.code, result.tick, number, name, *rest)
     return result
+
+
+def _in_place(before: World, done: World, instruction: Step, o: int, s: int) -> World | Failure:
+    """The world after an instruction, with its character's place and what its modifiers ask for."""
+    if before.agents[instruction.agent].pose is not None:
+        done = followed(done, instruction.agent, instruction.action, o)
+    return modified(before, done, instruction, o, s) if instruction.modifiers else done
 
 
 def _ticks(program: Program) -> Iterable[Step | tuple[Step, ...]]:
     """Single steps as they are; only what happens together is grouped."""
-    if True not in [step.joins for step in program.steps]:
+    if not any(map(_JOINS, program.steps)):
         return program.steps
     return (steps[0] if len(steps) == 1 else steps for steps in program.ticks())
 
