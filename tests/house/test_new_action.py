@@ -70,7 +70,7 @@ def done(copy: Path, *command: str) -> str:
     place = copy.parent
     path = f"{place / 'bin'}:{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path, "PYTHONPATH": str(place / "site")}
-    for name in [name for name in environment if name.startswith("PYTEST_")]:
+    for name in [name for name in environment if name.startswith(("PYTEST_", "HEARTH_"))]:
         del environment[name]
     ran = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, f"{ran.stdout[-8000:]}\n{ran.stderr[-4000:]}"
