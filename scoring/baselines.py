@@ -106,8 +106,10 @@ def baselines(dataset: Dataset, split: str = "activities", seed: int = 0) -> lis
 _EXAMPLES = """
     SELECT min(s.execution_id), any_value(k.keep)
     FROM splits s JOIN programs p USING (program_id) JOIN executions e USING (execution_id)
-    LEFT JOIN (SELECT program_id, min(keep) AS keep FROM sketches WHERE keep IS NOT NULL GROUP BY 1) k
-        ON k.program_id = p.program_id
+    LEFT JOIN (
+        SELECT program_id, coalesce(min(keep) FILTER (origin IN ('written', 'people')), min(keep)) AS keep
+        FROM sketches WHERE keep IS NOT NULL GROUP BY 1
+    ) k ON k.program_id = p.program_id
     WHERE s.split = $split AND starts_with(s.part, $part) AND e.executable AND {where} GROUP BY {group}
 """
 

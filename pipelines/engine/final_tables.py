@@ -162,20 +162,26 @@ def _activities(job: Job) -> _Activities:
     for row in _rows(job, "ingest", columns=_WORDS):
         if row["kind"] in ("program", "description"):
             found.describe(row)
-    for path in sorted((job.folder / "programs").glob("part-*.parquet")):
-        for row in read_rows(path, ["activity_id", "title", "parent_id", "description_id"]):
-            found.count(row)
+    for row in _programs(job, ["activity_id", "title", "parent_id", "description_id"]):
+        found.count(row)
     found.gather()
     return found
 
 
+def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
+    """The programs that are published."""
+    for path in sorted((job.folder / "programs").glob("part-*.parquet")):
+        yield from read_rows(path, columns)
+
+
 def _sketches(job: Job) -> Iterator[forms.SketchRow]:
-    """Inferred and inherited sketches; and those that were annotated, whose program is the id of its description."""
+    """Inferred and inherited sketches; and annotated ones of published programs: their description's id names it."""
     yield from _rows(job, "augment", "sketches")
+    published = {row["program_id"] for row in _programs(job, ["program_id"])}
     for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
-        if row["kind"] == "sketch":
+        name = str(row["description_id"])
+        if row["kind"] == "sketch" and name in published:
             steps = row["text"].removesuffix("\n").split("\n")
-            name = str(row["description_id"])
             origin = "written" if name.startswith("written:") else "people"
             yield {"program_id": name, "origin": origin, "keep": row["keep"], "steps": steps}
 
