@@ -135,7 +135,8 @@ def _conditions(record: CaseRow) -> Preconditions:
 def _cases(record: CaseRow, pair: Pair, context: Context) -> Iterator[Output]:
     """The cases of the repaired program, if there is one, and of the original in the same environment.
 
-    The original has the repairs if no program came of them.
+    The original has the repairs if no program came of them. One that runs there and still was repaired, since it lost
+    its goal, has nothing to add to the repaired program.
     """
     program_id = f"{record['program_id']}+{record['home']}.{pair.number}"
     environment_id = f"{program_id}@{record['home']}"
@@ -169,7 +170,8 @@ def _cases(record: CaseRow, pair: Pair, context: Context) -> Iterator[Output]:
             **run_row(pair.execution),
             "repairs": repairs,
         }
-    yield row
+    if pair.failure is not None or not original.executable:
+        yield row
 
 
 def _environment(environment: Environment, name: str, context: Context) -> DifferenceRow:
