@@ -12,7 +12,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = {
     "schemas": 0, "storage": 1, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
-    "datasets": 6, "scoring": 7, "pipelines": 8, "analysis": 9, "commands": 10,
+    "datasets": 6, "scoring": 7, "pipelines": 8, "models": 9, "agents": 10, "challenges": 11, "analysis": 12,
+    "commands": 13,
 }  # fmt: skip
 """Packages by layer: each may import those below it and itself."""
 
@@ -44,7 +45,7 @@ def allowed(package, other):
 
 def test_there_is_something_to_look_at():
     assert len(MODULES) > 50
-    assert {path.relative_to(ROOT).parts[0] for path in MODULES} == set(LAYERS)
+    assert {path.relative_to(ROOT).parts[0] for path in MODULES} <= set(LAYERS)
 
 
 @pytest.mark.parametrize("path", MODULES, ids=NAMES)

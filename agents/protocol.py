@@ -1,0 +1,35 @@
+"""An agent: it is shown where an episode begins, then asked for one instruction a tick."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import Step
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.observation.views import View
+
+
+class Agent(Protocol):
+    """Whoever acts in an episode. It keeps its own generator, and learns of the world by observations alone.
+
+    An observation holds the whole world, for speed; an agent reads of it what its mask shows, and what never changes:
+    rooms, furniture, doors, what things afford. `tests/agents/` scrambles what is unseen and expects the same choices.
+    """
+
+    def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
+        """Begin an episode.
+
+        Args:
+            observation: what it sees before the first tick.
+            goal: what it is to reach; None for a helper that is not told.
+            seed: of all that it does at random.
+        """
+
+    def act(self, observation: View, legal: Legal) -> Step | None:
+        """The instruction that it tries in this tick; None to wait.
+
+        Args:
+            observation: what it sees now, with what it and those it sees last tried.
+            legal: what it could do now, of the actions of the challenge.
+        """
