@@ -6,10 +6,10 @@ Their modules are those of `__init__.pyi`, which type checkers read too.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache, wraps
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
+from hearth.schemas.explained import explained
 from hearth.version import VERSION
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from hearth.simulation.world.home import Home
 
 __version__ = VERSION
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 
 @lru_cache(maxsize=1)
@@ -44,7 +41,7 @@ def __getattr__(name: str) -> Any:
     elif name in _modules():
         value = getattr(import_module(_modules()[name]), name)
         if not isinstance(value, type):
-            value = import_module("hearth.schemas.arguments").explained(value)
+            value = explained(value)
             value.__module__ = __name__  # where it is found when it is pickled
     else:
         raise AttributeError(f"module `hearth` has no attribute `{name}`")
@@ -52,25 +49,8 @@ def __getattr__(name: str) -> Any:
     return value
 
 
-def _explained(function: Callable[P, T]) -> Callable[P, T]:
-    """The function, with errors of ours for wrong arguments; what explains them is imported only then."""
-
-    @wraps(function)
-    def call(*args: P.args, **kwargs: P.kwargs) -> T:
-        try:
-            return function(*args, **kwargs)
-        except Exception as error:
-            from hearth.schemas.arguments import explain
-
-            explain(function, args, kwargs, error)
-            raise
-
-    return call
-
-
 def _env() -> type[Env]:
     """The environment, by default with our own knowledge."""
-    from hearth.schemas.arguments import explained
     from hearth.simulation import env
     from hearth.simulation.rules import DEFAULT, Rules
 
@@ -89,7 +69,7 @@ def _or_ours(given: Knowledge | None) -> Knowledge:
     return given or knowledge()
 
 
-@_explained
+@explained
 def load(path: str, failures: bool = False) -> Dataset:
     """Open a published dataset folder for reading.
 
@@ -114,7 +94,7 @@ def load(path: str, failures: bool = False) -> Dataset:
     return Dataset.open(path, failures)
 
 
-@_explained
+@explained
 def knowledge(overlay: str | None = None) -> Knowledge:
     """Hearth's knowledge of actions, objects and places, with the files of the folder `overlay` laid over it.
 
@@ -135,7 +115,7 @@ def knowledge(overlay: str | None = None) -> Knowledge:
     return overlaid(Path(overlay) if overlay else None)
 
 
-@_explained
+@explained
 def home(name: str, knowledge: Knowledge | None = None) -> Home:
     """One of our homes by name (`homes.library.names()` lists them), by default with our knowledge.
 
@@ -153,7 +133,7 @@ def home(name: str, knowledge: Knowledge | None = None) -> Home:
     return Home.from_graph(load_graph(name, known), name, known)
 
 
-@_explained
+@explained
 def parse_program(text: str, knowledge: Knowledge | None = None) -> Program:
     """Read a program from text, with canonical names by the grammar (thesis 2.3.3).
 

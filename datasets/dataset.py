@@ -13,9 +13,9 @@ from hearth.datasets.format.catalog import absent_tables, attach, describe, with
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.questions import check_question
 from hearth.datasets.steady import steady, version
-from hearth.schemas.arguments import explained
 from hearth.schemas.change import WorkingGraph, in_states
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.explained import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.literals import RENAMED

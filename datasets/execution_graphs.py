@@ -10,7 +10,7 @@ from hearth.datasets.dataset import Dataset, Run
 from hearth.datasets.format.codecs import Bindings, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.tensors import GraphSample, Tensors, to_tensors
-from hearth.schemas.arguments import explained
+from hearth.schemas.explained import explained
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Program
 

@@ -28,7 +28,7 @@ def names(directory: Path | str | None = None, *, alone: bool = False) -> tuple[
     """The homes' names, sorted: ours (unless `alone`), and those of the user's directory.
 
     Raises:
-        HearthError: MISSING_FILE: there is no such directory.
+        HearthError: MISSING_FILE: the directory does not exist.
     """
     return tuple(sorted(_files(directory, {} if alone else _own())))
 
@@ -112,7 +112,7 @@ def files_of(directory: Path) -> list[Path]:
     """The files of homes in a directory, by name: plans, their ids, scene graphs.
 
     Raises:
-        HearthError: MISSING_FILE: there is no such directory.
+        HearthError: MISSING_FILE: the directory does not exist.
     """
     found = sorted(_folder(directory).iterdir())
     return [path for path in found if path.name.endswith((".yaml", ".json", IDS)) and path.is_file()]

@@ -121,7 +121,7 @@ class Knowledge:
         """The names of the actions of a group (see `kb.groups`).
 
         Raises:
-            KeyError: there is no such group.
+            KeyError: the group does not exist.
         """
         return self._groups[name]
 

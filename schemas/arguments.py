@@ -7,42 +7,18 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import fields, is_dataclass
-from functools import wraps
 from itertools import chain
 from os import PathLike
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-
-P = ParamSpec("P")
-T = TypeVar("T")
 
 _KINDS: dict[str, Any] = {
     "Callable": Callable, "Iterable": Iterable, "Mapping": Mapping, "Sequence": Sequence, "Set": AbstractSet,
     "PathLike": PathLike, "None": type(None), "float": int,
 }  # fmt: skip
 """Types that values are of without naming them among their classes; a whole number may stand for any."""
-
-
-def explained(function: Callable[P, T]) -> Callable[P, T]:
-    """The function; where it fails and an argument is not of its type, it raises an error of ours.
-
-    What is raised though all arguments fit stays what it is: a documented KeyError, or a fault of ours.
-
-    Raises:
-        HearthError: BAD_ARGUMENT, naming the argument, what it is and what it should be.
-    """
-
-    @wraps(function)
-    def call(*args: P.args, **kwargs: P.kwargs) -> T:
-        try:
-            return function(*args, **kwargs)
-        except Exception as error:
-            explain(function, args, kwargs, error)
-            raise
-
-    return call
 
 
 def explain(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any], error: Exception) -> None:

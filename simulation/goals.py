@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from operator import is_
 
-from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.explained import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name

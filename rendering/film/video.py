@@ -126,7 +126,7 @@ def film(
         fps: pictures per second.
 
     Raises:
-        HearthError: there is no such camera.
+        HearthError: the camera does not exist.
     """
     speed = trajectory.variation.speed
     selector = CameraSelector(home, view, size, trajectory.variation)
@@ -167,7 +167,7 @@ class CameraSelector:
         """The actor that the camera follows.
 
         Raises:
-            HearthError: there is no such agent.
+            HearthError: the agent does not exist.
         """
         if self.agent is None:
             return frame.actors[acting(frame.steps, len(frame.actors)) if self.view == AUTO else 0]
@@ -294,7 +294,7 @@ def record(
         suffixes: of `CODECS`.
 
     Raises:
-        HearthError: there is no such camera, or a file can't be written; complete files stay.
+        HearthError: the camera does not exist, or a file can't be written; complete files stay.
 
     Examples:
         >>> trajectory = hearth.trajectory_of(execution, graph, known)

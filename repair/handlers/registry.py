@@ -39,7 +39,7 @@ UNREPAIRABLE: dict[Code, str] = {
     Code.NO_PATH: "no door leads there, open or closed",
     Code.NO_ROOM: "the object is in no room, so nobody can go to it",
     Code.UNBOUND: "the object is not a node of this home",
-    Code.UNKNOWN_ACTION: "there is no such action",
+    Code.UNKNOWN_ACTION: "no action has that name",
     Code.UNKNOWN_AGENT: "the home has fewer characters than the program",
 }
 """Failures of running a program for which there is no repair, and why."""

@@ -7,7 +7,7 @@ from functools import cached_property, partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.arguments import explained
+from hearth.schemas.explained import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hearth.schemas.arguments import explained
 from hearth.schemas.change import Change
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.explained import explained
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.vocabulary import STATE_ID
