@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from hearth.agents.protocol import Agent
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import derive
-from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
 from hearth.simulation.rules import DEFAULT, Rules
@@ -84,15 +83,8 @@ def play(
     for number, player in enumerate(players):
         player.agent.reset(env.observe(number), player.goal, derive(seed, "agent", number))
     while len(env.ticks) < limit and not progress[-1].satisfied:
-        chosen = {n: p.agent.act(env.observe(n), _legal(env, n, allowed)) for n, p in enumerate(players)}
+        chosen = {n: p.agent.act(env.observe(n), env.legal(n, actions=allowed)) for n, p in enumerate(players)}
         done = env.step(chosen)
         tried = [step for number, step in done.instructions.items() if number not in done.failures]
         progress.append(progress[-1].then(done.before, done.world, tried))
     return Played(env, tuple(progress))
-
-
-def _legal(env: Env, number: int, allowed: frozenset[str] | None) -> Legal:
-    found = legal(env.world, number, env.rules, only_visible=env.partial)
-    if allowed is None:
-        return found
-    return Legal(found.home, number, {name: masks for name, masks in found.masks.items() if name in allowed})

@@ -17,6 +17,7 @@ DECLARED: dict[str, str] = {
     "idle": "moves or looks, and does nothing",
     "looks": "turns the eyes to its object",
     "lies": "done in bed rather than on a seat",
+    "played": "what agents of a challenge may try (thesis 6.3, 7.3)",
     "preparation": "what it is for is another step, in any activity",
     "unplanned": "its effects depend on facts that planning problems omit: nearby objects, former places",
     "unsaid": "goes without saying among people (thesis 3.4.1)",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -172,8 +172,19 @@ class Env:
             return self.camera_sensor(self, agent, modalities)
         return view(self.world, agent, partial=self.partial, last_actions=self._last_actions, tick=len(self.ticks))
 
-    def legal(self, agent: int = 0, *, only_visible: bool | None = None, only_reachable: bool = False) -> Legal:
+    def legal(
+        self,
+        agent: int = 0,
+        *,
+        only_visible: bool | None = None,
+        only_reachable: bool = False,
+        actions: Collection[str] | None = None,
+    ) -> Legal:
         """What an agent could do now; by default only with what it sees, when it does not see everything.
+
+        Args:
+            agent: its number.
+            only_visible, only_reachable, actions: as in `legal`.
 
         Raises:
             HearthError: UNKNOWN_AGENT.
@@ -185,7 +196,7 @@ class Env:
         """
         self._check(agent)
         seen = self.partial if only_visible is None else only_visible
-        return legal(self.world, agent, self.rules, only_visible=seen, only_reachable=only_reachable)
+        return legal(self.world, agent, self.rules, only_visible=seen, only_reachable=only_reachable, actions=actions)
 
     def _read(self, given: Step | str) -> Step:
         return given if isinstance(given, Step) else instruction_of(given, self.world.home)

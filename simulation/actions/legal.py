@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
@@ -69,7 +69,13 @@ class Legal:
 
 
 def legal(
-    world: World, agent: int = 0, rules: Rules = DEFAULT, *, only_visible: bool = False, only_reachable: bool = False
+    world: World,
+    agent: int = 0,
+    rules: Rules = DEFAULT,
+    *,
+    only_visible: bool = False,
+    only_reachable: bool = False,
+    actions: Collection[str] | None = None,
 ) -> Legal:
     """What an agent could do now: exactly the instructions that `engine.act` would not refuse.
 
@@ -80,6 +86,7 @@ def legal(
         only_visible: leave out instructions about what the agent does not see (see `reach.visible`).
         only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
             action itself would not mind.
+        actions: only these; all where None.
     """
     situation = Situation(world, agent, rules)
     keep = -1
@@ -90,6 +97,8 @@ def legal(
     found: dict[str, tuple[int, ...]] = {}
     every = ACTIONS if situation.me.pose is None else EVERY
     for name, action in every.items():
+        if actions is not None and name not in actions:
+            continue
         masks = action.mask(situation)
         if masks is not None:
             if keep != -1:
