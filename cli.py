@@ -67,6 +67,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "report": Entry("report:report", "Write a dataset as static HTML that needs no network."),
         "augmented": Entry("augmented:augmented", "Compare an augmented dataset with the thesis's, table 5.1."),
         "score": Entry("score:app", "Score predicted programs against references."),
+        "model": Entry("model:app", "Models that write programs: train, predict, score, show."),
         "corpus": Entry("corpus:app", "Descriptions and programs: statistics, synthesis, ratings, error detection."),
     },
     "Try a program": {

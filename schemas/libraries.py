@@ -11,6 +11,7 @@ from hearth.schemas.failures import Code
 
 EXTRAS = {
     "dask": ("dask", "distributed"),
+    "models": ("torch", "safetensors"),
     "pictures": ("cv2", "matplotlib", "numba", "open3d"),
     "plan": ("unified_planning",),
     "remote": ("fsspec",),

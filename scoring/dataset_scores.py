@@ -64,12 +64,23 @@ def score_dataset(
     Raises:
         HearthError: errors of `read_pairs`; UNKNOWN_ID if the dataset has no such split or part.
     """
-    opened.cache_clear()
     wanted = chosen(dataset, split, part)
-    known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
-    named = _named(dataset)
-    predicted = {pair.id: pair for pair in read_pairs(file, known, partial(read_line, dataset.knowledge), named)}
+    predicted = {pair.id: pair for pair in _read(dataset, file)}
     return _in_shares(dataset, [predicted[name] for name in wanted], options, workers, seen)
+
+
+def score_given(
+    dataset: Dataset, file: Path, options: Options | None = None, workers: int = 1, seen: Seen = unseen
+) -> list[Scored]:
+    """Score a file of predictions as `score_dataset`, but only the executions that it names."""
+    return _in_shares(dataset, [pair for pair in _read(dataset, file) if pair.line], options, workers, seen)
+
+
+def _read(dataset: Dataset, file: Path) -> list[Pair]:
+    """A pair for each execution of a dataset; `line` is 0 where the file lacks it."""
+    opened.cache_clear()
+    known: dict[str, tuple[Step, ...]] = dict.fromkeys(_every(dataset), ())
+    return read_pairs(file, known, partial(read_line, dataset.knowledge), _named(dataset))
 
 
 def score_steps(

@@ -19,7 +19,8 @@ LAYERS = {
 
 ANYWHERE = {"version", "data_raw"}
 STAGES = ("ingest", "validate", "sample", "augment", "render", "publish")
-HEAVY = {"open3d", "cv2", "pandas", "pyarrow", "duckdb", "matplotlib", "networkx", "scipy", "numpy", "yaml", "orjson"}
+HEAVY = {"open3d", "cv2", "pandas", "pyarrow", "duckdb", "matplotlib", "networkx", "scipy", "numpy", "yaml", "orjson",
+         "torch"}  # fmt: skip
 
 MODULES = sorted(path for package in LAYERS for path in (ROOT / package).rglob("*.py"))
 NAMES = [path.relative_to(ROOT).as_posix() for path in MODULES]

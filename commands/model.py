@@ -1,0 +1,196 @@
+"""`model`: trains models that write programs, and lets them predict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.models.showing import Shown
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="Train models that write programs from text and sketches, and use them; needs the extra `models`.",
+)
+
+
+@app.command("list")
+def every(*, as_json: bool = False) -> None:
+    """List the models, their input, and whether a trained one comes with Hearth.
+
+    \b
+    Example:
+      python cli.py model list
+    """
+    from hearth.models.model_registry import MODELS, trained_names
+
+    ready = trained_names()
+    rows = [
+        {"name": name, "input": entry.input, "trained": name in ready, "source": entry.source, "about": entry.line}
+        for name, entry in MODELS.items()
+    ]
+    if as_json:
+        output.emit(rows)
+    else:
+        output.records(rows)
+
+
+@app.command("train")
+def train(
+    name: str,
+    dataset: Path,
+    *,
+    out: Path,
+    split: str = "activities",
+    epochs: int = 30,
+    minutes: float = 0.0,
+    rate: float = 1e-3,
+    settings: list[str] | None = None,
+    augmented: bool = False,
+    seed: int = 0,
+    as_json: bool = False,
+) -> None:
+    """Train a model on the training part of a split, and write a checkpoint.
+
+    The part `validation`, or activities taken out of the training part, decides when training ends. A training that was
+    stopped goes on where it was, by the same command. A budget in minutes is recorded as the epochs it came to.
+
+    \b
+    Example:
+      python cli.py model train nearest data_out --out build/nearest
+    """
+    from hearth.commands.progress_line import bar
+    from hearth.models.fit_model import fit
+
+    with bar("epochs") as seen:
+        facts = fit(
+            name, dataset, out, split, settings or (), originals=not augmented,
+            how={"epochs": epochs, "minutes": minutes, "rate": rate, "seed": seed}, seen=seen,
+        )  # fmt: skip
+    if as_json:
+        output.emit({"out": out, **facts})
+        return
+    output.figures({key: value for key, value in facts.items() if not isinstance(value, dict)})
+
+
+@app.command("predict")
+def predict(
+    model: str,
+    dataset: Path,
+    *,
+    out: Path,
+    split: str = "activities",
+    part: str = "test",
+    beam: int = 1,
+    repair: bool = False,
+    originals: bool = False,
+    as_json: bool = False,
+) -> None:
+    """Predict a program for each execution of a part of a dataset, into a file that `score dataset` reads.
+
+    \b
+    Example:
+      python cli.py model predict build/nearest data_out --part test --out predicted.jsonl
+    """
+    from hearth.commands.progress_line import bar
+    from hearth.models.predicting import predict_part
+
+    with bar("executions") as seen:
+        count = predict_part(
+            model, dataset, out, split, part, beam=beam, repaired=repair, originals=originals, seen=seen
+        )
+    output.say(f"{output.counted(count, 'prediction')} in {out}", {"out": out, "predictions": count}, as_json)
+
+
+@app.command("score")
+def score(predicted: Path, dataset: Path, *, seed: int = 0, as_json: bool = False) -> None:
+    """Score a file of predictions: the executions that it names, and no others.
+
+    Intervals are of activities drawn with replacement. `score dataset` scores a whole part, where predictions lack too.
+
+    \b
+    Example:
+      python cli.py model score predicted.jsonl data_out
+    """
+    from hearth.datasets.dataset import Dataset
+    from hearth.models.evaluation import means
+    from hearth.scoring.dataset_scores import score_given
+
+    found = score_given(Dataset.open(dataset), predicted)
+    summary = means(found, seed)
+    if as_json:
+        output.emit({"count": len(found), "activities": len({each.pair.more["activity"] for each in found}),
+                     "mean": summary})  # fmt: skip
+        return
+    output.table(["score", "mean", "95% from", "to"], [[name, *interval] for name, interval in summary.items()])
+
+
+@app.command("show")
+def show(
+    model: str,
+    text: str,
+    *,
+    home: str = "maple",
+    homes: Path | None = None,
+    kb: Path | None = None,
+    beam: int = 1,
+    as_json: bool = False,
+) -> None:
+    """Write a program for a text, and run it in a home: the words, the sketch, the program, each step shown.
+
+    The sketch is what the model writes. Its objects are bound to the home's, steps that it lacks are inserted as in
+    `repair`, and those that cannot run there are left out. The status is 1 if nothing is left.
+
+    \b
+    Example:
+      python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
+    """
+    from hearth.commands.inputs import read_knowledge
+    from hearth.grounding.environments.default_state import prepared
+    from hearth.homes import library
+    from hearth.models import showing
+    from hearth.models.model_registry import restore
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
+
+    known = read_knowledge(kb)
+    place = Home.from_graph(library.load_graph(home, known, homes), home, known)
+    _, trained = restore(model)
+    shown = showing.show(trained, text, World.start(prepared(place).home), known, beam)
+    if as_json:
+        output.emit(_document(shown))
+    else:
+        _print(shown, home)
+    output.status(shown.failure is not None, strict=True)
+
+
+def _document(shown: Shown) -> dict[str, Any]:
+    from hearth.schemas.syntax import print_step
+
+    execution, left_out = shown.completion
+    return {
+        "words": shown.words,
+        "sketch": [print_step(step) for step in shown.sketch],
+        "program": [print_step(step) for step in execution.program.steps],
+        "executable": execution.executable and shown.failure is None,
+        "failure": shown.failure,
+        "left_out": [{"step": print_step(step), "failure": failure} for step, failure in left_out],
+    }
+
+
+def _print(shown: Shown, home: str) -> None:
+    from hearth.schemas.syntax import print_step
+
+    document = _document(shown)
+    print(f"Words: {output.shown(' '.join(shown.words)) or 'none'}")
+    print("Sketch:", *(f"  {line}" for line in document["sketch"]), sep="\n")
+    for step, failure in shown.completion.left_out:
+        print(f"  left out: {print_step(step)}: {failure.message()}")
+    print(f"Program in {home}:", *(f"  {line}" for line in document["program"]), sep="\n")
+    print("It runs." if document["executable"] else f"Nothing runs: {shown.failure and shown.failure.message()}")

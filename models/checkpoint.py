@@ -1,0 +1,162 @@
+"""Checkpoints: a folder with `model.json`, `weights.safetensors` and a card. Nothing in it is ever executed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
+from hearth.storage.files import file_digest, read_json, value_digest, write_bytes, write_json
+from hearth.version import ACTION_SET, VERSION
+
+if TYPE_CHECKING:
+    import numpy as np
+
+FORMAT = 1
+"""Of checkpoints; it changes when older ones can no longer be read."""
+
+NAME = "model.json"
+WEIGHTS = "weights.safetensors"
+CARD = "README.md"
+
+LICENCE = "MIT"
+"""Of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """A trained model, as it is stored.
+
+    Attributes:
+        model: its name in the registry.
+        settings: of the model, as JSON.
+        content: vocabularies and whatever else is not weights, as JSON.
+        weights: arrays by name.
+        trained: what it was trained on and how: `dataset`, `digest`, `split`, `seed`, `epochs`, `minutes`, `curves`.
+    """
+
+    model: str
+    settings: Mapping[str, Any]
+    content: Mapping[str, Any]
+    weights: Mapping[str, np.ndarray]
+    trained: Mapping[str, Any] = field(default_factory=dict)
+
+
+def save(checkpoint: Checkpoint, folder: Path) -> None:
+    """Write a checkpoint into a folder; equal checkpoints are equal bytes, but for `minutes` and `curves`.
+
+    Raises:
+        HearthError: MISSING_FILE, if the extra is not installed.
+    """
+    safetensors = library("safetensors.numpy")
+    folder.mkdir(parents=True, exist_ok=True)
+    weights = {name: _contiguous(array) for name, array in sorted(checkpoint.weights.items())}
+    write_bytes(folder / WEIGHTS, safetensors.save(weights))
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "action_set": ACTION_SET,
+        "licence": LICENCE,
+        "model": checkpoint.model,
+        "settings": dict(checkpoint.settings),
+        "trained": dict(checkpoint.trained),
+        "libraries": _libraries(),
+        "weights": file_digest(folder / WEIGHTS),
+        "digest": value_digest(dict(checkpoint.content)),
+        "content": dict(checkpoint.content),
+    }
+    write_json(folder / NAME, document)
+    write_bytes(folder / CARD, _card(checkpoint).encode())
+
+
+def load(folder: Path) -> Checkpoint:
+    """The checkpoint of a folder.
+
+    Raises:
+        HearthError: MISSING_FILE, if there is none or the extra is not installed; UNSUPPORTED_FILE, if it is of another
+            format; DAMAGED_FILE, if a part of it differs from what was written.
+    """
+    document = read_json(folder / NAME)
+    remedy = "name the folder that `model train` gave with --out, or a name of `model list`"
+    if not (folder / NAME).exists():
+        raise HearthError.of(Code.MISSING_FILE, "no checkpoint here", file=str(folder), suggestion=remedy)
+    if not isinstance(document, dict) or not isinstance(document.get("format"), int):
+        raise _damaged(folder / NAME, "it is not the JSON of a checkpoint")
+    if document["format"] != FORMAT:
+        message = f"a checkpoint of format {document['format']}; this version of Hearth reads {FORMAT}"
+        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(folder), suggestion="train the model again")
+    parts = {name: document.get(name) for name in ("settings", "content", "trained")}
+    if not isinstance(document.get("model"), str) or not all(isinstance(part, dict) for part in parts.values()):
+        raise _damaged(folder / NAME, "it lacks the model, its settings or its content")
+    if value_digest(parts["content"]) != document.get("digest"):
+        raise _damaged(folder / NAME, "its content is not what was written")
+    return Checkpoint(document["model"], weights=_weights(folder / WEIGHTS, document.get("weights")), **parts)  # type: ignore[arg-type]
+
+
+def _weights(path: Path, digest: Any) -> dict[str, np.ndarray]:
+    safetensors = library("safetensors.numpy")
+    if not path.is_file():
+        raise HearthError.of(Code.MISSING_FILE, "the weights are missing", file=str(path), suggestion=_AGAIN)
+    if file_digest(path) != digest:
+        raise _damaged(path, "its bytes are not what was written")
+    try:
+        return dict(safetensors.load(path.read_bytes()))
+    except Exception as error:  # of the library's own types, which differ by version
+        raise _damaged(path, "it can't be read as safetensors") from error
+
+
+_AGAIN = "fetch the checkpoint again, or train the model again"
+
+
+def _damaged(path: Path, message: str) -> HearthError:
+    return HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion=_AGAIN)
+
+
+def misfit(folder: Path, error: Exception) -> HearthError:
+    """The error of a checkpoint whose settings, content and weights do not fit each other or this version's model."""
+    return _damaged(folder, f"it does not fit its model: {type(error).__name__}: {str(error)[:200]}")
+
+
+def _contiguous(array: np.ndarray) -> np.ndarray:
+    import numpy as np
+
+    return np.ascontiguousarray(array)
+
+
+def _libraries() -> dict[str, str]:
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = {}
+    for name in ("torch", "safetensors", "numpy"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _card(checkpoint: Checkpoint) -> str:
+    """The card: YAML for machines, then what the model is, what it was trained on, and what it is not for."""
+    trained = checkpoint.trained
+    facts = [f"- {name}: {trained[name]}" for name in sorted(trained) if name not in ("curves", "losses")]
+    lines = [
+        "---",
+        f"license: {LICENCE.lower()}",
+        "library_name: hearth",
+        "tags: [household, program-synthesis]",
+        "---",
+        f"# {checkpoint.model}",
+        "",
+        "A model of Hearth that writes programs for household activities.",
+        "",
+        *facts,
+        "",
+        "It is for research on programs in simulated homes. It knows English descriptions of activities like those of",
+        "its dataset; for others it writes wrong programs. It is not for acting in real homes.",
+        "",
+    ]
+    return "\n".join(lines)

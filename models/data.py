@@ -1,0 +1,202 @@
+"""Examples for models: pairs of text and program of a published dataset, by split and part."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.datasets.verify import opened
+from hearth.models.interface import Request, Steps
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rng import derive
+from hearth.storage.files import value_digest
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+
+SHARE = 10
+"""One of how many activities of `train` are for validation where the split has no part of that name."""
+
+AT_ONCE = 250
+"""Requests in memory at a time, with their worlds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A program with its text.
+
+    Attributes:
+        program_id: as in the dataset.
+        activity: its id.
+        title: the activity as written.
+        description: the text.
+        steps: without nodes.
+        executions: the ids of its executions in the part, sorted.
+        keep: for each step whether the sketch keeps it; empty without a sketch. An annotated sketch goes before others.
+        origin: `written`, `crowd`, `release`, `augmented` and so on.
+    """
+
+    program_id: str
+    activity: str
+    title: str
+    description: str
+    steps: Steps
+    executions: tuple[str, ...] = ()
+    keep: tuple[bool, ...] = ()
+    origin: str = ""
+
+    @property
+    def sketch(self) -> Steps:
+        """The steps that its sketch keeps; none without a sketch."""
+        return tuple(step for step, keeps in zip(self.steps, self.keep, strict=False) if keeps)
+
+    @property
+    def request(self) -> Request:
+        """The example without its program: all that a model may see."""
+        return Request(self.program_id, self.title, self.description, self.sketch)
+
+
+@dataclass(frozen=True, slots=True)
+class Corpus:
+    """The examples that a model is trained on.
+
+    Attributes:
+        dataset: where they come from; for what else a model needs.
+        split: by which they were parted.
+        train: to learn from.
+        validation: to decide when to stop; their activities are not in `train`.
+        shared: what of `train` is in the split's test parts, too; see `shared`.
+    """
+
+    dataset: Dataset
+    split: str
+    train: tuple[Example, ...]
+    validation: tuple[Example, ...]
+    shared: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What a checkpoint records of it."""
+        digest = value_digest(self.dataset.manifest["files"])
+        counts = {"train": len(self.train), "validation": len(self.validation)}
+        facts = {"dataset": self.dataset.manifest.get("version", ""), "digest": digest, "split": self.split, **counts}
+        return {**facts, **{f"{name}_of_test": count for name, count in self.shared.items()}}
+
+
+_SKETCHES = """SELECT program_id, coalesce(min(keep) FILTER (origin IN ('written', 'people')), min(keep)) AS keep
+    FROM sketches WHERE keep IS NOT NULL GROUP BY 1"""
+"""The sketch of each program; an annotated one goes before others."""
+
+_PROGRAMS = """
+    SELECT p.program_id, p.activity_id, p.title, p.description, p.steps, p.origin, any_value(k.keep) AS keep,
+        list_sort(list(s.execution_id)) AS runs
+    FROM splits s JOIN programs p USING (program_id) JOIN executions e USING (execution_id)
+    LEFT JOIN ({sketches}) k ON k.program_id = p.program_id
+    WHERE s.split = $split AND starts_with(s.part, $part) AND e.executable AND {where}
+    GROUP BY ALL ORDER BY p.program_id
+"""
+
+
+def examples(dataset: Dataset, split: str, part: str, *, originals: bool = False) -> tuple[Example, ...]:
+    """The programs of a part with their texts, by id.
+
+    Args:
+        dataset: a published dataset.
+        split: one of its splits.
+        part: prefix of the split's parts (`test` is all tests).
+        originals: leave out augmented programs, which have the texts of the programs they were made from.
+
+    Raises:
+        HearthError: UNKNOWN_ID, if the part has none.
+    """
+    found = _read(dataset, split, part, originals)
+    if not found:
+        there = dataset.rows("SELECT DISTINCT split || ' ' || part FROM splits WHERE part IS NOT NULL ORDER BY 1")[1]
+        message = f"no programs in part `{part}` of split `{split}`"
+        suggestion = f"there are {', '.join(name for (name,) in there)}"
+        raise HearthError.of(Code.UNKNOWN_ID, message, file=str(dataset.folder), suggestion=suggestion)
+    return found
+
+
+def _read(dataset: Dataset, split: str, part: str, originals: bool) -> tuple[Example, ...]:
+    query = _PROGRAMS.format(sketches=_SKETCHES, where="p.parent_id IS NULL" if originals else "true")
+    return tuple(_example(row) for row in dataset.read(query, {"split": split, "part": part}))
+
+
+def _example(row: Any) -> Example:
+    texts = (row["title"] or "", row["description"] or "")
+    keep = tuple(row["keep"] or ())
+    return Example(
+        row["program_id"], row["activity_id"], *texts, program_of(row).steps, tuple(row["runs"]), keep, row["origin"]
+    )
+
+
+def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0) -> Corpus:
+    """The training and validation examples of a split.
+
+    Where the split has no part `validation`, one in ten activities of `train` is taken out for it.
+
+    Raises:
+        HearthError: UNKNOWN_ID, if the split has no training examples.
+    """
+    train = examples(dataset, split, "train", originals=originals)
+    common = shared(train, _read(dataset, split, "test", originals))
+    validation = _read(dataset, split, "validation", originals)
+    if validation:
+        activities = {each.activity for each in train}
+        validation = tuple(each for each in validation if each.activity not in activities)
+        return Corpus(dataset, split, train, validation, common)
+    return Corpus(dataset, split, *carved(train, seed), common)
+
+
+def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
+    """The numbers of titles, descriptions and step lists of test examples that training examples have, too.
+
+    All are 0 in splits by activity. In splits by home the same program may be in several homes.
+    """
+    return {
+        name: len({get(each) for each in test if get(each)} & {get(each) for each in train})
+        for name, get in _SEEN.items()
+    }
+
+
+_SEEN: dict[str, Callable[[Example], Any]] = {
+    "titles": lambda each: each.title.lower(),
+    "descriptions": lambda each: each.description.lower(),
+    "step_lists": lambda each: each.steps,
+}
+
+
+def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tuple[Example, ...]]:
+    """Training examples parted by activity: what stays, and what is for validation."""
+    parts: tuple[list[Example], list[Example]] = ([], [])
+    for each in train:
+        parts[derive(seed, "validation", each.activity) % SHARE == 0].append(each)
+    return tuple(parts[0]), tuple(parts[1])
+
+
+def requests(dataset: Dataset, names: Sequence[str], *, worlds: bool) -> Iterator[list[Request]]:
+    """What is known of executions before they run, without their programs, in shares of at most 250.
+
+    Args:
+        dataset: a published dataset.
+        names: ids of executions.
+        worlds: whether the requests have the world at the start.
+    """
+    sketches = {row["program_id"]: tuple(row["keep"]) for row in dataset.read(_SKETCHES)}
+    homes = opened(str(dataset.folder))[1]
+    for first in range(0, len(names), AT_ONCE):
+        share = []
+        for case in stored_cases(dataset, names[first : first + AT_ONCE]):
+            keep = sketches.get(case["program_id"], ())
+            steps = program_of(case).steps
+            sketch = tuple(step for step, keeps in zip(steps, keep, strict=False) if keeps)
+            world = start_of(case["environment"], case["home"], homes) if worlds else None
+            texts = (case["title"] or "", case["description"] or "")
+            share.append(Request(case["execution_id"], *texts, sketch, world))
+        yield share

@@ -1,0 +1,77 @@
+"""Training a model of the registry on a dataset, into a checkpoint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from hearth.datasets.dataset import Dataset
+from hearth.models.checkpoint import save
+from hearth.models.data import corpus
+from hearth.models.interface import Training
+from hearth.models.model_registry import settings_of
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, unseen
+
+STATE = ".training"
+"""The folder in a checkpoint's where the state of an unfinished training is kept."""
+
+
+def fit(
+    name: str,
+    folder: Path,
+    out: Path,
+    split: str,
+    changed: Sequence[str] = (),
+    *,
+    originals: bool = True,
+    how: Mapping[str, Any],
+    seen: Seen = unseen,
+) -> dict[str, Any]:
+    """Train a model and write its checkpoint; what the checkpoint records of the training.
+
+    Args:
+        name: in the registry.
+        folder: of the dataset.
+        out: of the checkpoint; an unfinished training in it is continued.
+        split: of the dataset.
+        changed: settings of the model, as `NAME=VALUE`.
+        originals: leave out augmented programs.
+        how: fields of `Training`.
+        seen: reports progress.
+
+    Raises:
+        HearthError: an unknown model, setting or split; not a dataset; the extra is not installed.
+    """
+    import shutil
+
+    model = settings_of(name, **_changed(name, changed))
+    found = corpus(Dataset.open(folder), split, originals=originals, seed=how.get("seed", 0))
+    trained = model.fit(found, Training(**how, folder=out / STATE), seen)
+    checkpoint = trained.checkpoint()
+    facts = {**found.facts, "seed": how.get("seed", 0), **checkpoint.trained}
+    save(replace(checkpoint, model=name, trained=facts), out)
+    shutil.rmtree(out / STATE, ignore_errors=True)
+    return facts
+
+
+def _changed(name: str, changed: Sequence[str]) -> dict[str, Any]:
+    """Settings as `NAME=VALUE`, the values of the types of their defaults."""
+    defaults = settings_of(name)
+    kinds = {each.name: type(getattr(defaults, each.name)) for each in fields(defaults)}  # type: ignore[arg-type]
+    found = {}
+    for text in changed:
+        key, _, value = text.partition("=")
+        kind = kinds.get(key)
+        try:
+            if kind is None:
+                raise ValueError
+            found[key] = value in ("true", "yes", "1") if kind is bool else kind(value)
+        except ValueError:
+            known = ", ".join(f"{key}={getattr(defaults, key)}" for key in kinds) or "no settings"
+            message = f"`{text}` is not a setting of `{name}`"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"it has {known}") from None
+    return found

@@ -1,0 +1,72 @@
+"""What models are asked, how they are trained, and what their settings share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from hearth.schemas.program import Step
+
+if TYPE_CHECKING:
+    from hearth.simulation.world.world import World
+
+Steps = tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What a model is asked. It has no reference: a prediction cannot depend on one.
+
+    Attributes:
+        id: of the execution, or any name.
+        title: the activity; may be empty.
+        description: the text.
+        sketch: steps that the program should have, without nodes; for models of sketches.
+        world: where the program will run; for models that look at it, and for constrained decoding.
+    """
+
+    id: str
+    title: str = ""
+    description: str = ""
+    sketch: Steps = ()
+    world: World | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Training:
+    """How long and how a model is trained.
+
+    Attributes:
+        seed: of all random choices.
+        epochs: the most passes over the examples.
+        minutes: a budget: training ends after the epoch with which it is about used up; 0 for none.
+        rate: of learning, at first; halved whenever `halve_after` epochs in a row were not the best.
+        clip: the longest gradient.
+        patience: the epochs in a row without a better validation score after which training ends; 0 for never.
+        halve_after: see `rate`; 0 for never.
+        folder: where the state is kept after each epoch, so that a stopped run continues; None to keep none.
+    """
+
+    seed: int = 0
+    epochs: int = 30
+    minutes: float = 0.0
+    rate: float = 1e-3
+    clip: float = 5.0
+    patience: int = 6
+    halve_after: int = 2
+    folder: Path | None = None
+
+
+class Settings:
+    """What settings share: they are made from a checkpoint's, and written to it."""
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """The settings with these values; lists become tuples.
+
+        Raises:
+            TypeError: a value is unknown or missing.
+        """
+        return cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})

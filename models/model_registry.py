@@ -1,0 +1,97 @@
+"""The models by name. To add one: a file with its settings, a row here, a test."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from hearth.models.checkpoint import load, misfit
+from hearth.models.protocols import Model, Trained
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+TRAINED = Path(__file__).parent / "trained"
+"""Checkpoints that come with Hearth, a folder each, named as in `model list`."""
+
+
+class Entry(NamedTuple):
+    """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, and its source."""
+
+    place: str
+    input: Literal["text", "sketch", "film"]
+    line: str
+    source: str
+    settings: dict[str, Any] = {}  # noqa: RUF012
+
+
+MODELS: dict[str, Entry] = {
+    "random-retrieval": Entry(
+        "text.retrieval:RandomRetrieval", "text", "The program of a random training example.", "thesis 4.5.2"
+    ),
+    "nearest": Entry(
+        "text.retrieval:Nearest", "text", "The program with the most similar description, by TF-IDF.", "thesis 4.5.2"
+    ),
+    "nearest-svd": Entry(
+        "text.retrieval:Nearest",
+        "text",
+        "The same in the space of 100 singular vectors.",
+        "thesis 4.5.2",
+        {"singular": 100},
+    ),
+}
+
+
+def settings_of(name: str, **changed: Any) -> Model:
+    """The settings of a model, its own or with some changed.
+
+    Raises:
+        HearthError: UNKNOWN_ID, if there is no such model; MISSING_FILE, if the extra is not installed.
+    """
+    entry = MODELS.get(name)
+    if entry is None:
+        import difflib
+
+        near = difflib.get_close_matches(name, MODELS, n=1)
+        suggestion = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(MODELS)}"
+        raise HearthError.of(Code.UNKNOWN_ID, f"no model is called `{name}`", suggestion=suggestion)
+    made: Model = _class(entry)(**{**entry.settings, **changed})
+    return made
+
+
+def _class(entry: Entry) -> Any:
+    module, name = entry.place.split(":")
+    try:
+        return getattr(import_module(f"hearth.models.{module}"), name)
+    except ModuleNotFoundError as error:
+        from hearth.schemas.libraries import library
+
+        library(str(error.name))
+        raise
+
+
+def trained_names() -> list[str]:
+    """The names of the checkpoints that come with Hearth."""
+    return sorted(path.parent.name for path in TRAINED.glob("*/model.json"))
+
+
+def restore(model: str | Path) -> tuple[str, Trained]:
+    """A trained model and its name in the registry: of a checkpoint's folder, or of one that comes with Hearth.
+
+    Raises:
+        HearthError: there is none, it is broken or of another version, or the extra is not installed.
+    """
+    folder = TRAINED / str(model) if str(model) in trained_names() else Path(model)
+    if str(model) in MODELS and not folder.exists():
+        message = f"`{model}` has not been trained"
+        suggestion = f"python cli.py model train {model} DATASET --out FOLDER, and name that folder"
+        raise HearthError.of(Code.MISSING_FILE, message, suggestion=suggestion)
+    checkpoint = load(folder)
+    entry = MODELS.get(checkpoint.model)
+    if entry is None:
+        message = f"a checkpoint of the model `{checkpoint.model}`, which this version of Hearth does not have"
+        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(folder), suggestion="install a newer Hearth")
+    try:
+        return checkpoint.model, _class(entry).restored(checkpoint)
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError) as error:
+        raise misfit(folder, error) from error

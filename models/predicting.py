@@ -1,0 +1,122 @@
+"""Prediction files: a program for each execution of a part of a dataset, in the form that `score dataset` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import orjson
+
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.datasets.verify import opened
+from hearth.models.completion import complete
+from hearth.models.data import AT_ONCE, requests
+from hearth.models.interface import Steps
+from hearth.models.model_registry import MODELS, restore
+from hearth.models.protocols import Trained
+from hearth.schemas.program import Program
+from hearth.schemas.syntax import print_lines
+from hearth.scoring.dataset_scores import chosen
+from hearth.simulation.rules import RULES
+from hearth.storage.files import write_bytes
+from hearth.storage.parallel import Seen, unseen
+
+
+def predict(
+    trained: Trained, dataset: Dataset, names: Sequence[str], beam: int = 1, *, text: bool, seen: Seen = unseen
+) -> Iterator[tuple[str, Steps]]:
+    """The ids of executions with their predicted programs, in the dataset's order.
+
+    Args:
+        trained: a trained model.
+        dataset: a published dataset.
+        names: ids of executions.
+        beam: as in `Trained.predict`.
+        text: the model sees the text alone: each text is answered once, and no worlds are read.
+        seen: reports progress.
+    """
+    known: dict[tuple[str, str], Steps] = {}
+    done = 0
+    for share in requests(dataset, names, worlds=not text):
+        if text:
+            asked = {(each.title, each.description): each for each in share}
+            new = {key: replace(each, sketch=()) for key, each in asked.items() if key not in known}
+            known |= dict(zip(new, trained.predict(list(new.values()), beam), strict=True))
+            answers = [known[each.title, each.description] for each in share]
+        else:
+            answers = trained.predict(share, beam)
+        yield from ((each.id, steps) for each, steps in zip(share, answers, strict=True))
+        done += len(share)
+        seen(done, len(names))
+
+
+def write(predicted: Iterator[tuple[str, Steps]], path: Path) -> int:
+    """Write a file of predictions, a JSON object a line; their number."""
+    lines = [_line({"id": name, "predicted": list(print_lines(Program(steps=steps)))}) for name, steps in predicted]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(path, b"".join(lines))
+    return len(lines)
+
+
+def _line(row: dict[str, Any]) -> bytes:
+    return orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE)
+
+
+def predict_part(
+    model: str,
+    folder: Path,
+    out: Path,
+    split: str,
+    part: str,
+    *,
+    beam: int = 1,
+    repaired: bool = False,
+    originals: bool = False,
+    seen: Seen = unseen,
+) -> int:
+    """Write the predictions of a trained model for a part of a split; their number.
+
+    Args:
+        model: a checkpoint's folder, or the name of one that comes with Hearth.
+        folder: of the dataset.
+        out: the file to write.
+        split, part: of the dataset; `part` is a prefix.
+        beam: as in `Trained.predict`.
+        repaired: bind and repair each program in its environment, and leave out what can't run there.
+        originals: leave out executions of augmented programs.
+        seen: reports progress.
+
+    Raises:
+        HearthError: no such checkpoint, dataset, split or part.
+    """
+    dataset = Dataset.open(folder)
+    name, trained = restore(model)
+    names = _asked(dataset, split, part, originals)
+    text = MODELS[name].input == "text"
+    found = predict(trained, dataset, names, beam, text=text, seen=seen)
+    return write(completed(dataset, found) if repaired else found, out)
+
+
+def _asked(dataset: Dataset, split: str, part: str, originals: bool) -> list[str]:
+    names = chosen(dataset, split, part)
+    if originals:
+        query = "SELECT execution_id FROM executions JOIN programs USING (program_id) WHERE parent_id IS NULL"
+        own = {name for (name,) in dataset.rows(query)[1]}
+        names = [name for name in names if name in own]
+    return names
+
+
+def completed(dataset: Dataset, predicted: Iterable[tuple[str, Steps]]) -> Iterator[tuple[str, Steps]]:
+    """Predictions bound and repaired in the environments of their executions."""
+    homes = opened(str(dataset.folder))[1]
+    found = iter(predicted)
+    while share := dict(islice(found, AT_ONCE)):
+        for case in stored_cases(dataset, list(share)):
+            world = start_of(case["environment"], case["home"], homes)
+            done = complete(share[case["execution_id"]], world, world.home.knowledge, RULES[case["rules"]])
+            yield case["execution_id"], done.execution.program.steps

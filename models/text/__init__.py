@@ -1,0 +1,1 @@
+"""Models whose input is a description (thesis chapter 4)."""

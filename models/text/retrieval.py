@@ -1,0 +1,187 @@
+"""Baselines that answer with a training program: a random one, or that of the most similar description (thesis 4.5.2).
+
+Skip-thoughts' weights are not to be had; the similarity of descriptions is the cosine of their TF-IDF weights, as they
+are or in the space of their first singular vectors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from hearth.models.checkpoint import Checkpoint
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.words import words
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.rng import rng
+from hearth.schemas.syntax import parse_steps, print_step
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from hearth.models.data import Corpus
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """The texts and programs of the training examples, each pair once, in the order of its first example."""
+
+    texts: tuple[str, ...]
+    programs: tuple[Steps, ...]
+
+    @classmethod
+    def of(cls, corpus: Corpus) -> Memory:
+        """The memory of a corpus."""
+        pairs = dict.fromkeys((text_of(each.title, each.description), each.steps) for each in corpus.train)
+        return cls(tuple(text for text, _ in pairs), tuple(steps for _, steps in pairs))
+
+    def document(self) -> dict[str, Any]:
+        """The memory as JSON; each step is stored once."""
+        lines = {print_step(step): step for steps in self.programs for step in steps}
+        number = {step: place for place, step in enumerate(lines.values())}
+        return {
+            "texts": list(self.texts),
+            "steps": list(lines),
+            "programs": [[number[step] for step in steps] for steps in self.programs],
+        }
+
+    @classmethod
+    def read(cls, document: dict[str, Any]) -> Memory:
+        """The memory of `document`.
+
+        Raises:
+            ValueError: a step cannot be read.
+        """
+        steps = []
+        for line in document["steps"]:
+            parsed = parse_steps(line)
+            if isinstance(parsed, Diagnostic):
+                raise ValueError(str(parsed))
+            steps.append(parsed[0])
+        programs = tuple(tuple(steps[number] for number in program) for program in document["programs"])
+        return cls(tuple(document["texts"]), programs)
+
+
+def text_of(title: str, description: str) -> str:
+    """The title and the description in one."""
+    return f"{title}. {description}" if title else description
+
+
+@dataclass(frozen=True, slots=True)
+class RandomRetrieval(Settings):
+    """Answers with the program of a random training example, drawn from the seed and the request's id."""
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedRandomRetrieval:
+        """Remember the training programs."""
+        return TrainedRandomRetrieval(self, Memory.of(corpus), how.seed)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedRandomRetrieval:
+        """The model of a checkpoint."""
+        content = checkpoint.content
+        return TrainedRandomRetrieval(cls.of(checkpoint.settings), Memory.read(content["memory"]), content["seed"])
+
+
+@dataclass(frozen=True)
+class TrainedRandomRetrieval:
+    """The training programs, and a seed."""
+
+    settings: RandomRetrieval
+    memory: Memory
+    seed: int
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """A program for each request, drawn from its id."""
+        return [rng(self.seed, "random retrieval", each.id).choice(self.memory.programs) for each in requests]
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        content = {"memory": self.memory.document(), "seed": self.seed}
+        return Checkpoint("random-retrieval", asdict(self.settings), content, {})
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest(Settings):
+    """Answers with the program of the training example whose text is most similar.
+
+    Attributes:
+        singular: the number of singular vectors in whose space texts are compared; 0 for TF-IDF as it is.
+    """
+
+    singular: int = 0
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedNearest:
+        """Remember the training texts and programs."""
+        return TrainedNearest(self, Memory.of(corpus))
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedNearest:
+        """The model of a checkpoint."""
+        return TrainedNearest(cls.of(checkpoint.settings), Memory.read(checkpoint.content["memory"]))
+
+
+@dataclass(frozen=True)
+class TrainedNearest:
+    """The training texts with their programs, and their weights."""
+
+    settings: Nearest
+    memory: Memory
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """The program of the most similar text for each request; of equal ones the first."""
+        nearest = self.similarity.nearest([text_of(each.title, each.description) for each in requests], 1)
+        return [self.memory.programs[places[0]] for places, _ in nearest]
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs; the weights are made again from the texts."""
+        name = "nearest-svd" if self.settings.singular else "nearest"
+        return Checkpoint(name, asdict(self.settings), {"memory": self.memory.document()}, {})
+
+    @cached_property
+    def similarity(self) -> Similarity:
+        """Similarities to the training texts."""
+        return Similarity(self.memory.texts, self.settings.singular)
+
+
+class Similarity:
+    """Similarities of texts to known ones: the cosine of TF-IDF weights, or of their projections."""
+
+    def __init__(self, texts: Sequence[str], singular: int = 0) -> None:
+        from sklearn.feature_extraction.text import TfidfVectorizer
+
+        self.weights = TfidfVectorizer(analyzer=_terms, sublinear_tf=True)
+        known = self.weights.fit_transform(texts)
+        self.projection = None
+        if singular:
+            from sklearn.decomposition import TruncatedSVD
+
+            size = max(1, min(singular, min(known.shape) - 1))
+            self.projection = TruncatedSVD(size, algorithm="randomized", random_state=0).fit(known)
+        self.known = self._projected(known)
+
+    def nearest(self, texts: Sequence[str], count: int) -> list[tuple[list[int], list[float]]]:
+        """The places of the most similar known texts for each text, best first, and their similarities."""
+        if not texts:
+            return []
+        alike = self._projected(self.weights.transform(texts)) @ self.known.T
+        # Sums of floats depend on the order of words: rounding makes them equal.
+        rows = (alike if self.projection is not None else alike.toarray()).round(9)
+        places = (-rows).argsort(axis=1, kind="stable")[:, :count]
+        return [(place.tolist(), row[place].tolist()) for place, row in zip(places, rows, strict=True)]
+
+    def _projected(self, weights: Any) -> np.ndarray | Any:
+        if self.projection is None:
+            return weights
+        from sklearn.preprocessing import normalize
+
+        return normalize(self.projection.transform(weights))
+
+
+def _terms(text: str) -> list[str]:
+    """The words of a text, and its pairs of neighbours."""
+    found = words(text)
+    return [*found, *(f"{one} {other}" for one, other in pairwise(found))]

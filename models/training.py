@@ -1,0 +1,216 @@
+"""The one training loop: seeds, a budget, early stopping, clipped gradients, curves, and resuming.
+
+It knows a module, batches, a loss and a validation score, and nothing of what they are about. Random numbers of an
+epoch are derived from the seed and its number: a run that was stopped and continued is the same as one that was not.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from random import Random
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+
+from hearth.models.interface import Training
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.rng import derive, rng
+from hearth.storage.files import read_json, replacing, value_digest, write_json
+from hearth.storage.parallel import Seen, unseen
+
+B = TypeVar("B")
+
+STATE = "state.safetensors"
+RUN = "run.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Task(Generic[B]):
+    """What is trained.
+
+    Attributes:
+        module: with the weights; those that need no gradient stay.
+        batches: the batches of an epoch, in an order drawn from the generator.
+        loss: the mean loss of a batch, a tensor of one number.
+        validate: a score of the module as it is, the greater the better.
+        identity: what the task is made of, as JSON; a kept state of another task is not continued.
+    """
+
+    module: torch.nn.Module
+    batches: Callable[[Random], Iterable[B]]
+    loss: Callable[[B], torch.Tensor]
+    validate: Callable[[], float]
+    identity: Any = None
+
+
+class Epoch(NamedTuple):
+    """One pass over the examples: its number from 1, mean loss, validation score, rate of learning, and seconds."""
+
+    number: int
+    loss: float
+    score: float
+    rate: float
+    seconds: float
+
+
+class Outcome(NamedTuple):
+    """A finished training: its epochs, the best one, whose weights the module now has, and what ended it."""
+
+    epochs: tuple[Epoch, ...]
+    best: int
+    ended: str
+
+    def record(self) -> dict[str, Any]:
+        """The outcome as a checkpoint's `trained` has it."""
+        minutes = round(sum(epoch.seconds for epoch in self.epochs) / 60, 2)
+        curves = {name: [getattr(epoch, name) for epoch in self.epochs] for name in ("loss", "score", "rate")}
+        facts = {"epochs": len(self.epochs), "best_epoch": self.best, "ended": self.ended, "minutes": minutes}
+        return {**facts, "curves": curves}
+
+
+def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
+    """Train until the epochs, the minutes or the patience are used up; the module then has its best weights.
+
+    A budget in minutes ends training between epochs only, so that the same number of epochs gives the same weights.
+
+    Args:
+        task: what is trained.
+        how: how long and how.
+        seen: reports progress: epochs done, and their greatest number.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, if the loss is not a number.
+    """
+    optimiser = torch.optim.AdamW([each for each in task.module.parameters() if each.requires_grad], lr=how.rate)
+    state = _State(task, how, optimiser)
+    epochs = state.restore()
+    best = best_of(epochs)
+    while not (ended := _ended(epochs, best, how)):
+        began, rate = time.monotonic(), _rate(epochs, how)
+        number = len(epochs) + 1
+        for group in optimiser.param_groups:
+            group["lr"] = rate
+        loss = _epoch(task, how, optimiser, number)
+        task.module.eval()
+        with torch.no_grad():
+            score = float(task.validate())
+        epochs.append(Epoch(number, round(loss, 6), round(score, 6), rate, round(time.monotonic() - began, 3)))
+        best = best_of(epochs)
+        if best == number:
+            state.remember()
+        state.keep(epochs)
+        seen(number, how.epochs)
+    state.recall()
+    task.module.eval()
+    return Outcome(tuple(epochs), best, ended)
+
+
+def _epoch(task: Task[B], how: Training, optimiser: torch.optim.Optimizer, number: int) -> float:
+    """Train for one epoch; its mean loss."""
+    torch.manual_seed(derive(how.seed, "epoch", number))
+    task.module.train()
+    total, count = 0.0, 0
+    for batch in task.batches(rng(how.seed, "batches", number)):
+        loss = task.loss(batch)
+        if not math.isfinite(value := float(loss.detach())):
+            message = f"the loss of epoch {number} is {value}"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="train with a lower rate")
+        optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(task.module.parameters(), how.clip)
+        optimiser.step()
+        total, count = total + value, count + 1
+    return total / max(count, 1)
+
+
+def best_of(epochs: Sequence[Epoch]) -> int:
+    """The number of the first epoch with the best score; 0 before the first."""
+    return max(epochs, key=lambda epoch: (epoch.score, -epoch.number)).number if epochs else 0
+
+
+def _ended(epochs: Sequence[Epoch], best: int, how: Training) -> str:
+    """Why training ends now; "" if it goes on."""
+    spent = sum(epoch.seconds for epoch in epochs)
+    if len(epochs) >= how.epochs:
+        return "epochs"
+    if how.patience and len(epochs) - best >= how.patience:
+        return "patience"
+    if how.minutes and epochs and spent + epochs[-1].seconds / 2 > how.minutes * 60:
+        return "minutes"
+    return ""
+
+
+def _rate(epochs: Sequence[Epoch], how: Training) -> float:
+    """The rate of the next epoch: halved after each `halve_after` epochs without a better score."""
+    halvings, waited, best = 0, 0, -math.inf
+    for epoch in epochs:
+        waited = 0 if epoch.score > best else waited + 1
+        best = max(best, epoch.score)
+        if how.halve_after and waited == how.halve_after:
+            halvings, waited = halvings + 1, 0
+    return how.rate * 0.5**halvings
+
+
+class _State:
+    """The weights now and at their best, and those of the optimiser; kept in a folder after each epoch."""
+
+    def __init__(self, task: Task[Any], how: Training, optimiser: torch.optim.Optimizer) -> None:
+        self.module, self.optimiser, self.folder = task.module, optimiser, how.folder
+        same = {name: value for name, value in asdict(how).items() if name not in ("epochs", "minutes", "folder")}
+        self.key = value_digest([same, task.identity])
+        self.best: dict[str, torch.Tensor] = {}
+
+    def remember(self) -> None:
+        self.best = {name: value.detach().clone() for name, value in self.module.state_dict().items()}
+
+    def recall(self) -> None:
+        if self.best:
+            self.module.load_state_dict(self.best)
+
+    def keep(self, epochs: Sequence[Epoch]) -> None:
+        if self.folder is None:
+            return
+        self.folder.mkdir(parents=True, exist_ok=True)
+        parts = {"now": self.module.state_dict(), "best": self.best}
+        tensors = {f"{part}/{name}": value for part, found in parts.items() for name, value in found.items()}
+        for number, values in self.optimiser.state_dict()["state"].items():
+            tensors |= {f"optimiser/{number}/{name}": value for name, value in values.items()}
+        with replacing(self.folder / STATE) as path:
+            save_file({name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}, path)
+        write_json(self.folder / RUN, {"key": self.key, "epochs": [list(epoch) for epoch in epochs]})
+
+    def restore(self) -> list[Epoch]:
+        """Take up a kept state of the same task; its epochs, none if there is no such state."""
+        run = read_json(self.folder / RUN) if self.folder else None
+        if self.folder is None or not isinstance(run, dict) or run.get("key") != self.key:
+            return []
+        try:
+            tensors = load_file(self.folder / STATE)
+        except (OSError, SafetensorError):
+            return []
+        epochs = [Epoch(*row) for row in run["epochs"]]
+        state = self.optimiser.state_dict()
+        state["state"] = {}
+        now: dict[str, torch.Tensor] = {}
+        for key, value in tensors.items():
+            part, name = key.split("/", 1)
+            if part == "optimiser":
+                number, name = name.split("/", 1)
+                state["state"].setdefault(int(number), {})[name] = value
+            else:
+                (now if part == "now" else self.best)[name] = value
+        self.module.load_state_dict(now)
+        self.optimiser.load_state_dict(state)
+        return epochs
+
+
+def kept(folder: Path) -> bool:
+    """Whether a folder has the state of a training."""
+    return (folder / RUN).is_file()

@@ -1,0 +1,57 @@
+"""Models need the extra `models`; their tests are skipped without it."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+import hearth
+from hearth.models.data import Corpus, Example
+from hearth.schemas.syntax import parse_steps
+
+
+@pytest.fixture(autouse=True)
+def torch_is_there():
+    if importlib.util.find_spec("torch") is None or importlib.util.find_spec("safetensors") is None:
+        pytest.skip("the extra `models` is not installed")
+
+
+@pytest.fixture(scope="session")
+def dataset(made):
+    return hearth.load(made.out)
+
+
+def steps_of(*lines):
+    return tuple(step for line in lines for step in parse_steps(line))
+
+
+TEXTS = (
+    ("Watch TV", "Go to the living room, turn on the television and watch it.",
+     ("[Walk] <living_room> (1)", "[SwitchOn] <television> (1)", "[Watch] <television> (1)")),
+    ("Wash hands", "I wash my hands at the sink with soap.",
+     ("[Walk] <bathroom> (1)", "[SwitchOn] <faucet> (1)", "[Wash] <hands_both> (1)", "[SwitchOff] <faucet> (1)")),
+    ("Drink milk", "Take the milk out of the fridge and drink it.",
+     ("[Walk] <kitchen> (1)", "[Open] <fridge> (1)", "[Grab] <milk> (1)", "[Drink] <milk> (1)")),
+    ("Read", "Grab a novel, sit down on the couch and read.",
+     ("[Grab] <novel> (1)", "[Walk] <couch> (1)", "[Sit] <couch> (1)", "[Read] <novel> (1)")),
+    ("Sleep", "Go to bed and sleep.", ("[Walk] <bedroom> (1)", "[Lie] <bed> (1)", "[Sleep]")),
+    ("Set the table", "Put a plate on the table.", ("[Grab] <plate> (1)", "[PutBack] <plate> (1) <table> (1)")),
+    ("Light", "Turn on the light.", ("[SwitchOn] <light> (1)",)),
+    ("Two plates", "Take two plates.", ("[Grab] <plate> (1)", "[Grab] <plate> (2)")),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def eight():
+    """Eight examples of different activities."""
+    return tuple(
+        Example(f"text:{number}", title, title, description, steps_of(*lines), (f"text:{number}@maple",))
+        for number, (title, description, lines) in enumerate(TEXTS)
+    )
+
+
+@pytest.fixture
+def tiny(dataset, eight):
+    """A corpus of the eight, which are for validation, too."""
+    return Corpus(dataset, "activities", eight, eight)

@@ -1,0 +1,94 @@
+"""Checkpoints: a round trip, and everything that can be wrong with one."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from hearth.models.checkpoint import CARD, NAME, WEIGHTS, Checkpoint, load, save
+from hearth.models.model_registry import restore
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+WEIGHTS_OF = {"b": np.arange(6, dtype=np.float32).reshape(2, 3), "a": np.ones(2, dtype=np.float32).T}
+MADE = Checkpoint("nearest", {"singular": 0}, {"words": ["tv"]}, WEIGHTS_OF, {"seed": 3, "epochs": 2})
+
+
+@pytest.fixture
+def folder(tmp_path):
+    save(MADE, tmp_path / "made")
+    return tmp_path / "made"
+
+
+def code(folder):
+    with pytest.raises(HearthError) as raised:
+        restore(folder)
+    (fault,) = raised.value.diagnostics
+    assert fault.suggestion and fault.file
+    return fault.code
+
+
+def test_a_round_trip(folder):
+    found = load(folder)
+    assert (found.model, found.settings, found.content, found.trained) == (
+        "nearest", {"singular": 0}, {"words": ["tv"]}, {"seed": 3, "epochs": 2},
+    )  # fmt: skip
+    assert {name: array.tolist() for name, array in found.weights.items()} == {
+        name: array.tolist() for name, array in WEIGHTS_OF.items()
+    }
+    document = json.loads((folder / NAME).read_text())
+    assert document["licence"] and document["action_set"] and document["libraries"]["torch"]
+    assert "license:" in (folder / CARD).read_text() and "seed: 3" in (folder / CARD).read_text()
+
+
+def test_the_same_checkpoint_is_the_same_bytes(folder, tmp_path):
+    save(MADE, tmp_path / "again")
+    for name in (NAME, WEIGHTS, CARD):
+        assert (tmp_path / "again" / name).read_bytes() == (folder / name).read_bytes()
+
+
+def test_no_checkpoint(tmp_path):
+    assert code(tmp_path) == Code.MISSING_FILE
+    with pytest.raises(HearthError, match="has not been trained"):
+        restore("random-retrieval")
+
+
+def test_another_format_and_an_unknown_model(folder):
+    document = json.loads((folder / NAME).read_text())
+    for changed in ({"format": 99}, {"model": "of-the-future"}):
+        (folder / NAME).write_text(json.dumps(document | changed))
+        assert code(folder) == Code.UNSUPPORTED_FILE
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"format": 1}', '{"format": "one"}', "null"])
+def test_broken_json(folder, text):
+    (folder / NAME).write_text(text)
+    assert code(folder) == Code.DAMAGED_FILE
+
+
+def test_broken_weights(folder):
+    whole = (folder / WEIGHTS).read_bytes()
+    (folder / WEIGHTS).write_bytes(whole[:-1])
+    assert code(folder) == Code.DAMAGED_FILE
+    document = json.loads((folder / NAME).read_text())
+    import hashlib
+
+    broken = b"\xff" * 40
+    (folder / WEIGHTS).write_bytes(broken)
+    (folder / NAME).write_text(json.dumps(document | {"weights": hashlib.sha256(broken).hexdigest()}))
+    assert code(folder) == Code.DAMAGED_FILE
+    (folder / WEIGHTS).unlink()
+    assert code(folder) == Code.MISSING_FILE
+
+
+def test_changed_content_is_detected(folder):
+    document = json.loads((folder / NAME).read_text())
+    (folder / NAME).write_text(json.dumps(document | {"content": {"words": ["radio"]}}))
+    assert code(folder) == Code.DAMAGED_FILE
+
+
+def test_content_that_does_not_fit_the_model(folder):
+    """It is what was written, but the model needs a memory."""
+    assert code(folder) == Code.DAMAGED_FILE

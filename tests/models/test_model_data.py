@@ -1,0 +1,60 @@
+"""Examples of a dataset: nothing of test is in train, and requests know no programs."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import pytest
+
+import hearth
+from hearth.models.data import carved, corpus, examples, requests, shared
+from hearth.models.interface import Request
+from hearth.schemas.diagnostics import HearthError
+from hearth.scoring.dataset_scores import chosen
+
+
+def test_no_title_text_or_step_list_of_test_is_in_train():
+    """On the dataset that `make` builds."""
+    folder = Path(__file__).resolve().parents[2] / "data_out"
+    if not (folder / "publish/manifest.json").exists():
+        pytest.skip("run `make` first")
+    found = corpus(hearth.load(folder), "activities")
+    assert len(found.train) > 1_000
+    assert set(found.shared.values()) == {0}
+
+
+def test_what_train_and_test_share_is_counted_and_recorded(dataset, eight):
+    assert shared(eight[:4], eight[4:]) == {"titles": 0, "descriptions": 0, "step_lists": 0}
+    other = replace(eight[5], title="WASH hands", description="Go.")
+    assert shared(eight, [other, eight[2]]) == {"titles": 2, "descriptions": 1, "step_lists": 2}
+    assert corpus(dataset, "activities").facts["titles_of_test"] == 0
+
+
+def test_validation_is_of_other_activities(dataset):
+    found = corpus(dataset, "activities")
+    assert found.train and not {e.activity for e in found.train} & {e.activity for e in found.validation}
+    assert all(each.origin != "augmented" for each in found.train)
+    many = examples(dataset, "activities", "train")
+    assert len(many) > len(found.train)
+
+
+def test_carving_by_activity(eight):
+    train, validation = carved(eight * 3, 1)
+    assert len(train) + len(validation) == 24
+    assert not {e.activity for e in train} & {e.activity for e in validation}
+    assert validation
+
+
+def test_unknown_parts_are_named(dataset):
+    with pytest.raises(HearthError, match="there are activities"):
+        examples(dataset, "activities", "tomorrow")
+
+
+def test_requests_have_texts_and_worlds_and_no_programs(dataset):
+    assert [field.name for field in fields(Request)] == ["id", "title", "description", "sketch", "world"]
+    names = chosen(dataset)
+    for worlds in (False, True):
+        found = [each for share in requests(dataset, names, worlds=worlds) for each in share]
+        assert sorted(each.id for each in found) == names
+        assert all((each.world is not None) == worlds for each in found)
