@@ -1,0 +1,128 @@
+"""A challenge as its YAML file defines it: goals, starts, episodes, splits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from hearth.challenges.goal_grammar import GoalSet, Grammar
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.literals import Literal, Name
+from hearth.schemas.yaml_extent import packaged
+
+NAMES = ("wah", "owah")
+"""The challenges; each is a file of this package."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """Which tasks belong together.
+
+    Attributes:
+        tasks: how many.
+        sets: how many goal sets a goal is made of.
+        homes: where the agents are.
+        goals: `seen`, `held_out` or `all` (see `splits.goals_of`).
+    """
+
+    tasks: int
+    sets: int
+    homes: tuple[str, ...]
+    goals: str
+
+
+@dataclass(frozen=True)
+class Challenge:
+    """What agents are asked to do.
+
+    Attributes:
+        name: its identifier.
+        title: its name.
+        grammar: its goals.
+        never_at: classes of furniture that no thing of a goal is put at.
+        ticks: after which an episode ends.
+        partial: whether agents see only what is around them.
+        strides: metres that each agent walks in a tick.
+        actions: what agents may try.
+        train, test: homes of training and of testing.
+        held_out: how many goals of each set are for testing only.
+        splits: by name.
+        demonstrations: how many there are beside the tasks.
+    """
+
+    name: str
+    title: str
+    grammar: Grammar
+    never_at: frozenset[str]
+    ticks: int
+    partial: bool
+    strides: tuple[float, ...]
+    actions: frozenset[str]
+    train: tuple[str, ...]
+    test: tuple[str, ...]
+    held_out: int
+    splits: Mapping[str, Split]
+    demonstrations: int
+
+    @property
+    def agents(self) -> int:
+        """How many characters there are; the first is the one that is helped."""
+        return len(self.strides)
+
+
+@cache
+def challenge(name: str) -> Challenge:
+    """A challenge by name; read once.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there is none of that name.
+    """
+    if name not in NAMES:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no challenge `{name[:40]}`", suggestion=" or ".join(NAMES))
+    data = packaged("hearth.challenges", f"{name}.yaml")
+    homes = {part: tuple(names) for part, names in data["homes"].items()}
+    splits = {
+        part: Split(given["tasks"], given["sets"], homes[given["homes"]], given["goals"])
+        for part, given in data["splits"].items()
+    }
+    sets = {each: _goal_set(each, given) for each, given in data["sets"].items()}
+    return Challenge(
+        name,
+        data["title"],
+        Grammar(sets, data["most_predicates"]),
+        frozenset(data["never_at"]),
+        data["ticks"],
+        data["partial"],
+        tuple(data["strides"]),
+        frozenset(data["actions"]),
+        homes["train"],
+        homes["test"],
+        data["held_out"],
+        splits,
+        data["demonstrations"],
+    )
+
+
+def _goal_set(name: str, given: Mapping[str, Any]) -> GoalSet:
+    return GoalSet(
+        name,
+        given["title"],
+        given["relation"],
+        tuple(given["targets"]),
+        given.get("most", {}),
+        tuple((choice,) if isinstance(choice, str) else tuple(choice) for choice in given.get("each", ())),
+        tuple(given.get("pool", ())),
+        tuple(given.get("total", (0, 0))),
+        tuple(given.get("people", (0, 0))),
+        tuple(map(_literal, given.get("always", ()))),
+        tuple(map(_literal, given.get("free", ()))),
+    )
+
+
+def _literal(text: str) -> Literal[Name]:
+    name, *terms = re.findall(r"[\w:]+", text)
+    return Literal(name, tuple(terms))

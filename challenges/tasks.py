@@ -1,0 +1,84 @@
+"""Tasks: who is where, what one wants, and the home in which another may have seen it done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from random import Random
+
+from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.starts import start
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.rng import derive, rng
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+
+@dataclass(frozen=True)
+class Task:
+    """Something to do in a home.
+
+    Attributes:
+        id: unique among the tasks of a challenge.
+        challenge: its name.
+        split: which tasks it is one of.
+        home: where it is done.
+        demonstration_home: where it was seen done; another home.
+        sets: names of the goal sets that the goal is of.
+        goal: in the words of the grammar; `goal_in` names the furniture of a home.
+        seed: of the start, and of all that is derived from it.
+    """
+
+    id: str
+    challenge: str
+    split: str
+    home: str
+    demonstration_home: str
+    sets: tuple[str, ...]
+    goal: Goal
+    seed: int
+
+    def start(self, knowledge: Knowledge) -> World:
+        """The world in which it starts; equal every time."""
+        return start(challenge(self.challenge), self.goal, self.home, self.seed, knowledge)
+
+    def demonstration_start(self, knowledge: Knowledge) -> World:
+        """The world in which its demonstration starts, with all the challenge's characters."""
+        seed = derive(self.seed, "demonstration")
+        return start(challenge(self.challenge), self.goal, self.demonstration_home, seed, knowledge)
+
+    def goal_in(self, home: Home) -> Goal:
+        """The goal with the instances of furniture of a home."""
+        return challenge(self.challenge).grammar.in_home(self.goal, home)
+
+
+def task(name: str = "wah", split: str = "train", number: int = 0, seed: int = 0, goal: str = "") -> Task:
+    """A task of a kind, drawn for itself: to try agents with. The published tasks are those of `splits`.
+
+    Args:
+        name: of the challenge.
+        split: whose homes it is in.
+        number, seed: which of all such tasks.
+        goal: as text; drawn where empty.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there is no such challenge or split; every fault of the goal.
+    """
+    which = challenge(name)
+    chooser = rng(seed, "task", name, split, number)
+    if split not in which.splits:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no split `{split[:40]}`", suggestion=", ".join(which.splits))
+    wanted, sets = which.grammar.sample(chooser, which.splits[split].sets)
+    if goal:
+        wanted = which.grammar.read(goal)
+        sets = tuple(each for each, one in which.grammar.sets.items() if {x for x, _ in wanted} & {*one.predicates})
+    return drawn(which, split, f"{name}-{split}-tried-{seed}-{number}", wanted, sets, chooser)
+
+
+def drawn(which: Challenge, split: str, task_id: str, goal: Goal, sets: tuple[str, ...], chooser: Random) -> Task:
+    """A task with a goal: its home is one of the split's, its demonstration's another of the homes of training."""
+    home = chooser.choice(which.splits[split].homes)
+    other = chooser.choice([each for each in which.train if each != home])
+    return Task(task_id, which.name, split, home, other, sets, goal, chooser.getrandbits(63))
