@@ -1,0 +1,161 @@
+"""What an agent believes about where things are and what state they are in (thesis 6.4, B.1.1).
+
+A thing that was not seen yet is in any of the rooms and closed containers with equal probability. One world is drawn
+from that belief and kept; a thing is drawn anew only once what is seen refutes its place.
+"""
+
+from __future__ import annotations
+
+from random import Random
+from typing import NamedTuple
+
+from hearth.schemas.literals import HOLDS
+from hearth.simulation.observation.views import View
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices, lowest, mask_of
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.states import CLEAN, CLOSED, OFF, OPEN, PLUGGED_IN
+from hearth.simulation.world.world import World
+
+USUAL = {CLOSED: "CAN_OPEN", OFF: "HAS_SWITCH", PLUGGED_IN: "HAS_PLUG", CLEAN: "GRABBABLE"}
+"""The states in which what is not seen yet is believed to be, and what only things with a property are in."""
+
+
+class Place(NamedTuple):
+    """Where a thing is.
+
+    Attributes:
+        relation: `INSIDE` a room or a container, `ON` something, or, of who holds it, `HOLDS`.
+        node: index of that room, thing or character.
+    """
+
+    relation: str
+    node: int
+
+
+def place_of(world: World, thing: int) -> Place:
+    """Where a thing is in a world: who holds it, what it is in or on, or else its room."""
+    for agent in world.agents:
+        if agent.held >> thing & 1:
+            return Place(HOLDS, agent.index)
+    rooms = world.home.rooms
+    inside = rows.inside(world, thing) & ~rooms
+    if inside:
+        return Place("INSIDE", lowest(inside))
+    on = rows.on(world, thing) & ~rooms
+    return Place("ON", lowest(on)) if on else Place("INSIDE", rows.room_of(world, thing))
+
+
+def containers(home: Home) -> int:
+    """What stays where it is, can be opened, and according to the knowledge has things inside."""
+    fixed = home.properties["CAN_OPEN"] & home.everything & ~(home.properties["GRABBABLE"] | home.rooms | home.doors)
+    known = home.knowledge
+    return mask_of(
+        i for i in indices(fixed) if any(placement.edge == "INSIDE" for placement in known.holds(home.classes[i]))
+    )
+
+
+def usual_containers(home: Home, name: str) -> int:
+    """Those of `containers` in which things of a class belong according to the knowledge; all where none is known."""
+    every = containers(home)
+    known = home.knowledge
+    names = {placement.destination for placement in known.placements(name) if placement.edge == "INSIDE"}
+    usual = mask_of(i for i in indices(every) if not names.isdisjoint(known.same_class(home.classes[i])))
+    return usual or every
+
+
+class Belief:
+    """The believed places of some things, and the believed states of everything.
+
+    Attributes:
+        things: the set of the things whose places it keeps.
+        where: the place of each in the world that was drawn.
+        known: those that were seen at that place.
+        states: the believed sets of `World.states`.
+        seen: what is in view.
+        room: index of the room that the agent is in, or -1.
+    """
+
+    def __init__(self, home: Home, things: int, chooser: Random, *, usual: bool = True) -> None:
+        """Nothing seen yet.
+
+        Args:
+            home: of the episode.
+            things: whose places are of interest.
+            chooser: draws places.
+            usual: a thing is in a container in which its class belongs, until all of those are refuted; otherwise in
+                any, as in the thesis.
+        """
+        self.things = things
+        self.where: dict[int, Place] = {}
+        self.known = self.seen = 0
+        self.room = -1
+        empty = (0,) * len(home.states)
+        self.states: tuple[int, ...] = tuple(
+            home.properties[USUAL[number]] & home.everything if number in USUAL else row
+            for number, row in enumerate(empty)
+        )
+        self._rooms = home.rooms
+        self._closable = containers(home)
+        self._everywhere = self._closable | home.rooms & home.everything
+        names = {home.classes[i] for i in indices(things)} if usual else set()
+        places = {name: usual_containers(home, name) | home.rooms & home.everything for name in names}
+        self._usual = {i: places.get(home.classes[i], self._everywhere) for i in indices(things)}
+        self._possible = dict(self._usual)
+        self._rest = dict.fromkeys(self._usual, self._everywhere)
+        self._chooser = chooser
+
+    def observe(self, view: View) -> None:
+        """Take in what is seen now."""
+        world, mask = view.world, view.mask
+        self.seen = mask
+        self.room = -1 if view.me.room is None else world.home.index[view.me.room]
+        self.states = tuple([old & ~mask | new & mask for old, new in zip(self.states, world.states, strict=True)])
+        empty = self._closable & mask & world.states[OPEN] | (1 << self.room if self.room >= 0 else 0)
+        for thing in indices(self.things & mask):
+            self.where[thing] = place_of(world, thing)
+        self.known |= self.things & mask
+        for thing in indices(self.things & ~mask):
+            if self.known >> thing & 1:
+                if self._refuted(self.where[thing], empty):
+                    self.known &= ~(1 << thing)
+                    self._possible[thing] = self._usual[thing] & ~empty
+                    self._rest[thing] = self._everywhere
+                    self._draw(thing, empty)
+            else:
+                self._possible[thing] &= ~empty
+                self._rest[thing] &= ~empty
+                if thing not in self.where or not self._possible[thing] >> self.where[thing].node & 1:
+                    self._draw(thing, empty)
+
+    def _refuted(self, place: Place, empty: int) -> bool:
+        """Whether a thing that is out of view can't be there: its place is in view, or its holder out of view."""
+        if place.relation == HOLDS:
+            return True
+        if place.relation == "ON":
+            return bool(self.seen >> place.node & 1)
+        return bool(empty >> place.node & 1)
+
+    def _draw(self, thing: int, empty: int) -> None:
+        """A place among those that nothing seen refutes: where such things belong, or else anywhere; once every one is
+        refuted, it begins anew.
+        """
+        possible = self._possible[thing] or self._rest[thing]
+        if not possible:
+            possible = self._rest[thing] = self._everywhere & ~empty or self._everywhere
+        self._possible[thing] = possible
+        self.where[thing] = Place("INSIDE", self._chooser.choice(list(indices(possible))))
+
+    def shut_in(self, thing: int) -> int:
+        """Index of the closed container in which a thing is believed to be, or -1."""
+        place = self.where.get(thing)
+        if place is None or place.relation != "INSIDE" or self._rooms >> place.node & 1:
+            return -1
+        return place.node if self.states[CLOSED] >> place.node & 1 else -1
+
+    def probabilities(self, thing: int) -> dict[int, float]:
+        """Where a thing may be: the believed probability by index of the room, container, surface or holder."""
+        if self.known >> thing & 1:
+            return {self.where[thing].node: 1.0}
+        possible = self._possible[thing]
+        return dict.fromkeys(indices(possible), 1.0 / possible.bit_count())

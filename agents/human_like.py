@@ -1,0 +1,172 @@
+"""The human-like agent: belief, subgoals by tree search, instructions by regression (thesis 6.4, B.1.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from random import Random
+
+from hearth.agents.belief import Belief
+from hearth.agents.distances import Distances
+from hearth.agents.mcts import PUBLISHED, Search, Tree
+from hearth.agents.regression import Regression
+from hearth.agents.subgoals import Aims, Missing, Subgoal
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import HANDS, Literal
+from hearth.schemas.program import Step
+from hearth.schemas.rng import rng
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.observation.views import View
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.states import CLOSED, OPEN
+
+
+@dataclass(frozen=True, slots=True)
+class Habits:
+    """How a human-like agent decides.
+
+    Attributes:
+        search: settings of the tree search.
+        closes: whether it closes what it opened, once nothing wanted is left there.
+        usual: it looks for things where such things belong first; otherwise anywhere, as in the thesis.
+        doubt: ticks that a subgoal counts more if its thing was not seen.
+    """
+
+    search: Search = PUBLISHED
+    closes: bool = True
+    usual: bool = True
+    doubt: float = 10.0
+
+
+class HumanLike:
+    """Does what brings its goal about, as far as it knows where things are.
+
+    Attributes:
+        subgoal: what it is doing now; None before its first tick, and when nothing is left to be done.
+    """
+
+    def __init__(self, habits: Habits = Habits()) -> None:
+        self.habits = habits
+        self.subgoal: Subgoal | None = None
+
+    def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
+        """Begin an episode; without a goal it does nothing (see `agents.protocol`)."""
+        home = observation.world.home
+        self.goal = goal or Goal()
+        self.chooser: Random = rng(seed, "agent", observation.agent)
+        self.me = home.index[observation.me.node]
+        self.aims = Aims(self.goal, home, self.me)
+        self.belief = Belief(home, self.aims.things, self.chooser, usual=self.habits.usual)
+        self.distances = Distances(home, observation.me.stride)
+        self.subgoal = None
+        self.opened = 0
+
+    def act(self, observation: View, legal: Legal) -> Step | None:
+        """The first instruction of its plan."""
+        self.belief.observe(observation)
+        self._note_opened(observation)
+        missing = self.aims.missing(self.belief, observation)
+        open_now = self.aims.open(self.belief, missing)
+        self._decide(observation, open_now, missing)
+        needed = self._needed(missing)
+        search = Regression(observation, legal, self.belief, self._spare(observation, needed))
+        if (clearing := self._clearing(search, needed)) is not None:
+            return clearing
+        step = search.first(self.subgoal.literal) if self.subgoal else None
+        return self._closing(search, step, open_now, needed) or step
+
+    def _decide(self, view: View, open_now: list[Subgoal], missing: Missing) -> None:
+        """Keep the subgoal while it is one of those to choose among, and nothing has failed."""
+        subgoals = self.available(view, open_now, missing)
+        if self.subgoal not in subgoals or self._failed(view):
+            self.subgoal = self.choose(view, subgoals, missing)
+
+    def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
+        """The subgoals among which it chooses: those whose things it holds, before all others."""
+        held = view.world.agents[view.agent].held
+        return [each for each in open_now if each.target >= 0 and held >> each.thing & 1] or open_now
+
+    def choose(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Subgoal | None:
+        """One of some subgoals, by tree search."""
+        if len(subgoals) < 2:
+            return subgoals[0] if subgoals else None
+        return subgoals[self.search(view, subgoals, missing).best]
+
+    def search(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Tree:
+        """The tree over some subgoals."""
+        needed = {part: number for part, (number, _) in missing.items()}
+        parts = [each.part for each in subgoals]
+
+        def cost(start: int, number: int) -> tuple[float, int]:
+            return self.cost(start, subgoals[number])
+
+        return Tree(parts, needed, cost, self.distances.cell(view.me.place), self.chooser, self.habits.search)
+
+    def cost(self, cell: int, subgoal: Subgoal) -> tuple[float, int]:
+        """Ticks that a subgoal takes from a cell by belief, and the cell at which it ends."""
+        place = self.belief.where.get(subgoal.thing)
+        ticks = 0.0
+        if place is None or place.node != self.me:
+            ticks, cell = self._walked(cell, subgoal.thing if place is None else place.node)
+            ticks += 1 + (self.belief.shut_in(subgoal.thing) >= 0)
+            ticks += 0 if place is None or self.belief.known >> subgoal.thing & 1 else self.habits.doubt
+        if subgoal.target >= 0:
+            walk, cell = self._walked(cell, subgoal.target)
+            shut = subgoal.literal.name == "INSIDE" and self.belief.states[CLOSED] >> subgoal.target & 1
+            ticks += walk + 1 + shut
+        return ticks, cell
+
+    def _walked(self, cell: int, node: int) -> tuple[float, int]:
+        metres, end = self.distances.leg(cell, node)
+        return self.distances.ticks(metres), end
+
+    def _failed(self, view: View) -> bool:
+        """Whether its last instruction failed, so that another subgoal may be better."""
+        return view.me.last is not None and view.me.last.failure is not None
+
+    def _needed(self, missing: Missing) -> int:
+        """The things that could still count for a missing part."""
+        found = 0
+        for wanted in self.aims.wanted:
+            if wanted.part in missing:
+                found |= wanted.counted & ~missing[wanted.part][1]
+        return found & self.aims.things
+
+    def _spare(self, view: View, needed: int) -> tuple[int, ...]:
+        """What it holds and would put down first, if it needs a hand: what is not needed, then what is not its subgoal
+        now.
+        """
+        pursued = -1 if self.subgoal is None else self.subgoal.thing
+        others = [i for i in rows.held_indices(view.world.agents[view.agent]) if i != pursued]
+        return tuple(sorted(others, key=lambda i: bool(needed >> i & 1)))
+
+    def _clearing(self, search: Regression, needed: int) -> Step | None:
+        """Put something down, if both hands are full of what is not needed."""
+        me = search.me
+        if not (me.right and me.left) or me.held & needed or not search.spare:
+            return None
+        return search.first(Literal(HANDS[0], (self.me, search.spare[0]), negated=True))
+
+    def _note_opened(self, view: View) -> None:
+        """Remember what it opened; forget what is closed again."""
+        last, home = view.me.last, view.world.home
+        if last is not None and last.failure is None:
+            instruction = last.instruction
+            opened = instruction.objects if home.knowledge.state_of(instruction.action) == "OPEN" else ()
+            self.opened |= mask_of(home.index[ref.node] for ref in opened if ref.node is not None)
+        self.opened &= self.belief.states[OPEN]
+
+    def _closing(self, search: Regression, step: Step | None, open_now: Sequence[Subgoal], needed: int) -> Step | None:
+        """Close what it opened before it walks away, if nothing wanted is left there and nothing more is to go in."""
+        if not self.habits.closes or not self.opened or not self._leaves(search, step):
+            return None
+        where = self.belief.where
+        kept = mask_of(each.target for each in open_now if each.target >= 0)
+        kept |= mask_of(where[thing].node for thing in indices(needed & self.belief.known))
+        container = next((i for i in indices(self.opened & ~kept) if search.near(i)), -1)
+        return search.first(Literal("CLOSED", (container,))) if container >= 0 else None
+
+    def _leaves(self, search: Regression, step: Step | None) -> bool:
+        """Whether an instruction ends what there was to do here."""
+        return step is None or step.action in search.home.knowledge.group("goes")

@@ -1,0 +1,149 @@
+"""Subgoals: what is still to be done for a goal, by belief, one thing at a time (thesis B.1.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from hearth.agents.belief import Belief
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
+from hearth.schemas.vocabulary import STATE_ID
+from hearth.simulation.holds import Candidates, binary, candidates
+from hearth.simulation.observation.views import View
+from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.home import Home
+
+Missing = dict[int, tuple[int, int]]
+"""By part of a goal that is not reached by belief: how many are missing, and the set of what counts."""
+
+
+class Subgoal(NamedTuple):
+    """A literal that is to hold of certain nodes.
+
+    Attributes:
+        literal: about indices of nodes: `ON(plate, table)`, `HOLDS(me, book)`, `ON(me, sofa)`, `ON(television)`.
+        part: which of the goal's literals it is for.
+        thing: what is carried or handled: the index of the plate, the book, the sofa, the television.
+        target: where it is to go; -1 if it goes nowhere.
+    """
+
+    literal: Literal[int]
+    part: int
+    thing: int
+    target: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """One literal of a goal in a home.
+
+    Attributes:
+        part: its number in the goal.
+        count: how often it must hold.
+        candidates: the nodes of which it may hold (see `simulation.holds`).
+        last: it is about the agent itself, and comes after the others; 2 if it ends in rest.
+    """
+
+    part: int
+    count: int
+    candidates: Candidates
+    last: int
+
+    @property
+    def literal(self) -> Literal[Name]:
+        """The literal as the goal has it."""
+        return self.candidates.literal
+
+    @property
+    def counted(self) -> int:
+        """What may be counted for it."""
+        return self.candidates.targets if self.last else self.candidates.subjects
+
+
+class Aims:
+    """A goal as one agent pursues it.
+
+    Attributes:
+        wanted: its literals, those about other characters left out.
+        things: the movable things that it is about.
+    """
+
+    def __init__(self, goal: Goal, home: Home, me: int) -> None:
+        """Read a goal.
+
+        Args:
+            goal: counted literals; joined parts are not pursued.
+            home: of the episode.
+            me: index of the agent's node.
+        """
+        self._home, self._me = home, me
+        every = [self._wanted(number, literal, count) for number, (literal, count) in enumerate(goal)]
+        self.wanted = tuple(each for each in every if self._mine(each))
+        self.things = 0
+        for each in self.wanted:
+            self.things |= each.counted & home.properties["GRABBABLE"]
+
+    def _wanted(self, part: int, literal: Literal[Name], count: int) -> Wanted:
+        found = candidates(literal, self._home)
+        last = 0
+        if found.by_target:
+            last = 1 if literal.name in (HOLDS, *HANDS) else 2
+        return Wanted(part, found.needed(count), found, last)
+
+    def _mine(self, wanted: Wanted) -> bool:
+        """Whether it is the agent's to do: not what another character is to hold or sit on."""
+        return not wanted.candidates.by_target or bool(wanted.candidates.subjects >> self._me & 1)
+
+    def met(self, wanted: Wanted, belief: Belief, view: View) -> int:
+        """The set of what is counted for a literal by belief."""
+        name, targets = wanted.literal.name, wanted.candidates.targets
+        if wanted.last:
+            found = binary(name)(view.world, self._me, targets)
+        elif name in STATE_ID and len(wanted.literal.terms) == 1:
+            found = belief.states[STATE_ID[name]] & wanted.candidates.subjects
+        else:
+            found = 0
+            for thing in indices(wanted.candidates.subjects & belief.known):
+                relation, node = belief.where[thing]
+                if relation == name and targets >> node & 1:
+                    found |= 1 << thing
+        return wanted.counted & ~found if wanted.literal.negated else found
+
+    def missing(self, belief: Belief, view: View) -> Missing:
+        """The parts of the goal that are not reached by belief."""
+        found = {}
+        for wanted in self.wanted:
+            met = self.met(wanted, belief, view)
+            if (number := wanted.count - met.bit_count()) > 0:
+                found[wanted.part] = number, met
+        return found
+
+    def open(self, belief: Belief, missing: Missing) -> list[Subgoal]:
+        """The subgoals that would bring a missing part nearer: first those about things, then what is to be held, then
+        where to rest. What another character holds is left to it.
+        """
+        for last in range(3):
+            found = [
+                subgoal
+                for wanted in self.wanted
+                if wanted.last == last and wanted.part in missing
+                for subgoal in self._open(wanted, missing[wanted.part][1], belief)
+            ]
+            if found:
+                return found
+        return []
+
+    def _open(self, wanted: Wanted, met: int, belief: Belief) -> list[Subgoal]:
+        things = wanted.counted & ~met
+        held = {t for t in indices(things) if t in belief.where and belief.where[t].relation == HOLDS}
+        free = [t for t in indices(things) if t not in held or belief.where[t].node == self._me]
+        name = wanted.literal.name
+        if wanted.last:
+            return [Subgoal(Literal(name, (self._me, t)), wanted.part, t) for t in free]
+        if len(wanted.literal.terms) == 1:
+            return [Subgoal(Literal(name, (t,), wanted.literal.negated), wanted.part, t) for t in free]
+        if wanted.literal.negated:
+            return [Subgoal(Literal(HOLDS, (self._me, t)), wanted.part, t) for t in free]
+        target = lowest(wanted.candidates.targets)
+        return [Subgoal(Literal(name, (t, target)), wanted.part, t, target) for t in free]
