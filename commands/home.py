@@ -1,11 +1,11 @@
-"""`home`: list, show, check, convert, edit and generate homes."""
+"""`home`: list, show, check, convert, export, edit and generate homes."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
 
 app = typer.Typer(
-    no_args_is_help=True, add_completion=False, help="The homes: list, show, check, convert, edit and generate them."
+    no_args_is_help=True,
+    add_completion=False,
+    help="The homes: list, show, check, convert, export, edit and generate them.",
 )
 
 
@@ -138,6 +140,37 @@ def convert(home: str, out: Path, layout: bool = False, homes: Path | None = Non
         made = library.graph_layout(home, read_knowledge(None), homes).graph if layout else _graph(home, homes)
         written = exporting.write_release(made, out)
     output.say(f"{out}: {output.counted(written, 'node')}", {"home": home, "file": out, "nodes": written}, as_json)
+
+
+@app.command()
+def export(
+    home: str,
+    form: Literal["gltf", "obj"] = "gltf",
+    out: Path | None = None,
+    seed: int = 0,
+    homes: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Write what is in a home for other programs, as they draw it: Blender, three.js, MuJoCo.
+
+    A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colours, in an
+    .mtl beside it, and no textures.
+
+    \b
+    Examples:
+      python cli.py home export maple --format gltf
+      python cli.py home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
+    """
+    from hearth.rendering.scene.interchange import ENDINGS, write
+    from hearth.rendering.scene.prepared import PreparedScene
+    from hearth.rendering.scene.with_geometry import with_geometry
+
+    known = read_knowledge(None)
+    drawable = with_geometry(_graph(home, homes), home, known)
+    file = out or Path(Path(home).stem + ENDINGS[form])
+    written = write(PreparedScene(drawable.graph, known, seed).scene(), file, form)
+    output.note(drawable.note(home))
+    output.say(f"{file}: {output.counted(written, 'node')}", {"home": home, "file": file, "nodes": written}, as_json)
 
 
 @app.command()

@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code
 EXTRAS = {
     "dask": ("dask", "distributed"),
     "models": ("torch", "safetensors"),
-    "pictures": ("cv2", "matplotlib", "numba", "open3d"),
+    "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
     "plan": ("unified_planning",),
     "remote": ("fsspec",),
 }

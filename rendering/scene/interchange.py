@@ -1,0 +1,177 @@
+"""A scene in forms that other programs open: glTF (one file, `.glb`) and OBJ, by trimesh."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import chain, count
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hearth.rendering.arrays import Floats
+from hearth.rendering.models.looks import Model, draw
+from hearth.rendering.models.mesh import Mesh, rotation
+from hearth.rendering.models.textures import OFFSETS, SLOTS, atlas, decode
+from hearth.rendering.models.weave import SIDE
+from hearth.rendering.people.figure import Figure
+from hearth.rendering.scene.instances import Thing, placed
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
+from hearth.storage.files import replacing
+
+ENDINGS = {"gltf": ".glb", "obj": ".obj"}
+"""The file of each form. A `.glb` has its textures in it; an `.obj` has colours alone, in an `.mtl` beside it."""
+
+ROUGH, SMOOTH = 0.9, 0.25
+"""Roughness of a matt and of a polished surface."""
+
+
+def write(scene: Scene, path: Path, form: str = "gltf") -> int:
+    """Write a scene for other programs; returns the number of nodes of the graph in it.
+
+    Axes are the scene's: metres, y up, +z ahead. In a glTF each thing is a node `class_id` whose extras have `id` and
+    `class`; what is drawn in several panels, as walls are, is several nodes of one id.
+
+    Args:
+        scene: with all its things.
+        path: the file; an OBJ's materials stand beside it.
+        form: one of `ENDINGS`.
+
+    Raises:
+        HearthError: UNSUPPORTED_FILE: the file has the ending of no form, or of another; MISSING_FILE without trimesh.
+    """
+    if path.suffix != ENDINGS.get(form):
+        message, remedy = (
+            f"{form} is not written as {path.suffix or 'a file without ending'}",
+            f"end in {ENDINGS[form]}",
+        )
+        raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(path), suggestion=remedy)
+    library("trimesh")
+    found = _Exchanged(scene, textures=form == "gltf").made
+    for name, data in (_gltf(found, path) if form == "gltf" else _obj(found, path)).items():
+        with replacing(path.with_name(name)) as temporary:
+            temporary.write_bytes(data)
+    return len({thing.id for thing in scene.everything})
+
+
+def _gltf(found: Any, path: Path) -> dict[str, bytes]:
+    return {path.name: found.export(file_type="glb", include_normals=True)}
+
+
+def _obj(found: Any, path: Path) -> dict[str, bytes]:
+    from trimesh.exchange.obj import export_obj
+
+    text, files = export_obj(found, include_normals=True, return_texture=True, mtl_name=f"{path.stem}.mtl")
+    return {**files, path.name: text.encode()}
+
+
+class _Exchanged:
+    """A scene of trimesh; things of equal models share their triangles."""
+
+    def __init__(self, scene: Scene, textures: bool) -> None:
+        from trimesh import Scene as Made
+
+        self._textures = textures
+        self.made: Any = Made()
+        self._names: set[str] = set()
+        self._models: dict[Model | Figure, list[str]] = {}
+        for thing in scene.everything:
+            self._add(thing)
+
+    def _add(self, thing: Thing) -> None:
+        name = self._unused(f"{thing.class_name}_{thing.id}")
+        extras = {"id": thing.id, "class": thing.class_name}
+        graph = self.made.graph
+        graph.update(frame_from="world", frame_to=name, matrix=_matrix(thing), metadata=extras)
+        for number, key in enumerate(self._keys(thing, name)):
+            graph.update(frame_from=name, frame_to=f"{name}.{number}", geometry=key)
+
+    def _keys(self, thing: Thing, name: str) -> list[str]:
+        """The names of a thing's geometries, one for each material."""
+        if thing.structural:
+            return self._kept(name, placed(thing))
+        if thing.model not in self._models:
+            mesh = draw(thing.model) if isinstance(thing.model, Model) else _standing(thing)
+            self._models[thing.model] = self._kept(f"{thing.class_name}.{len(self._models)}", mesh)
+        return self._models[thing.model]
+
+    def _kept(self, name: str, mesh: Mesh) -> list[str]:
+        found = {f"{name}.{number}": piece for number, piece in enumerate(_by_material(mesh, self._textures))}
+        self.made.geometry.update(found)
+        return list(found)
+
+    def _unused(self, name: str) -> str:
+        panels = (f"{name}.panel{number}" for number in count(2))
+        found = next(each for each in chain((name,), panels) if each not in self._names)
+        self._names.add(found)
+        return found
+
+
+def _matrix(thing: Thing) -> Floats:
+    """(4, 4) from the model's frame to the home's; parts of the building are in the home's already."""
+    matrix = np.eye(4, dtype=np.float32)
+    if not thing.structural:
+        matrix[:3, :3] = rotation("y", thing.yaw)
+        matrix[:3, 3] = thing.position
+    return matrix
+
+
+def _standing(thing: Thing) -> Mesh:
+    from hearth.rendering.people.figure import figure_mesh
+
+    assert isinstance(thing.model, Figure)
+    return figure_mesh(thing.model)
+
+
+def _by_material(mesh: Mesh, textures: bool) -> list[Any]:
+    """A mesh as one of trimesh for each colour, texture, glow and shine."""
+    slots = mesh.textures if textures else np.full_like(mesh.textures, SLOTS["plain"])
+    rows = np.column_stack((mesh.surface.round(4), slots.astype(np.float32)))
+    kinds, of = np.unique(rows, axis=0, return_inverse=True)
+    return [_piece(mesh, np.flatnonzero(of.ravel() == number), kind) for number, kind in enumerate(kinds)]
+
+
+def _piece(mesh: Mesh, chosen: Any, kind: Floats) -> Any:
+    from trimesh import Trimesh
+    from trimesh.visual.texture import TextureVisuals
+
+    corners = mesh.corners[chosen].reshape(-1, 3)
+    # Pictures count their rows from the top, as `mesh.uvs` do, and trimesh turns them over when it writes.
+    uvs = mesh.uvs[chosen].reshape(-1, 2) * (1, -1) + (0, 1)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    look = TextureVisuals(uv=uvs, material=_material(tuple(map(float, kind))))
+    normals = mesh.normals[chosen].reshape(-1, 3)
+    return Trimesh(corners, faces, vertex_normals=normals, visual=look, process=False)
+
+
+@cache
+def _material(kind: tuple[float, ...]) -> Any:
+    """The material of (red, green, blue, glow, shine, slot of the texture)."""
+    from trimesh.visual.material import PBRMaterial
+
+    *color, glow, shine, slot = kind
+    picture, brightest = (None, 1.0) if int(slot) == SLOTS["plain"] else _picture(int(slot))
+    base = [min(1.0, value * brightest) for value in color]
+    return PBRMaterial(
+        baseColorFactor=np.array([*base, 1.0]),
+        baseColorTexture=picture,
+        emissiveFactor=np.clip(np.array(color) * glow, 0, 1),
+        metallicFactor=0.0,
+        roughnessFactor=ROUGH + (SMOOTH - ROUGH) * shine,
+        doubleSided=True,
+    )
+
+
+@cache
+def _picture(slot: int) -> tuple[Any, float]:
+    """A texture as a picture in sRGB, and the linear value of its brightest part."""
+    from PIL import Image
+
+    light = decode()[atlas()[slot, OFFSETS[0] : OFFSETS[1]].reshape(SIDE, SIDE, 3)]
+    brightest = float(light.max()) or 1.0
+    share = light / brightest
+    srgb = np.where(share <= 0.0031308, share * 12.92, 1.055 * share ** (1 / 2.4) - 0.055)
+    return Image.fromarray((srgb * 255 + 0.5).astype(np.uint8)), brightest
