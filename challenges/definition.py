@@ -9,10 +9,12 @@ from functools import cache
 from typing import Any
 
 from hearth.challenges.goal_grammar import GoalSet, Grammar
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.yaml_extent import packaged
+from hearth.simulation.rules import DEFAULT, Rules
 
 NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
@@ -46,12 +48,14 @@ class Challenge:
         never_at: classes of furniture that no thing of a goal is put at.
         ticks: after which an episode ends.
         partial: whether agents see only what is around them.
+        bodies: whether agents stand in each other's way.
         strides: metres that each agent walks in a tick.
-        actions: what agents may try.
+        actions: the group of actions that agents may try.
         train, test: homes of training and of testing.
         held_out: how many goals of each set are for testing only.
         splits: by name.
         demonstrations: how many there are beside the tasks.
+        habits: probabilities of what makes demonstrations hard to read (see `demonstrator`).
     """
 
     name: str
@@ -60,18 +64,29 @@ class Challenge:
     never_at: frozenset[str]
     ticks: int
     partial: bool
+    bodies: bool
     strides: tuple[float, ...]
-    actions: frozenset[str]
+    actions: str
     train: tuple[str, ...]
     test: tuple[str, ...]
     held_out: int
     splits: Mapping[str, Split]
     demonstrations: int
+    habits: Mapping[str, float]
 
     @property
     def agents(self) -> int:
         """How many characters there are; the first is the one that is helped."""
         return len(self.strides)
+
+    @property
+    def rules(self) -> Rules:
+        """How actions are read."""
+        return DEFAULT._replace(bodies=self.bodies)
+
+    def allowed(self, knowledge: Knowledge) -> frozenset[str]:
+        """The actions that agents may try."""
+        return knowledge.group(self.actions)
 
 
 @cache
@@ -97,13 +112,15 @@ def challenge(name: str) -> Challenge:
         frozenset(data["never_at"]),
         data["ticks"],
         data["partial"],
+        data["bodies"],
         tuple(data["strides"]),
-        frozenset(data["actions"]),
+        data["actions"],
         homes["train"],
         homes["test"],
         data["held_out"],
         splits,
         data["demonstrations"],
+        data["habits"],
     )
 
 

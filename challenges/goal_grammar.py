@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise, product
@@ -194,18 +194,21 @@ class Grammar:
         return {_squeezed(str(literal)): literal for literal in self.predicates}
 
     def sample(self, chooser: Random, sets: int = 1) -> tuple[Goal, tuple[str, ...]]:
-        """A goal of some sets at once, drawn anew until it has few enough predicates, and their names.
+        """A goal of some sets, and their names; errors as of `sample_of`."""
+        some = tuple(chooser.choice(list(combinations(self.sets, sets)) or [()]))
+        return self.sample_of(some, chooser), some
+
+    def sample_of(self, sets: Sequence[str], chooser: Random) -> Goal:
+        """A goal of some sets at once, drawn anew until it has few enough predicates.
 
         Raises:
-            HearthError: BAD_ARGUMENT: there are fewer sets, or all their goals are too large.
+            HearthError: BAD_ARGUMENT: there are no sets, or all goals drawn are too large.
         """
-        names = list(self.sets)
-        for _ in range(TRIES if 0 < sets <= len(names) else 0):
-            some = tuple(sorted(chooser.sample(names, sets), key=names.index))
-            goal = self.joined(self._one(name, chooser) for name in some)
+        for _ in range(TRIES if sets else 0):
+            goal = self.joined(self._one(name, chooser) for name in sets)
             if self.size(goal) <= self.most_predicates:
-                return goal, some
-        raise HearthError.of(Code.BAD_ARGUMENT, f"no goal of {sets} sets has {self.most_predicates} predicates")
+                return goal
+        raise HearthError.of(Code.BAD_ARGUMENT, f"no goal of {len(sets)} sets has {self.most_predicates} predicates")
 
     def _one(self, name: str, chooser: Random) -> Goal:
         goals = self.sets[name].goals

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from hearth.agents.protocol import Agent
+from hearth.challenges.guard import AgentError
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import derive
 from hearth.simulation.env import Env
@@ -23,11 +24,13 @@ class Player:
 
     Attributes:
         agent: who decides.
-        goal: what it is told to reach; None if nothing.
+        goal: what it is asked to reach; None if nothing.
+        partial: whether it sees only what is around it; as the episode has it where None.
     """
 
     agent: Agent
     goal: Goal | None
+    partial: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +40,12 @@ class Played:
     Attributes:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
+        fault: why an agent could not go on, which ended the episode; None where all could.
     """
 
     env: Env
     progress: tuple[Progress, ...]
+    fault: AgentError | None = None
 
     @property
     def success(self) -> bool:
@@ -64,7 +69,7 @@ def play(
     limit: int = MOST_TICKS,
     rules: Rules = DEFAULT,
 ) -> Played:
-    """Let agents act in a world, one instruction each a tick, until a goal is reached.
+    """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent can't go on.
 
     Args:
         start: a world in which character n belongs to player n.
@@ -80,11 +85,18 @@ def play(
     env.restore(start)
     progress = [Progress.start(goal, start)]
     allowed = None if actions is None else frozenset(actions)
-    for number, player in enumerate(players):
-        player.agent.reset(env.observe(number), player.goal, derive(seed, "agent", number))
-    while len(env.ticks) < limit and not progress[-1].satisfied:
-        chosen = {n: p.agent.act(env.observe(n), env.legal(n, actions=allowed)) for n, p in enumerate(players)}
-        done = env.step(chosen)
-        tried = [step for number, step in done.instructions.items() if number not in done.failures]
-        progress.append(progress[-1].then(done.before, done.world, tried))
+    try:
+        for number, player in enumerate(players):
+            env.partial = partial if player.partial is None else player.partial
+            player.agent.reset(env.observe(number), player.goal, derive(seed, "agent", number))
+        while len(env.ticks) < limit and not progress[-1].satisfied:
+            chosen = {}
+            for number, player in enumerate(players):
+                env.partial = partial if player.partial is None else player.partial
+                chosen[number] = player.agent.act(env.observe(number), env.legal(number, actions=allowed))
+            done = env.step(chosen)
+            tried = [step for number, step in done.instructions.items() if number not in done.failures]
+            progress.append(progress[-1].then(done.before, done.world, tried))
+    except AgentError as fault:
+        return Played(env, tuple(progress), fault)
     return Played(env, tuple(progress))

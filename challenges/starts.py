@@ -45,7 +45,7 @@ class Site(NamedTuple):
     places: dict[str, Places]
 
 
-def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowledge) -> World:
+def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowledge, agents: int | None = None) -> World:
     """A world in which nothing of a goal is reached, all of it can be, and its agents stand in different rooms.
 
     Of each class there are as many things as are wanted, up to one more than any goal wants. For each thing first the
@@ -57,6 +57,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
         home: name of one of our homes.
         seed: all the randomness there is.
         knowledge: what the home is read with.
+        agents: the first of the challenge's characters only; the world is the same but for the others.
 
     Raises:
         HearthError: UNKNOWN_HOME; UNKNOWN_OBJECT where the home lacks furniture of the goal; NO_PLACE where a thing
@@ -76,9 +77,13 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
             relation, place = chooser.choice(chooser.choice(places))
             nodes.append(_thing(site.base, name, nodes[-1].id + 1))
             edges += _placed(site.base, nodes[-1].id, relation, place)
+    if agents is not None:
+        absent = {node.id for node in nodes[agents : which.agents]}
+        nodes = [node for node in nodes if node.id not in absent]
+        edges = [edge for edge in edges if edge.source not in absent]
     world = positions.placed(World.start(extended(site.home, nodes, edges)), rng(seed, "poses", home))
-    agents = (agent._replace(stride=stride) for agent, stride in zip(world.agents, which.strides, strict=True))
-    return World(world.home, world.states, tuple(agents), world.moved)
+    walking = (agent._replace(stride=stride) for agent, stride in zip(world.agents, which.strides, strict=False))
+    return World(world.home, world.states, tuple(walking), world.moved)
 
 
 @lru_cache(maxsize=32)

@@ -40,14 +40,14 @@ class Task:
     goal: Goal
     seed: int
 
-    def start(self, knowledge: Knowledge) -> World:
-        """The world in which it starts; equal every time."""
-        return start(challenge(self.challenge), self.goal, self.home, self.seed, knowledge)
+    def start(self, knowledge: Knowledge, agents: int | None = None) -> World:
+        """The world in which it starts, with the first of its characters or all; equal every time."""
+        return start(challenge(self.challenge), self.goal, self.home, self.seed, knowledge, agents)
 
     def demonstration_start(self, knowledge: Knowledge) -> World:
-        """The world in which its demonstration starts, with all the challenge's characters."""
+        """The world in which its demonstration starts: one character is there."""
         seed = derive(self.seed, "demonstration")
-        return start(challenge(self.challenge), self.goal, self.demonstration_home, seed, knowledge)
+        return start(challenge(self.challenge), self.goal, self.demonstration_home, seed, knowledge, 1)
 
     def goal_in(self, home: Home) -> Goal:
         """The goal with the instances of furniture of a home."""
@@ -78,7 +78,10 @@ def task(name: str = "wah", split: str = "train", number: int = 0, seed: int = 0
 
 
 def drawn(which: Challenge, split: str, task_id: str, goal: Goal, sets: tuple[str, ...], chooser: Random) -> Task:
-    """A task with a goal: its home is one of the split's, its demonstration's another of the homes of training."""
-    home = chooser.choice(which.splits[split].homes)
+    """A task with a goal: its home is one of the split's, its demonstration's another of the homes of training.
+
+    A split that the challenge does not name has the homes of training.
+    """
+    home = chooser.choice(which.splits[split].homes if split in which.splits else which.train)
     other = chooser.choice([each for each in which.train if each != home])
     return Task(task_id, which.name, split, home, other, sets, goal, chooser.getrandbits(63))

@@ -108,6 +108,8 @@ class Code(StrEnum):
     DAMAGED_FILE = "DAMAGED_FILE", 71
     TIMED_OUT = "TIMED_OUT", 72
     BAD_ARGUMENT = "BAD_ARGUMENT", 74
+    # Agents
+    AGENT_FAILED = "AGENT_FAILED", 78
 
 
 @dataclass(frozen=True, slots=True)

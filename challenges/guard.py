@@ -1,0 +1,110 @@
+"""Agents of others in an episode: what crashes, hangs or answers nonsense ends it with a code, and nothing else."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from hearth.agents.protocol import Agent
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import Step
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.observation.views import View
+
+SECONDS = 30.0
+"""An agent may think about one tick as long as this."""
+
+
+class AgentError(Exception):
+    """An agent can't go on.
+
+    Attributes:
+        fault: code and message.
+        agent: its number.
+    """
+
+    def __init__(self, fault: Diagnostic, agent: int) -> None:
+        super().__init__(str(fault))
+        self.fault, self.agent = fault, agent
+
+
+class Guarded:
+    """An agent of which nothing but instructions and `AgentError` comes.
+
+    Attributes:
+        refused: its instructions that were not tried: actions that the challenge lacks, things that it does not see.
+    """
+
+    def __init__(self, agent: Agent, number: int, allowed: frozenset[str], seconds: float = SECONDS) -> None:
+        self.agent, self.number, self.allowed, self.seconds = agent, number, allowed, seconds
+        self.refused = 0
+
+    def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
+        """Begin an episode.
+
+        Raises:
+            AgentError: it can't.
+        """
+        self.refused = 0
+        with self._watched():
+            self.agent.reset(observation, goal, seed)
+
+    def act(self, observation: View, legal: Legal) -> Step | None:
+        """Its instruction, if it may be tried; None otherwise.
+
+        Raises:
+            AgentError: there is no instruction: AGENT_FAILED, TIMED_OUT, BAD_ARGUMENT.
+        """
+        with self._watched():
+            step = self.agent.act(observation, legal)
+            if step is None:
+                return None
+            if not isinstance(step, Step):
+                raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not a Step or None")
+            if step in legal or self._may_try(step, observation):
+                return Step(step.action, tuple(step.objects), self.number)
+            self.refused += 1
+            return None
+
+    def _may_try(self, step: Step, view: View) -> bool:
+        """Whether it is about what is seen; the engine says then why it can't be done."""
+        ids = [ref.node for ref in step.objects]
+        return step.action in self.allowed and all(isinstance(node, int) and view.sees(node) for node in ids)
+
+    @contextmanager
+    def _watched(self) -> Iterator[None]:
+        try:
+            with _within(self.seconds):
+                yield
+        except TimeoutError:
+            message = f"no answer within {self.seconds:g} s"
+            raise AgentError(Diagnostic(Code.TIMED_OUT, message), self.number) from None
+        except HearthError as error:
+            raise AgentError(error.diagnostics[0], self.number) from error
+        except (Exception, SystemExit) as error:
+            message = f"{type(error).__name__}: {error}"[:300]
+            raise AgentError(Diagnostic(Code.AGENT_FAILED, message), self.number) from error
+
+
+@contextmanager
+def _within(seconds: float) -> Iterator[None]:
+    """Interrupt what takes longer, where this is the thread that gets signals."""
+    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def late(_number: int, _frame: FrameType | None) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)

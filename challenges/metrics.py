@@ -1,0 +1,187 @@
+"""How good a helper is: of one episode, and of many with standard errors over tasks (thesis 6.5.1)."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from hearth.challenges.definition import Challenge
+from hearth.challenges.failure_analysis import NAMES, Columns
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Literal, Name
+
+PER_TICK = 0.004
+"""What each tick costs of the reward."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The metrics of one episode.
+
+    Attributes:
+        success: whether the goal was reached.
+        ticks: that were played.
+        length: ticks that it counts as: all there are where the goal was not reached.
+        reward: 1 if the goal was reached, less 0.004 a tick of its length.
+        columns: the failure analysis.
+    """
+
+    success: bool
+    ticks: int
+    length: int
+    reward: float
+    columns: Columns
+
+    def as_json(self) -> dict[str, Any]:
+        """As result files have it."""
+        return {
+            "success": self.success,
+            "ticks": self.ticks,
+            "length": self.length,
+            "reward": self.reward,
+            **asdict(self.columns),
+        }
+
+
+def outcome(which: Challenge, success: bool, ticks: int, columns: Columns) -> Outcome:
+    """The metrics of an episode that was played."""
+    length = ticks if success else which.ticks
+    return Outcome(success, ticks, length, round(success - PER_TICK * length, 6), columns)
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """A mean over tasks.
+
+    Attributes:
+        value: the mean.
+        error: its standard error; None of fewer than two tasks.
+    """
+
+    value: float
+    error: float | None
+
+
+def mean(values: Sequence[float]) -> Mean:
+    """The mean of the tasks' values and its standard error."""
+    value = math.fsum(values) / len(values)
+    if len(values) < 2:
+        return Mean(value, None)
+    variance = math.fsum((each - value) ** 2 for each in values) / (len(values) - 1)
+    return Mean(value, math.sqrt(variance / len(values)))
+
+
+Outcomes = Mapping[str, Sequence[Mapping[str, Any]]]
+"""Task id -> the outcomes of its episodes, as JSON."""
+
+
+def by_task(episodes: Iterable[tuple[str, Mapping[str, Any]]]) -> Outcomes:
+    """Outcomes by their task, in the order in which tasks come."""
+    found: defaultdict[str, list[Mapping[str, Any]]] = defaultdict(list)
+    for task, each in episodes:
+        found[task].append(each)
+    return dict(found)
+
+
+def of_tasks(outcomes: Outcomes, name: str) -> dict[str, float]:
+    """Task id -> the mean of a metric over its episodes."""
+    return {task: math.fsum(each[name] for each in some) / len(some) for task, some in outcomes.items()}
+
+
+def speedups(alone: Outcomes, helped: Outcomes) -> dict[str, float]:
+    """Task id -> L_alone / L_help - 1, of mean lengths over the task's episodes: a mean of ratios would flatter."""
+    before, after = of_tasks(alone, "length"), of_tasks(helped, "length")
+    return {task: before[task] / max(after[task], 1.0) - 1 for task in after}
+
+
+def savings(alone: Outcomes, helped: Outcomes) -> dict[str, float]:
+    """Task id -> (L_alone - L_help) / L_alone, as others publish it."""
+    before, after = of_tasks(alone, "length"), of_tasks(helped, "length")
+    return {task: (before[task] - after[task]) / max(before[task], 1.0) for task in after}
+
+
+def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
+    """All metrics: means over tasks (of means over their seeds), each with `_se`; `conflict_episodes` is a share.
+
+    Args:
+        alone: of the main agent by itself.
+        helped: of the same tasks with a helper; empty where there is none.
+    """
+    shown = helped or alone
+    found: dict[str, float | int | None] = {"episodes": sum(map(len, shown.values())), "tasks": len(shown)}
+    columns: dict[str, dict[str, float]] = {"success": of_tasks(shown, "success")}
+    columns["speedup"] = speedups(alone, shown)
+    columns["saving"] = savings(alone, shown)
+    columns |= {name: of_tasks(shown, name) for name in ("reward", "length")}
+    columns["length_alone"] = of_tasks(alone, "length")
+    conflicting = {t: [{"any": bool(each["conflicts"])} for each in some] for t, some in shown.items()}
+    columns["conflict_episodes"] = of_tasks(conflicting, "any")
+    columns |= {name: of_tasks(shown, name) for name in NAMES}
+    for name, values in columns.items():
+        one = mean(list(values.values()))
+        found |= {name: one.value, f"{name}_se": one.error}
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Paired:
+    """A paired t-test over tasks (thesis 6.5.3).
+
+    Attributes:
+        t, p: statistic and two-sided probability; None where no task differs.
+        freedom: degrees of freedom.
+        effect: mean difference in its standard deviations (Cohen's d of pairs).
+    """
+
+    t: float | None
+    p: float | None
+    freedom: int
+    effect: float | None
+
+
+def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
+    """Whether a metric differs between two agents on the tasks that both did."""
+    from scipy import stats
+
+    tasks = [task for task in one if task in other]
+    differences = [one[task] - other[task] for task in tasks]
+    if len(tasks) < 2 or not any(differences):
+        return Paired(None, None, max(len(tasks) - 1, 0), None)
+    deviation = (mean(differences).error or 0.0) * math.sqrt(len(tasks))
+    if deviation == 0.0:
+        return Paired(None, None, len(tasks) - 1, None)
+    found = stats.ttest_rel([one[task] for task in tasks], [other[task] for task in tasks])
+    return Paired(float(found.statistic), float(found.pvalue), len(tasks) - 1, mean(differences).value / deviation)
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition:
+    """How well a goal was inferred: of its predicates with their counts.
+
+    Attributes:
+        precision: share of what was inferred that is wanted; 1 of nothing.
+        recall: share of what is wanted that was inferred.
+        exact: whether nothing is missing and nothing too much.
+    """
+
+    precision: float
+    recall: float
+    exact: bool
+
+
+def recognition(inferred: Goal, wanted: Goal) -> Recognition:
+    """Compare two goals of one grammar."""
+    guess, truth = dict(inferred), dict(wanted)
+    common = sum(min(number, _count(guess, literal)) for literal, number in truth.items())
+    return Recognition(
+        common / sum(guess.values()) if guess else 1.0,
+        common / sum(truth.values()) if truth else 1.0,
+        guess == truth,
+    )
+
+
+def _count(goal: Mapping[Literal[Name], int], literal: Literal[Name]) -> int:
+    return goal.get(literal, 0)
