@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import importlib.util
+from random import Random
 
 import pytest
 
 import hearth
+from hearth.homes import library
 from hearth.models.data import Corpus, Example
+from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.syntax import parse_steps
+from hearth.simulation.actions.legal import legal
+from hearth.simulation.engine import act
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 
 @pytest.fixture(autouse=True)
@@ -55,3 +62,30 @@ def eight():
 def tiny(dataset, eight):
     """A corpus of the eight, which are for validation, too."""
     return Corpus(dataset, "activities", eight, eight)
+
+
+NAMES = ("birch", "cedar", "juniper", "larch", "maple", "rowan", "willow")
+
+
+def wandered(world: World, random: Random, steps: int) -> World:
+    """The world after random steps that the engine does not refuse."""
+    for _ in range(steps):
+        could = legal(world)
+        action = random.choice(sorted(could.masks))
+        wanted = [random.choice(could.objects(action, place)) for place in range(len(could.masks[action]))]
+        after = act(world, Step(action, tuple(ref_of(world, node) for node in wanted)))
+        world = after if isinstance(after, World) else world
+    return world
+
+
+def ref_of(world: World, node: int) -> ObjectRef:
+    """A reference to a node by its class."""
+    return ObjectRef(world.home.classes[world.home.index[node]], 1, node)
+
+
+@pytest.fixture(scope="session")
+def environments(knowledge) -> list[World]:
+    """Two hundred worlds."""
+    homes = [Home.from_graph(library.load_graph(name, knowledge), name, knowledge) for name in NAMES]
+    starts = [World.start(home) for home in homes]
+    return [wandered(starts[n % len(starts)], Random(n), n % 12) for n in range(200)]

@@ -1,0 +1,1 @@
+"""Decoding with the engine in the loop: whatever a model scores, only steps that can be done are written."""
