@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
+from hearth.kb.knowledge import Knowledge
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.home import Home
@@ -50,14 +51,18 @@ class Affordances:
         key = action, position
         mask = self._known.get(key)
         if mask is None:
-            home = self._home
-            classes = home.by_class.items()
             mask = 0
-            for name, nodes in classes:
-                if home.knowledge.affords(action, position, name):
+            for name, nodes in self._home.by_class.items():
+                if _affords(self._home.knowledge, action, position, name):
                     mask |= nodes
             self._known[key] = mask
         return mask
+
+
+@lru_cache(maxsize=1 << 16)
+def _affords(knowledge: Knowledge, action: str, position: int, name: str) -> bool:
+    # Each environment is a home of its own; their classes are the same.
+    return knowledge.affords(action, position, name)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Models that turn sketches into programs in a home (thesis chapter 5)."""

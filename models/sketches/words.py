@@ -1,0 +1,47 @@
+"""Names as numbers for embeddings: classes and actions of the knowledge, and codes; 0 is for none and for the unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+from hearth.kb.knowledge import Knowledge
+
+CODES = 64
+"""Numbers beside those of names, for what a model counts or tells apart."""
+
+
+class Words:
+    """The numbers of names: codes first, then classes, then actions.
+
+    Attributes:
+        classes: names of classes, in order.
+        actions: names of actions, in order.
+    """
+
+    def __init__(self, classes: Sequence[str], actions: Sequence[str]) -> None:
+        self.classes, self.actions = tuple(classes), tuple(actions)
+        self._class = {name: n for n, name in enumerate(self.classes, CODES)}
+        self._action = {name: n for n, name in enumerate(self.actions, CODES + len(self.classes))}
+
+    @classmethod
+    def of(cls, knowledge: Knowledge) -> Words:
+        """The classes and actions that are known."""
+        return cls(sorted(knowledge.objects), sorted(knowledge.actions))
+
+    @cached_property
+    def size(self) -> int:
+        """How many numbers there are."""
+        return CODES + len(self.classes) + len(self.actions)
+
+    def thing(self, name: str) -> int:
+        """The number of a class."""
+        return self._class.get(name, 0)
+
+    def action(self, name: str) -> int:
+        """The number of an action."""
+        return self._action.get(name, 0)
+
+    def code(self, number: int) -> int:
+        """The number for a count or a kind, from 0; great ones are cut."""
+        return min(number, CODES - 2) + 1
