@@ -173,7 +173,7 @@ def show(
 def _document(shown: Shown) -> dict[str, Any]:
     from hearth.schemas.syntax import print_step
 
-    execution, left_out = shown.completion
+    execution, left_out, _ = shown.completion
     return {
         "words": shown.words,
         "sketch": [print_step(step) for step in shown.sketch],

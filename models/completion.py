@@ -21,10 +21,12 @@ class Completion(NamedTuple):
     Attributes:
         execution: of the program.
         left_out: the steps that no repair makes run there, each with its failure.
+        sources: for each step, the number of the given step that it is; -1 for one that a repair inserted.
     """
 
     execution: Execution
     left_out: tuple[tuple[Step, Failure], ...]
+    sources: tuple[int, ...]
 
 
 def complete(steps: Steps, world: World, knowledge: Knowledge, rules: Rules = DEFAULT) -> Completion:
@@ -38,13 +40,16 @@ def complete(steps: Steps, world: World, knowledge: Knowledge, rules: Rules = DE
     program = Program(steps=steps)
     program = nearest(program, world).apply(program)
     left_out: list[tuple[Step, Failure]] = []
+    numbers = list(range(len(steps)))
     while True:
         done = repair(program, world, (), knowledge, rules, canonical_only=False)
         failure = done.execution.failure
         if failure is None:
-            return Completion(done.execution, tuple(left_out))
+            sources = tuple(numbers[source] if source >= 0 else -1 for source in done.sources)
+            return Completion(done.execution, tuple(left_out), sources)
         place = _source(done.sources, len(done.execution.worlds) - 1, len(program.steps))
         left_out.append((program.steps[place], failure))
+        del numbers[place]
         program = program.with_steps(program.steps[:place] + program.steps[place + 1 :])
 
 

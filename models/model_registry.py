@@ -16,13 +16,14 @@ TRAINED = Path(__file__).parent / "trained"
 
 
 class Entry(NamedTuple):
-    """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, and its source."""
+    """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, its source, and whether it learns."""
 
     place: str
     input: Literal["text", "sketch", "film"]
     line: str
     source: str
     settings: dict[str, Any] = {}  # noqa: RUF012
+    learns: bool = True
 
 
 MODELS: dict[str, Entry] = {
@@ -38,6 +39,16 @@ MODELS: dict[str, Entry] = {
         "The same in the space of 100 singular vectors.",
         "thesis 4.5.2",
         {"singular": 100},
+    ),
+    "planner": Entry(
+        "planner:Planner",
+        "sketch",
+        "Binds the sketch to the nearest nodes; the repairs make it run. It needs no training.",
+        "ours",
+        learns=False,
+    ),
+    "chooser": Entry(
+        "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
 }
 
@@ -81,6 +92,9 @@ def restore(model: str | Path) -> tuple[str, Trained]:
     Raises:
         HearthError: there is none, it is broken or of another version, or the extra is not installed.
     """
+    if str(model) in MODELS and not MODELS[str(model)].learns and not Path(model).exists():
+        ready: Trained = _class(MODELS[str(model)])()
+        return str(model), ready
     folder = TRAINED / str(model) if str(model) in trained_names() else Path(model)
     if str(model) in MODELS and not folder.exists():
         message = f"`{model}` has not been trained"

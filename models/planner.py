@@ -6,14 +6,20 @@ It is the yardstick of table 5.2: bound to the nearest nodes, it runs always and
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 from hearth.grounding.binding import nearest
-from hearth.repair.loop import repair
+from hearth.models.completion import complete
+from hearth.models.interface import Request, Settings, Training
 from hearth.schemas.program import Program, Step
-from hearth.simulation.engine import run
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.checkpoint import Checkpoint
+    from hearth.models.data import Corpus
 
 Steps = tuple[Step, ...]
 
@@ -26,7 +32,7 @@ class Planned(NamedTuple):
 
 
 def bound_to_nearest(sketch: Sequence[Step], world: World) -> Steps:
-    """A sketch with its objects bound to the nearest nodes of their classes, without steps whose objects the home lacks."""
+    """A sketch with its objects bound to the nearest nodes of their classes; steps whose objects the home lacks go."""
     program = Program(steps=tuple(sketch))
     return complete_steps(nearest(program, world).apply(program).steps)
 
@@ -39,7 +45,7 @@ def complete_steps(steps: Sequence[Step]) -> Steps:
 def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[Planned, ...]:
     """What to do so that steps can be done one after the other; it always runs.
 
-    A step that no repair makes possible is left out, and the rest is planned from where the character then is.
+    A step that no repair makes possible is left out.
 
     Args:
         steps: bound to nodes.
@@ -51,27 +57,8 @@ def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[P
         >>> [each.step.action for each in plan(execution.program.steps[1:2], world)]
         ['Walk', 'Open']
     """
-    done: list[Planned] = []
-    first = 0
-    while first < len(steps):
-        repaired = repair(
-            Program(steps=tuple(steps[first:])), world, (), world.home.knowledge, rules, canonical_only=False
-        )
-        ran = len(repaired.execution.worlds) - 1
-        done += [
-            Planned(step, first + source if source >= 0 else -1)
-            for step, source in zip(repaired.program.steps[:ran], repaired.sources[:ran], strict=True)
-        ]
-        if repaired.failure is None:
-            break
-        world = repaired.execution.final
-        first += _stuck(repaired.sources, ran, len(steps) - first) + 1
-    return tuple(done)
-
-
-def _stuck(sources: Sequence[int], ran: int, count: int) -> int:
-    """The number of the step that cannot be done: the first of the sketch's that is still to come."""
-    return next((source for source in sources[ran:] if source >= 0), count - 1)
+    done = complete(tuple(steps), world, world.home.knowledge, rules)
+    return tuple(map(Planned, done.execution.program.steps, done.sources))
 
 
 def planned_program(sketch: Sequence[Step], world: World, rules: Rules = DEFAULT) -> Steps:
@@ -79,6 +66,25 @@ def planned_program(sketch: Sequence[Step], world: World, rules: Rules = DEFAULT
     return tuple(each.step for each in plan(bound_to_nearest(sketch, world), world, rules))
 
 
-def runs(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> bool:
-    """Whether a program can be done."""
-    return run(world, Program(steps=tuple(steps)), rules).executable
+@dataclass(frozen=True, slots=True)
+class Planner(Settings):
+    """The planner as a model: it needs no training."""
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> Planner:
+        """Itself."""
+        return self
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> Planner:
+        """Itself."""
+        return cls()
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """The plan for each sketch in its world; no steps without a world."""
+        return [planned_program(each.sketch, each.world) if each.world else () for each in requests]
+
+    def checkpoint(self) -> Checkpoint:
+        """A checkpoint without weights."""
+        from hearth.models.checkpoint import Checkpoint
+
+        return Checkpoint("planner", {}, {}, {})

@@ -119,7 +119,7 @@ class Options:
 
 
 class Grammar:
-    """The options in the worlds of one home. Worlds that a step leaves as they were are the same object and cost nothing.
+    """The options in the worlds of one home; a world that a step leaves as it was is the same object and costs nothing.
 
     Args:
         home: with its knowledge.

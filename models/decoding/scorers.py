@@ -63,10 +63,12 @@ class Scorer(Protocol):
     """
 
     @property
-    def order(self) -> tuple[Part, ...]: ...
+    def order(self) -> tuple[Part, ...]:
+        """See above."""
 
     @property
-    def actions(self) -> Sequence[str]: ...
+    def actions(self) -> Sequence[str]:
+        """See above."""
 
     def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> Sequence[Any]:
         """The state of each program before its first step, from the world at its start and the model's own input."""

@@ -104,7 +104,7 @@ class _Decoder:
     def __init__(self, scorer: Scorer, starts: Sequence[Start], search: Search, rules: Rules) -> None:
         self.scorer, self.starts, self.search, self.rules = scorer, starts, search, rules
         self.grammars: dict[int, tuple[Home, Grammar]] = {}
-        self.free = frozenset()
+        self.free: frozenset[str] = frozenset()
         if starts:
             known = starts[0].world.home.knowledge
             self.free = known.group("goes") | known.group("looks") | known.group("idle") | known.group("preparation")
@@ -210,7 +210,8 @@ class _Decoder:
         if part is Part.ACTION:
             return replace(draft, chosen=draft.chosen._replace(action=self.scorer.actions[place]))
         node = NONE if place >= len(draft.world.home) else place
-        return replace(draft, chosen=draft.chosen._replace(**{part.value: node}))
+        chosen = draft.chosen._replace(first=node) if part is Part.FIRST else draft.chosen._replace(second=node)
+        return replace(draft, chosen=chosen)
 
     # Doing the step
 
@@ -283,5 +284,3 @@ def numbered(steps: Sequence[Step]) -> tuple[Step, ...]:
         return replace(ref, instance=known.setdefault(ref.node, len(known) + 1))
 
     return tuple(replace(step, objects=tuple(map(named, step.objects))) for step in steps)
-
-

@@ -6,7 +6,7 @@ A choice has any number of candidates; the candidates of all choices of a batch 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,14 +60,16 @@ class Packed(NamedTuple):
     def __len__(self) -> int:
         return len(self.right)
 
-    def part(self, places: Sequence[int]) -> Packed:
+    def part(self, places: Sequence[int] | np.ndarray) -> Packed:
         """Some of the choices."""
         chosen = np.asarray(places, dtype=np.int64)
         counts = (self.starts[1:] - self.starts[:-1])[chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])
         rows = np.repeat(self.starts[chosen] - starts[:-1], counts) + np.arange(starts[-1])
         names, numbers = self.candidate_names[rows], self.candidate_numbers[rows]
-        return Packed(self.names[chosen], self.bag[chosen], self.numbers[chosen], names, numbers, starts, self.right[chosen])
+        return Packed(
+            self.names[chosen], self.bag[chosen], self.numbers[chosen], names, numbers, starts, self.right[chosen]
+        )
 
 
 BAG = 12
@@ -94,6 +96,7 @@ def packed(choices: Iterable[Choice]) -> Packed:
 
 def joined(parts: Sequence[Packed]) -> Packed:
     """Several arrays of choices as one."""
-    arrays: list[Any] = [np.concatenate(columns) for columns in zip(*(p[:5] for p in parts), strict=True)]
+    names, bag, numbers, more, values = (np.concatenate(column) for column in zip(*(p[:5] for p in parts), strict=True))
     counts = np.concatenate([part.starts[1:] - part.starts[:-1] for part in parts])
-    return Packed(*arrays, np.concatenate([[0], np.cumsum(counts)]), np.concatenate([part.right for part in parts]))
+    starts, right = np.concatenate([[0], np.cumsum(counts)]), np.concatenate([part.right for part in parts])
+    return Packed(names, bag, numbers, more, values, starts, right)

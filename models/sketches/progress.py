@@ -13,6 +13,7 @@ from hearth.simulation.world.world import World
 
 Steps = tuple[Step, ...]
 
+
 @dataclass(frozen=True)
 class Progress:
     """A program on its way.

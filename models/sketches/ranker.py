@@ -1,4 +1,4 @@
-"""The network that scores candidates: embedded names and numbers, of the choice and of each candidate, in two layers."""
+"""The network that scores candidates: embedded names and numbers of the choice and of each candidate, in two layers."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ class Ranker(nn.Module):
         dropout: float = 0.1,
     ) -> None:
         super().__init__()
+        self.sizes = names, numbers, candidate_names, candidate_numbers
         self.embedding = nn.Embedding(words, width, padding_idx=0)
         nn.init.normal_(self.embedding.weight, std=0.3)
         self.of_choice = nn.Linear((names + 1) * width + numbers, hidden)

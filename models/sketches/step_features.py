@@ -1,7 +1,7 @@
-"""What the chooser knows of the steps that may come next: the plan's, the sketch's, and optional ones about what they name.
+"""What the chooser knows of the steps that may come next: those of plan and sketch, and optional ones.
 
-The exact planner makes a program run; optional steps are what people and repairs do besides: walk to the room first, find,
-look, put back, close. Their choice is learned.
+The exact planner makes a program run; optional steps are what people and repairs do besides: walk to the room first,
+find, look, put back, close. Their choice is learned.
 """
 
 from __future__ import annotations
@@ -147,7 +147,9 @@ class Offer:
         yield list(indices(rows.on(world, first)))[:1] if first >= 0 and not self.home.characters >> first & 1 else ()
         yield list(indices(self.me.on))[:1]
         yield [rows.room_of(world, node) for node in later[1:]]
-        around = (rows.inside(world, node) & ~self.home.rooms | rows.on(world, node) for node in (first, *later) if node >= 0)
+        around = (
+            rows.inside(world, node) & ~self.home.rooms | rows.on(world, node) for node in (first, *later) if node >= 0
+        )
         yield [found for mask in around for found in list(indices(mask))[:2]]
         yield list(indices(self.home.rooms))
         yield self._tools()
@@ -205,7 +207,9 @@ class Offer:
     @property
     def _bag(self) -> list[int]:
         word = self.words
-        names = [(word.action(s.action), *(word.thing(ref.name) for ref in s.objects[:1])) for s in self.progress.sketch]
+        names = [
+            (word.action(s.action), *(word.thing(ref.name) for ref in s.objects[:1])) for s in self.progress.sketch
+        ]
         return [number for each in names for number in each]
 
     def _numbers(self) -> list[float]:
@@ -270,7 +274,7 @@ class Offer:
         same = sum(each == step for each in steps)
         first = step.objects[:1]
         about = [each.action for each in steps if first and each.objects[:1] == first]
-        recent = [each for each in steps[len(steps) - self.progress.since :]]
+        recent = list(steps[len(steps) - self.progress.since :])
         return [
             min(same, 3) / 2,
             float(step in recent),

@@ -1,4 +1,4 @@
-"""Names as numbers for embeddings: classes and actions of the knowledge, and codes; 0 is for none and for the unknown."""
+"""Names as numbers for embeddings: classes and actions of the knowledge, and codes; 0 is for none and the unknown."""
 
 from __future__ import annotations
 

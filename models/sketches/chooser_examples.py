@@ -1,0 +1,50 @@
+"""What the chooser learns from: objects of sketches with their nodes, and steps with what could have come instead.
+
+Nodes and steps before a choice are those of the program; only the choice is predicted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from hearth.models.decoding.options import Grammar
+from hearth.models.sketches.choices import Choice
+from hearth.models.sketches.grounded import Grounded
+from hearth.models.sketches.node_features import Places, node_choice
+from hearth.models.sketches.progress import Progress
+from hearth.models.sketches.step_features import Habits, Offer
+from hearth.models.sketches.words import Words
+from hearth.schemas.failures import Failure
+from hearth.simulation.engine import act
+
+
+def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]:
+    """The choice of a node for each object of each sketch that has several candidates, the right one among them."""
+    for each in examples:
+        places = Places(each.world, each.sketch, words)
+        index = each.world.home.index
+        nodes = {ref.key: index[ref.node] for step in each.sketch for ref in step.objects if ref.node is not None}
+        bound: dict[tuple[str, int], int] = {}
+        for use in places.objects:
+            if len(places.candidates[use.key]) > 1:
+                choice = node_choice(places, use, bound, nodes[use.key])
+                if choice.right >= 0:
+                    yield choice
+            bound[use.key] = nodes[use.key]
+
+
+def step_choices(examples: Iterable[Grounded], habits: Habits, words: Words) -> Iterator[Choice]:
+    """The choice of each step of each program, and of its end; those that are not offered are left out."""
+    for each in examples:
+        grammar = Grammar(each.world.home, each.rules)
+        progress = Progress.start(each.sketch, each.world, each.rules)
+        for step in (*each.steps, None):
+            offer = Offer(progress, grammar.options(progress.world), habits, words)
+            if (choice := offer.choice(step, known=True)).right >= 0:
+                yield choice
+            if step is None:
+                break
+            after = act(progress.world, step, each.rules)
+            if isinstance(after, Failure):
+                break
+            progress = progress.after(step, after)
