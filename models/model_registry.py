@@ -16,7 +16,10 @@ TRAINED = Path(__file__).parent / "trained"
 
 
 class Entry(NamedTuple):
-    """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, its source, and whether it learns."""
+    """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, its source.
+
+    `learns` is false for one that needs no training.
+    """
 
     place: str
     input: Literal["text", "sketch", "film"]

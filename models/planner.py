@@ -51,11 +51,6 @@ def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[P
         steps: bound to nodes.
         world: as it is now.
         rules: of the engine.
-
-    Examples:
-        >>> from hearth.models.planner import plan
-        >>> [each.step.action for each in plan(execution.program.steps[1:2], world)]
-        ['Walk', 'Open']
     """
     done = complete(tuple(steps), world, world.home.knowledge, rules)
     return tuple(map(Planned, done.execution.program.steps, done.sources))

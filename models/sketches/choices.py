@@ -12,7 +12,7 @@ import numpy as np
 
 
 class Candidate(NamedTuple):
-    """A candidate: numbers of names (see `words`), and other numbers."""
+    """A candidate: numbers of names (see `name_numbers`), and other numbers."""
 
     names: Sequence[int]
     numbers: Sequence[float]

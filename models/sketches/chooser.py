@@ -23,19 +23,21 @@ from hearth.models.planner import bound_to_nearest, complete_steps
 from hearth.models.sketches.choices import Choice, Packed, joined, packed
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
 from hearth.models.sketches.grounded import grounded
+from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import Places, node_choice
-from hearth.models.sketches.progress import Progress
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
+from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
-from hearth.models.sketches.words import Words
 from hearth.models.training import Outcome, Task, train
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
 
+NO_HABITS = Habits(frozenset(), (), {})
+
 PARTS = ("train", "validation")
 
-PACK = 20_000
+PACK = 3_000
 """Choices whose features are packed at once: as lists they take ten times the memory."""
 
 
@@ -115,7 +117,8 @@ class Chooser(Settings):
         """The model of a checkpoint."""
         settings, content = cls.of(dict(checkpoint.settings)), checkpoint.content
         words = Words(content["classes"], content["actions"])
-        habits = Habits(frozenset(content["optional"]), {name: tuple(each) for name, each in content["tools"].items()})
+        tools = {name: tuple(each) for name, each in content["tools"].items()}
+        habits = Habits(frozenset(content["optional"]), tuple(content["style"]), tools)
         rankers = {}
         for name, sizes in content["sizes"].items():
             rankers[name] = settings.ranker(words, sizes)
@@ -155,9 +158,7 @@ class TrainedChooser:
 
     def scorer(self) -> PlanScorer:
         """The model as a scorer of steps; the input of a program is its bound sketch."""
-        return PlanScorer(
-            self.rankers.get("steps"), self.habits if self.settings.style else Habits(frozenset(), {}), self.words
-        )
+        return PlanScorer(self.rankers.get("steps"), self.habits if self.settings.style else NO_HABITS, self.words)
 
     def bound(self, sketches: Sequence[Steps], worlds: Sequence[World]) -> list[Steps]:
         """Sketches bound to nodes, object by object, those of all sketches at once; steps without a node go."""
@@ -187,6 +188,7 @@ class TrainedChooser:
             "classes": list(self.words.classes),
             "actions": list(self.words.actions),
             "optional": sorted(self.habits.actions),
+            "style": list(self.habits.style),
             "tools": {name: list(found) for name, found in sorted(self.habits.tools.items())},
             "sizes": {name: list(ranker.sizes) for name, ranker in self.rankers.items()},
         }

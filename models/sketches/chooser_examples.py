@@ -10,10 +10,10 @@ from collections.abc import Iterable, Iterator
 from hearth.models.decoding.options import Grammar
 from hearth.models.sketches.choices import Choice
 from hearth.models.sketches.grounded import Grounded
+from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import Places, node_choice
-from hearth.models.sketches.progress import Progress
+from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
-from hearth.models.sketches.words import Words
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
 

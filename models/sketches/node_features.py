@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hearth.models.sketches.choices import Candidate, Choice
-from hearth.models.sketches.words import Words
+from hearth.models.sketches.name_numbers import Words
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Step
 from hearth.simulation.world import rows

@@ -14,8 +14,8 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.decoding.options import Options
 from hearth.models.sketches.choices import Candidate, Choice
-from hearth.models.sketches.progress import Progress, plain
-from hearth.models.sketches.words import Words
+from hearth.models.sketches.name_numbers import Words
+from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.observation import reach
 from hearth.simulation.world import rows
@@ -25,8 +25,8 @@ from hearth.simulation.world.states import LYING, SITTING
 ROLES = 18
 """What a node may be to the step that comes next; see `Situation.roles`."""
 
-STYLE = ("Walk", "Find", "TurnTo", "LookAt", "Grab", "PutBack", "Release", "Close", "StandUp")
-"""Actions whose counts so far show how a program is written."""
+STYLE = 9
+"""Habitual actions, the commonest, whose counts so far show how a program is written."""
 
 SHOWN = 3
 """Things of one kind whose steps are offered: what is held, is done before, comes later."""
@@ -41,10 +41,12 @@ class Habits(NamedTuple):
 
     Attributes:
         actions: those of steps that sketches leave out.
+        style: the commonest of them.
         tools: classes that programs use beside a class or an action of the sketch, the commonest first.
     """
 
     actions: frozenset[str]
+    style: tuple[str, ...]
     tools: Mapping[str, tuple[str, ...]]
 
     @classmethod
@@ -65,7 +67,8 @@ class Habits(NamedTuple):
             name: tuple(other for other, n in found.most_common(TOOLS) if n >= FEWEST and n >= named[name] * OFTEN)
             for name, found in sorted(beside.items())
         }
-        return cls(frozenset(name for name, n in actions.items() if n >= FEWEST), tools)
+        common = sorted((name for name, n in actions.items() if n >= FEWEST), key=lambda name: (-actions[name], name))
+        return cls(frozenset(common), tuple(common[:STYLE]), tools)
 
 
 def _named(sketch: Sequence[Step]) -> dict[str, None]:
@@ -92,6 +95,8 @@ class Offer:
         self.world, self.home = progress.world, progress.world.home
         self.me = self.world.agents[0]
         self.coming, self.proposed = progress.coming, progress.proposed
+        self._past = Past(progress.steps, progress.since)
+        self._known: dict[int, list[float]] = {}
         self.planned = {each.step: n for n, each in reversed(list(enumerate(progress.plan)))}
         self.candidates: list[Step | None] = list(dict.fromkeys(self._found(habits.actions)))
         if self.coming is None:
@@ -227,7 +232,7 @@ class Offer:
             progress.since / 6,
             left / 8,
             len(progress.plan) / 20,
-            *(counts.count(name) / (1 + progress.next) for name in STYLE),
+            *(counts.count(name) / (1 + progress.next) for name in (*self.habits.style, *[""] * STYLE)[:STYLE]),
             *(self._here(nodes[0]) if nodes else [0.0] * 5),
         ]
 
@@ -251,40 +256,81 @@ class Offer:
         return reach.faced_by(self.world, self.me)
 
     def _candidate(self, step: Step | None) -> Candidate:
-        word, steps = self.words, self.progress.steps
+        word = self.words
         if step is None:
             return Candidate([word.code(0), 0, 0], [1.0, *[0.0] * (CANDIDATE_NUMBERS - 1)])
         nodes = self._nodes(step)
-        classes = [ref.name for ref in step.objects] + ["", ""]
+        first, second = (*nodes, -1, -1)[:2]
         numbers = [
             0.0,
             float(step == self.coming),
             float(step == self.proposed),
             1 / (1 + self.planned[step]) if step in self.planned else 0.0,
             float(len(nodes) > 1),
-            *self._done_before(step, steps),
-            *(self.roles.get(nodes[0], [0.0] * ROLES) if nodes else [0.0] * ROLES),
-            *(self.roles.get(nodes[1], [0.0] * ROLES)[:2] if len(nodes) > 1 else [0.0] * 2),
-            *(self._here(nodes[0]) if nodes else [0.0] * 5),
-            *([float(state >> nodes[0] & 1) for state in self.world.states] if nodes else [0.0] * 10),
+            *self._past.of(step),
+            *self._roles_of(first),
+            *self._roles_of(second)[:2],
+            *self._looks(first),
         ]
-        return Candidate([word.action(step.action), *(word.thing(name) for name in classes[:2])], numbers)
+        return Candidate([word.action(step.action), self._class(first), self._class(second)], numbers)
 
-    def _done_before(self, step: Step, steps: Sequence[Step]) -> list[float]:
-        same = sum(each == step for each in steps)
-        first = step.objects[:1]
-        about = [each.action for each in steps if first and each.objects[:1] == first]
-        recent = list(steps[len(steps) - self.progress.since :])
+    def _roles_of(self, node: int) -> list[float]:
+        return self.roles.get(node, NO_ROLES)
+
+    def _class(self, node: int) -> int:
+        return self.words.thing(self.home.classes[node]) if node >= 0 else 0
+
+    def _looks(self, node: int) -> list[float]:
+        """Where a node is to the character, and its states: the same for all steps about it."""
+        if node < 0:
+            return [0.0] * 15
+        known = self._known.get(node)
+        if known is None:
+            states = [float(state >> node & 1) for state in self.world.states]
+            known = self._known[node] = [*self._here(node), *states]
+        return known
+
+
+NO_ROLES = [0.0] * ROLES
+
+
+class Past:
+    """What a program has done so far, counted once for all candidates.
+
+    Args:
+        steps: so far.
+        since: how many of them since the last step of the sketch.
+    """
+
+    def __init__(self, steps: Sequence[Step], since: int) -> None:
+        self.times = Counter(steps)
+        self.about: dict[ObjectRef | None, list[str]] = {}
+        for step in steps:
+            self.about.setdefault(_first(step), []).append(step.action)
+        recent = steps[len(steps) - since :]
+        self.recent = {*recent}
+        self.recent_about = {_first(step) for step in recent}
+        self.recent_actions = {step.action for step in recent}
+        self.last = steps[-1] if steps else None
+
+    def of(self, step: Step) -> list[float]:
+        """Whether a step, its action and its object have come before, and how lately."""
+        first = _first(step)
+        about = self.about.get(first, []) if first else []
         return [
-            min(same, 3) / 2,
-            float(step in recent),
+            min(self.times[step], 3) / 2,
+            float(step in self.recent),
             min(about.count(step.action), 3) / 2,
             min(len(about), 4) / 4,
-            float(any(first and each.objects[:1] == first for each in recent)),
-            float(bool(steps) and steps[-1].action == step.action),
-            float(any(each.action == step.action for each in recent)),
-            float(bool(steps) and steps[-1].objects[:1] == first),
+            float(first is not None and first in self.recent_about),
+            float(self.last is not None and self.last.action == step.action),
+            float(step.action in self.recent_actions),
+            float(self.last is not None and _first(self.last) == first),
         ]
+
+
+def _first(step: Step) -> ObjectRef | None:
+    return step.objects[0] if step.objects else None
 
 
 CANDIDATE_NUMBERS = 5 + 8 + ROLES + 2 + 5 + 10

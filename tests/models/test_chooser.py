@@ -17,14 +17,14 @@ from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
 from hearth.models.planner import plan, planned_program
 from hearth.models.sketches.choices import Candidate, Choice, joined, packed
-from hearth.models.sketches.chooser import Chooser, TrainedChooser
+from hearth.models.sketches.chooser import NO_HABITS, Chooser, TrainedChooser
 from hearth.models.sketches.chooser_examples import step_choices
 from hearth.models.sketches.grounded import grounded
+from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
-from hearth.models.sketches.progress import Progress, plain
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
+from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
-from hearth.models.sketches.words import Words
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_steps
@@ -58,7 +58,7 @@ def untrained(knowledge):
     """A chooser with random weights."""
     torch.manual_seed(0)
     settings, words = Chooser(), Words.of(knowledge)
-    habits = Habits(frozenset({"Walk", "Find", "Grab", "Release", "Open", "Close", "StandUp", "LookAt"}), {})
+    habits = Habits(frozenset({"Walk", "Find", "Grab", "Release", "Open", "Close", "StandUp", "LookAt"}), (), {})
     rankers = {
         "nodes": settings.ranker(words, (7, 1, KINDS, NUMBERS)),
         "steps": settings.ranker(words, (15, 22, 3, CANDIDATE_NUMBERS)),
@@ -112,9 +112,9 @@ def test_names_of_nodes_in_a_sketch_say_nothing(untrained, asked):
     """A request may have a bound sketch, if its reference was one; its nodes are not looked at."""
     request = asked[0]
     other = request.world.home.ids[0]
-    told = Program(steps=request.sketch)
-    told = told.bound({ref.key: other for ref in told.objects()})
-    assert untrained.predict([Request("0", sketch=told.steps, world=request.world)]) == untrained.predict([request])
+    named = Program(steps=request.sketch)
+    named = named.bound({ref.key: other for ref in named.objects()})
+    assert untrained.predict([Request("0", sketch=named.steps, world=request.world)]) == untrained.predict([request])
 
 
 def choices_of(count, seed):
@@ -188,7 +188,7 @@ def test_training_and_a_round_trip(dataset, tmp_path, asked):
 
 
 def test_candidates_have_the_plan_and_the_sketch(environments, knowledge):
-    words, habits = Words.of(knowledge), Habits(frozenset(), {})
+    words, habits = Words.of(knowledge), NO_HABITS
     for world in environments[:20]:
         sketch = Program(steps=sketch_of(SKETCHES[0]))
         steps = planned_program(sketch.steps, world)

@@ -8,7 +8,7 @@ from functools import cached_property
 from hearth.kb.knowledge import Knowledge
 
 CODES = 64
-"""Numbers beside those of names, for what a model counts or tells apart."""
+"""Numbers beside those of names, for counts and kinds."""
 
 
 class Words:
