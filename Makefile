@@ -102,7 +102,7 @@ test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pip install -qq --no-compile --no-deps -r $<
 	@touch $@
 
-test-tools: .venv/.tools  ## tests with other tools: planners, browsers, clusters, S3
+test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, browsers, clusters, S3
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
 
 test-all: .venv/.tools .venv/.models  ## all tests
@@ -123,12 +123,16 @@ docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, comman
 	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocs<2' 'mkdocstrings[python]>=0.28'
 	@NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build -q && echo build/site/index.html
 
+# What comes with torch, which .venv/.models installs.
+TORCHES := ^(torch|triton|nvidia-|cuda-)
+
 lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock and requirements-tools.lock
 	@rm -rf build/lock && mkdir -p build/lock
 	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
-	@build/lock/all/bin/python -m pip install -q -e '.[pictures,test,tools]' setuptools
-	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/all.txt
-	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[pictures,test]' setuptools
+	@build/lock/all/bin/python -m pip install -q -e '.[agents,pictures,test,tools]' setuptools
+	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | grep -Ev '$(TORCHES)' | sort \
+	  > build/lock/all.txt
+	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[agents,pictures,test]' setuptools
 	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
 	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/base.txt
 	@{ sed '/^#/!d' requirements.lock; \

@@ -10,6 +10,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 EXTRAS = {
+    "agents": ("gymnasium", "pettingzoo"),
     "dask": ("dask", "distributed"),
     "models": ("torch", "safetensors"),
     "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
@@ -17,6 +18,9 @@ EXTRAS = {
     "remote": ("fsspec",),
 }
 """The modules of each extra of pyproject.toml."""
+
+SET_UP = ("agents", "pictures")
+"""The extras that `make setup` installs."""
 
 
 def library(module: str) -> Any:
@@ -39,7 +43,7 @@ def library(module: str) -> Any:
 def remedy(extra: str) -> str:
     """How to install an extra."""
     command = f"`pip install '.[{extra}]'` in Hearth's folder"
-    return f"run `make setup`, or {command}" if extra == "pictures" else f"run {command}"
+    return f"run `make setup`, or {command}" if extra in SET_UP else f"run {command}"
 
 
 def lacking(extra: str) -> list[str]:

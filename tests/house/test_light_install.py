@@ -50,7 +50,7 @@ SCRIPT = """
 import json, shlex, sys
 from pathlib import Path
 
-BLOCKED = {"cv2", "dash", "llvmlite", "matplotlib", "numba", "open3d", "PIL", "plotly", "rdflib"}
+BLOCKED = {"cv2", "dash", "gymnasium", "llvmlite", "matplotlib", "numba", "open3d", "pettingzoo", "PIL", "plotly", "rdflib"}
 
 class Blocker:
     def find_spec(self, name, path=None, target=None):
@@ -124,6 +124,14 @@ def test_a_missing_library_of_an_extra_is_named(monkeypatch):
         library("fsspec.core")
 
 
+@pytest.mark.parametrize("module", ["parallel", "single"])
+def test_without_their_libraries_the_environments_say_what_to_install(module):
+    names = ("gymnasium", "pettingzoo")
+    code = f"import sys\nsys.modules.update(dict.fromkeys({names}))\nimport hearth.challenges.{module}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert re.search(r"this needs \w+, which is not installed.*run `make setup`, or `pip install '\.\[agents\]'", done.stderr)
+
+
 def test_extras_are_those_of_the_package():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert set(EXTRAS) <= set(project["optional-dependencies"])
@@ -131,10 +139,11 @@ def test_extras_are_those_of_the_package():
     assert not [line for line in project["optional-dependencies"]["pictures"] if re.split(r"[><=;]", line)[0] in base]
 
 
-def test_the_setup_installs_what_pictures_need():
+def test_the_setup_installs_what_pictures_and_environments_need():
     locked = (ROOT / "requirements.lock").read_text()
     assert all(f"{name}==" in locked for name in ("open3d-cpu", "opencv-python-headless", "numba", "matplotlib"))
-    assert ".[pictures,test]" in (ROOT / "setup.sh").read_text()
+    assert all(f"{name}==" in locked for name in ("gymnasium", "pettingzoo"))
+    assert ".[agents,pictures,test]" in (ROOT / "setup.sh").read_text()
 
 
 def test_no_text_installs_the_package_of_somebody_else():
