@@ -19,7 +19,7 @@ from hearth.simulation.engine import Execution
 from hearth.simulation.goal_trace import Trace, acts, by_agent
 from hearth.simulation.holds import Candidates, candidates, nodes
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.touched import changed
+from hearth.simulation.world.touched import BY_PLACE, changed, unchanged
 from hearth.simulation.world.world import World
 
 RELATED = frozenset({*RELATIONS, HOLDS})
@@ -120,6 +120,8 @@ class Progress:
         """
         if self.trace or before.home is not world.home:
             return self.after(world, world.changes(before), done)
+        if unchanged(before, world) and not any(watch.literal.name in BY_PLACE for watch in self.watches):
+            return self
         watches = [_updated(watch, world, changed(watch.literal.name, before, world)) for watch in self.watches]
         same = all(map(is_, watches, self.watches))
         return self if same else Progress(self.goal, tuple(watches))

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from hearth.simulation.world.world import World
 
 
+MOST_KNOWN = 1_000
+"""Pairs of a room and closed doors whose open rooms a home keeps."""
+
+
 def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     """A DOOR_CLOSED failure when every way from the character's room to `room` leads through a closed door.
 
@@ -48,9 +52,15 @@ def open_rooms(world: World, agent: Agent) -> int:
     closed = home.doors & world.states[CLOSED]
     if start < 0 or not closed:
         return home.rooms
-    reached, _ = _flood(world, start, home.doors & ~closed)
-    beyond, _ = _flood(world, start, home.doors)
-    return home.rooms & (reached | ~beyond)
+    known = home.open_rooms
+    found = known.get((start, closed))
+    if found is None:
+        reached, _ = _flood(world, start, home.doors & ~closed)
+        beyond, _ = _flood(world, start, home.doors)
+        if len(known) >= MOST_KNOWN:
+            known.clear()
+        found = known[start, closed] = home.rooms & (reached | ~beyond)
+    return found
 
 
 def side(world: World, agent: Agent, door: int, room: int) -> int:

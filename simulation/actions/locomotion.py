@@ -130,19 +130,17 @@ def _characters_near(world: World, o: int) -> int:
 
 def _seen_by_others(agents: tuple[Agent, ...], number: int, arrived: Agent, held: int) -> tuple[Agent, ...]:
     """Keep the other characters' rows in step with one who has walked: the edges between two stand in both."""
-    removed = ~(arrived.bit | held)
-    return tuple(
-        arrived
-        if i == number
-        else other._replace(
-            close=other.close & removed | (arrived.bit if arrived.close & other.bit else 0),
-            facing=other.facing & removed,
-            faced=other.faced & removed,
-            inside=other.inside & removed,
-            contents=other.contents & removed,
-        )
-        for i, other in enumerate(agents)
-    )
+    gone = arrived.bit | held
+    return tuple([arrived if i == number else _left(other, arrived, gone) for i, other in enumerate(agents)])
+
+
+def _left(other: Agent, arrived: Agent, gone: int) -> Agent:
+    """Another character without the edges to what has walked away, and CLOSE to who has arrived near it."""
+    index, bit, close, facing, faced, inside, contents, *rest = other
+    now = close & ~gone | (arrived.bit if arrived.close & bit else 0)
+    if now == close and not (facing | faced | inside | contents) & gone:
+        return other
+    return made((index, bit, now, facing & ~gone, faced & ~gone, inside & ~gone, contents & ~gone, *rest))
 
 
 ACTIONS = (

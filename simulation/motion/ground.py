@@ -213,6 +213,7 @@ class Here:
         changed = (i for i in same if base.on[i] != home.on[i] or base.inside[i] != home.inside[i] or not ground.box(i))
         self.elsewhere = mask_of(changed) | home.everything & -1 << len(base)
         self._last = NOTHING, self.elsewhere
+        self._standing: tuple[Moved, dict[int, int]] = NOTHING, {}
 
     def displaced(self, world: World) -> int:
         """The nodes that are elsewhere now: what was carried away is, and what is back where it was is not."""
@@ -225,6 +226,12 @@ class Here:
                 found = found & ~(1 << i) if there and self.ground.box(i) else found | 1 << i
             self._last = world.moved, found
         return found
+
+    def standing(self, world: World) -> dict[int, int]:
+        """What is known of where displaced nodes are (see `positions`), for as long as nothing moves."""
+        if self._standing[0] is not world.moved:
+            self._standing = world.moved, {}
+        return self._standing[1]
 
 
 def _touched(moved: Moved) -> int:

@@ -76,18 +76,43 @@ def spot(world: World, node: int) -> Spot | None:
 def _standing(world: World, here: Here, node: int) -> int:
     """The node that keeps its place, at which another is: itself, what it is on or in, or else its room."""
     moved = here.displaced(world)
+    if not moved >> node & 1:
+        return node
+    known = here.standing(world)
+    place = known.get(node)
+    if place is None:
+        place, kept = _place(world, moved, node)
+        if kept:
+            known[node] = place
+    return place
+
+
+def _place(world: World, moved: int, node: int) -> tuple[int, bool]:
+    """The same for what has been moved, and whether it follows from what things are on and in alone."""
     for _ in range(8):
         if not moved >> node & 1:
-            return node
+            return node, True
         around = (rows.on(world, node) | rows.inside(world, node)) & ~world.home.rooms & ~(1 << node)
         if not around:
             break
         node = lowest(around)
-    return rows.room_of(world, node)
+    return rows.room_of(world, node), False
 
 
 def ends(world: World, here: Here, node: int) -> tuple[int, ...]:
     """The cells at which one has arrived at a node; none where no place of it is known."""
+    bit = 1 << node
+    for agent in world.agents:
+        if (agent.bit | agent.right | agent.left) & bit:
+            break
+    else:
+        if not world.home.characters & bit:
+            place = _standing(world, here, node)
+            return here.ground.stands(place) if place >= 0 else ()
+    return _ends_of_carried(world, here, node)
+
+
+def _ends_of_carried(world: World, here: Here, node: int) -> tuple[int, ...]:
     if world.home.characters >> node & 1 or _held(world) >> node & 1:
         point = spot(world, node)
         if point is None:

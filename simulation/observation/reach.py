@@ -30,15 +30,13 @@ def close_to(world: World, agent: Agent) -> int:
 def _around(world: World, places: int) -> int:
     """The things CLOSE to, or ON, one of these things."""
     home, moved = world.home, world.moved
-    beside = upon = 0
     if moved is NOTHING:
+        beside = 0
         for i in indices(places):
             beside |= home.around[i]
         return beside
-    for i in indices(places & ~moved.close):
-        beside |= home.close[i]
-    for i in indices(places & ~moved.on):
-        upon |= home.bears[i]
+    beside = home.close_to[places & ~moved.close]
+    upon = home.borne_by[places & ~moved.on]
     found = beside & ~moved.close | upon & ~moved.on
     for key, row in moved.extra.items():
         if key & 7 in (BEARS, CLOSE) and places >> (key >> 3) & 1:
@@ -63,10 +61,7 @@ def faced_by(world: World, agent: Agent) -> int:
 def contained(world: World, containers: int) -> int:
     """Everything directly INSIDE one of these, characters included."""
     home, moved = world.home, world.moved
-    found = 0
-    for i in indices(containers & home.containing & ~moved.inside):
-        found |= home.contents[i]
-    found &= ~moved.inside
+    found = home.contents_of[containers & home.containing & ~moved.inside] & ~moved.inside
     for key, row in moved.extra.items():
         if key & 7 == CONTENTS and containers >> (key >> 3) & 1:
             found |= row
@@ -81,10 +76,7 @@ def contained(world: World, containers: int) -> int:
 def upon(world: World, places: int) -> int:
     """Everything ON one of these, characters included."""
     home, moved = world.home, world.moved
-    found = 0
-    for i in indices(places & home.bearing & ~moved.on):
-        found |= home.bears[i]
-    found &= ~moved.on
+    found = home.borne_by[places & home.bearing & ~moved.on] & ~moved.on
     for key, row in moved.extra.items():
         if key & 7 == BEARS and places >> (key >> 3) & 1:
             found |= row

@@ -11,7 +11,7 @@ from hearth.schemas.explained import explained
 from hearth.schemas.graph import Edge, EdgeColumns, EnvironmentGraph, Node, read_node
 from hearth.simulation.world import building
 from hearth.simulation.world.affordance import allowed
-from hearth.simulation.world.bits import mask_of
+from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.building import Raw, Rows
 from hearth.simulation.world.nodes import with_states
 
@@ -26,6 +26,27 @@ class Memo(dict[int, int]):
     def __missing__(self, key: int) -> int:
         value = self[key] = self._compute(key)
         return value
+
+
+MOST_UNIONS = 4_096
+"""Sets that a table of unions keeps: a megabyte or two a home."""
+
+
+class Unions(dict[int, int]):
+    """The union of the rows of a set of nodes, by the set; sets recur from tick to tick, and the last ones are kept."""
+
+    def __init__(self, rows: Rows) -> None:
+        super().__init__()
+        self._rows = rows
+
+    def __missing__(self, members: int) -> int:
+        if len(self) >= MOST_UNIONS:
+            self.clear()
+        rows, found = self._rows, 0
+        for i in indices(members):
+            found |= rows[i]
+        self[members] = found
+        return found
 
 
 class Home:
@@ -173,6 +194,26 @@ class Home:
     def direct_room(self) -> Memo:
         """Index of the room that a node is, or is directly INSIDE (the first by id), or -1."""
         return Memo(partial(_direct_room, self.inside, self.rooms))
+
+    @cached_property
+    def contents_of(self) -> Unions:
+        """What is INSIDE one of some nodes at the start."""
+        return Unions(self.contents)
+
+    @cached_property
+    def borne_by(self) -> Unions:
+        """What is ON one of some nodes at the start."""
+        return Unions(self.bears)
+
+    @cached_property
+    def close_to(self) -> Unions:
+        """What is CLOSE to one of some nodes at the start."""
+        return Unions(self.close)
+
+    @cached_property
+    def open_rooms(self) -> dict[tuple[int, int], int]:
+        """The rooms that no closed door keeps from a room, by (room, closed doors); `actions.doors` fills it."""
+        return {}
 
     @cached_property
     def everything(self) -> int:
