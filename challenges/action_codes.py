@@ -261,11 +261,6 @@ def fixed_list(names: Iterable[str], slots: Slots, places: Mapping[str, Sequence
         names: the actions.
         slots: the nodes; some ten of them, because two of them make a hundred pairs.
         places: action -> ids of what its last object may be; any node in a slot where it is not named.
-
-    Examples:
-        >>> slots = Slots.of(home, 8, ["fridge", "milk"])
-        >>> [str_step(step) for step in fixed_list(["Open", "Turnleft"], slots).steps]
-        ['[Open] <fridge> (0.137)', '[Turnleft]']
     """
     home = slots.home
     grabbable = home.able("Grab", 0)

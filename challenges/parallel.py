@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hearth.challenges.action_codes import Number
-from hearth.challenges.arrays import Arrays
-from hearth.challenges.pictures import MODES, PLAN, Pictures
+from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
 from hearth.challenges.play import MOST_TICKS
+from hearth.challenges.seen_arrays import Arrays
 from hearth.challenges.session import Opening, Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -32,19 +32,21 @@ MOST_SEED = 2**63 - 1
 class ParallelHome(ParallelEnv[str, Arrays, Number]):  # type: ignore[misc]
     """Agents `agent_0`, `agent_1`, ... in a home, with one goal. An episode ends for all of them at once.
 
-    Observations are dicts of arrays (see `arrays.Encoder.spaces`) with masks of legal actions (see `action_codes`);
-    rewards are those of `rewards.Rewards`. An agent that `step` gives no action waits. What could not be done is in
-    `infos[agent]["failure"]`, and nothing of it is done.
+    Observations are dicts of arrays (see `seen_arrays.Encoder.spaces`) with masks of legal actions (see
+    `action_codes`); rewards are those of `rewards.Rewards`. An agent that `step` gives no action waits. Why something
+    could not be done is in `infos[agent]["failure"]`; nothing of it is done.
 
     Args:
         setting: how episodes are played.
         render_mode: `rgb_array`, `ansi`, or None.
-        camera: of `rgb_array` (see `pictures.Pictures`).
+        camera: of `rgb_array` (see `plan_pictures.Pictures`).
 
     Attributes:
         session: the episode: its `env`, `progress` and `failures`.
 
     Examples:
+        >>> from hearth.challenges.parallel import ParallelHome
+        >>> from hearth.challenges.session import Setting, opening
         >>> env = ParallelHome(Setting(opening(home, "HOLDS(agent, milk)")))
         >>> observations, infos = env.reset(seed=1)
         >>> sorted(infos), observations["agent_0"]["seen"].shape

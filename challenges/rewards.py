@@ -27,10 +27,6 @@ class Rewards:
         predicate: for every count of a literal that comes to hold, up to what is wanted; taken back where it ends.
         approach: for every metre nearer to what is missing (see `metres_left`), and taken back for every metre away
             from it, so that going in circles is worth nothing.
-
-    Examples:
-        >>> Rewards().success - 250 * 0.004, HIERARCHICAL.predicate
-        (0.0, 2.0)
     """
 
     success: float = 1.0

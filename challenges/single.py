@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from hearth.agents.protocol import Agent
 from hearth.challenges.action_codes import Number
-from hearth.challenges.arrays import Arrays
 from hearth.challenges.parallel import MOST_SEED
-from hearth.challenges.pictures import MODES, PLAN, Pictures
+from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
+from hearth.challenges.seen_arrays import Arrays
 from hearth.challenges.session import Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
@@ -31,7 +31,7 @@ class HomeEnv(Env[Arrays, Number]):
         partners: the other agents, in the order of their numbers; one fewer than the opening has agents.
         learner: number of the agent that learns.
         render_mode: `rgb_array`, `ansi`, or None.
-        camera: of `rgb_array` (see `pictures.Pictures`).
+        camera: of `rgb_array` (see `plan_pictures.Pictures`).
 
     Attributes:
         session: the episode: its `env`, `progress` and `failures`.
@@ -40,11 +40,12 @@ class HomeEnv(Env[Arrays, Number]):
         HearthError: BAD_ARGUMENT, where the numbers do not agree.
 
     Examples:
+        >>> from hearth.challenges.session import Setting, opening
+        >>> from hearth.challenges.single import HomeEnv
         >>> env = HomeEnv(Setting(opening(home, "HOLDS(agent, milk)", agents=1)))
         >>> observation, info = env.reset(seed=1)
-        >>> observation, reward, terminated, truncated, info = env.step(0)
-        >>> reward, terminated, truncated, info["failure"]
-        (-0.004, False, False, None)
+        >>> env.step(0)[1:4]
+        (-0.004, False, False)
     """
 
     metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]

@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[2]
 MIRRORS = frozenset({"simulation/actions", "repair/handlers"})
 """Folders whose files have the same names: an action's, and its repairs'."""
 
-SUBJECTS = frozenset({"goals"})
-"""Names of a subject that each room treats in its own way."""
+SUBJECTS = frozenset({"goals", "parallel"})
+"""Names of a subject that each room treats in its own way; PettingZoo calls environments of several agents parallel."""
 
 
 def mirrored(folders: list[str]) -> bool:

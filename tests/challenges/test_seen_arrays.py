@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hearth.challenges.action_codes import Listed, Triples, fixed_list, played, str_step
-from hearth.challenges.arrays import AGENT_COLUMNS, GOAL_COLUMNS, Encoder, Sizes, class_number
+from hearth.challenges.seen_arrays import AGENT_COLUMNS, GOAL_COLUMNS, Encoder, Sizes, class_number
 from hearth.challenges.session import opening
 from hearth.challenges.slots import Slots
 from hearth.kb.loading.load import default
