@@ -75,7 +75,8 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "run": Entry("run:run", "Run a program in a home and print the changes of each step."),
         "repair": Entry("repair:repair", "Perturb the preconditions of a program, and show its repairs."),
         "sketch": Entry("sketch:sketch", "Print the steps of a program that do not depend on the environment."),
-        "replay": Entry("replay:replay", "Run a release's programs and compare their end graphs with the stored ones."),
+        "replay": Entry("replay:replay", "Run a release's programs, or episodes, again, and compare with the stored."),
+        "play": Entry("play:play", "Play an episode in a home: you, programs in any language, or language models."),
     },
     "Make pictures": {
         "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),

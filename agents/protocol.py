@@ -10,6 +10,10 @@ from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
 
+class Resigned(Exception):  # noqa: N818 - nothing is wrong
+    """Raised by an agent that ends the episode, such as a person who leaves; the ticks up to then stand."""
+
+
 class Agent(Protocol):
     """Whoever acts in an episode. It keeps its own generator, and learns of the world by observations alone.
 

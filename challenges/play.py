@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from hearth.agents.protocol import Agent
+from hearth.agents.protocol import Agent, Resigned
 from hearth.challenges.guard import AgentError
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import derive
@@ -69,7 +69,7 @@ def play(
     limit: int = MOST_TICKS,
     rules: Rules = DEFAULT,
 ) -> Played:
-    """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent can't go on.
+    """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent ends it or can't go on.
 
     Args:
         start: a world in which character n belongs to player n.
@@ -99,4 +99,6 @@ def play(
             progress.append(progress[-1].then(done.before, done.world, tried))
     except AgentError as fault:
         return Played(env, tuple(progress), fault)
+    except Resigned:
+        pass
     return Played(env, tuple(progress))

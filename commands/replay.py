@@ -1,4 +1,4 @@
-"""`replay`: compares the engine with the end graphs stored in a release."""
+"""`replay`: compares the engine with the end graphs stored in a release, or with the digests of episodes."""
 
 from __future__ import annotations
 
@@ -18,15 +18,22 @@ def replay(
     strict: bool = False,
     as_json: bool = False,
 ) -> None:
-    """Run a release's programs on their stored start graphs and compare with the stored end graphs.
+    """Run a release's programs on their stored start graphs and compare with the stored end graphs; or episodes.
 
     Prints the number of executed programs and of end graphs reproduced exactly, in every state and relation, and the
     edges of each mismatch. The release is read in place, one program at a time.
 
+    Episodes are done again and compared tick by tick, with the state of the home, the poses and the failures as they
+    were recorded; the status is 1 if one differs.
+
     \b
-    Example:
+    Examples:
       python cli.py replay activityprograms.zip
+      python cli.py replay episode.jsonl
     """
+    if release.name.endswith((".jsonl", ".jsonl.gz")):
+        _episodes(release, limit, as_json)
+        return
     import gc
     from itertools import islice
 
@@ -50,6 +57,23 @@ def replay(
         for one in inexact:
             _explain(one)
     output.status(len(inexact), strict=strict)
+
+
+def _episodes(path: Path, limit: int | None, as_json: bool) -> None:
+    from itertools import islice
+
+    from hearth.kb.loading.load import default
+    from hearth.simulation.episode import read
+
+    found = [(len(each.ticks), each.verify()) for each in islice(read(path, default()), limit)]
+    differing = [{"episode": number, "fault": fault} for number, (_, fault) in enumerate(found, 1) if fault]
+    summary = {"episodes": len(found), "ticks": sum(ticks for ticks, _ in found), "differing": len(differing)}
+    if as_json:
+        output.emit({**summary, "differences": differing})
+    else:
+        output.figures(summary)
+        output.report(fault for _, fault in found if fault is not None)
+    output.status(len(differing), strict=True)
 
 
 def _summary(results: list[Replayed]) -> dict[str, Any]:

@@ -108,7 +108,10 @@ class Code(StrEnum):
     DAMAGED_FILE = "DAMAGED_FILE", 71
     TIMED_OUT = "TIMED_OUT", 72
     BAD_ARGUMENT = "BAD_ARGUMENT", 74
-    # Agents
+    # Agents and their answers
+    NOT_SEEN = "NOT_SEEN", 75
+    NOT_ALLOWED = "NOT_ALLOWED", 76
+    DISCONNECTED = "DISCONNECTED", 77
     AGENT_FAILED = "AGENT_FAILED", 78
 
 

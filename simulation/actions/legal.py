@@ -11,6 +11,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
+from hearth.simulation.observation.seen import as_seen
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
 
@@ -79,19 +80,24 @@ def legal(
 ) -> Legal:
     """What an agent could do now: exactly the instructions that `engine.act` would not refuse.
 
+    With `only_visible` it is what the agent can know of that: instructions about what it sees, possible as far as it
+    sees. Nothing out of its sight changes the answer, so a door that it does not see stops nobody here, and an
+    instruction may be refused when it is tried.
+
     Args:
         world: now.
         agent: number of the agent.
         rules: of the engine.
-        only_visible: leave out instructions about what the agent does not see (see `reach.visible`).
+        only_visible: answer by what the agent sees alone (see `reach.visible` and `as_seen`).
         only_reachable: leave out instructions about what closed doors or containers keep from it, even where the
             action itself would not mind.
         actions: only these; all where None.
     """
-    situation = Situation(world, agent, rules)
     keep = -1
     if only_visible:
-        keep &= reach.visible(world, situation.me)
+        keep = reach.visible(world, world.agents[agent])
+        world = as_seen(world, keep)
+    situation = Situation(world, agent, rules)
     if only_reachable:
         keep &= reach.reachable(world, situation.me)
     found: dict[str, tuple[int, ...]] = {}

@@ -103,10 +103,10 @@ def out_of_sight(world: World) -> int:
 
 
 def in_room(world: World, room: int) -> int:
-    """The room, everything INSIDE it, directly or not, and the doors BETWEEN it and others."""
+    """The room, everything INSIDE it, directly or not, what is ON that, and the doors BETWEEN it and others."""
     found = frontier = 1 << room
     while frontier:
-        frontier = contained(world, frontier) & ~found
+        frontier = (contained(world, frontier) | upon(world, frontier)) & ~found
         found |= frontier
     for door in indices(world.home.doors):
         if world.home.between[door] >> room & 1:
@@ -115,15 +115,19 @@ def in_room(world: World, room: int) -> int:
 
 
 def visible(world: World, agent: Agent) -> int:
-    """What a character sees: what is in its room and not inside something closed, what it holds and wears, itself.
+    """What a character sees: what is in its room and not inside something closed, what it and those whom it sees hold
+    and wear, itself.
 
     It also knows which other rooms there are, or it could never ask to go to one.
     """
-    seen = agent.held | agent.worn | agent.bit | world.home.rooms
+    seen = agent.bit | world.home.rooms
     room = rows.agent_room(world, agent)
-    if room < 0:
-        return seen
-    return seen | (in_room(world, room) & ~out_of_sight(world))
+    if room >= 0:
+        seen |= in_room(world, room) & ~out_of_sight(world)
+    for other in world.agents:
+        if seen & other.bit:
+            seen |= other.held | other.worn
+    return seen
 
 
 def walkable(world: World, agent: Agent, through_doors: bool) -> int:

@@ -115,21 +115,21 @@ def view(
     """
     mask = reach.visible(world, world.agents[agent]) if partial else world.home.everything
     others = tuple(
-        pose(world, number, last_actions.get(number))
+        pose(world, number, last_actions.get(number), mask)
         for number, other in enumerate(world.agents)
         if number != agent and mask & other.bit
     )
-    return View(world, agent, mask, pose(world, agent, last_actions.get(agent)), others, tick)
+    return View(world, agent, mask, pose(world, agent, last_actions.get(agent), mask), others, tick)
 
 
-def pose(world: World, number: int, last: LastAction | None = None) -> Pose:
-    """How a character stands."""
+def pose(world: World, number: int, last: LastAction | None = None, among: int = -1) -> Pose:
+    """How a character stands; of what it faces and is on, the nodes of a set alone are named."""
     agent = world.agents[number]
     ids = world.home.ids
     room = rows.agent_room(world, agent)
 
     def named(mask: int) -> tuple[int, ...]:
-        return tuple(ids[i] for i in indices(mask))
+        return tuple(ids[i] for i in indices(mask & among))
 
     return Pose(
         agent=number,

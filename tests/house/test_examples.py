@@ -45,8 +45,8 @@ def ran(script: str, folder: Path, checkout: Path) -> str:
     return done.stdout + done.stderr
 
 
-def test_there_are_five():
-    assert len(EXAMPLES) == 5
+def test_there_are_six():
+    assert len(EXAMPLES) == 6
 
 
 @pytest.mark.parametrize("page", EXAMPLES, ids=lambda page: page.stem)

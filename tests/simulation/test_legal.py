@@ -3,17 +3,20 @@ from __future__ import annotations
 import random
 
 import pytest
-from small_worlds import arity, bound_step, random_graph, random_step
+from small_worlds import arity, bound_step, node, random_graph, random_step
 
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Failure
+from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.simulation.actions import appliances, cleaning, clothes, food, hands, locomotion, moving, posture, senses
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
 from hearth.simulation.observation import reach
+from hearth.simulation.observation.seen import as_seen
 from hearth.simulation.rules import DEFAULT, REPLAY
 from hearth.simulation.world import rows
+from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -66,10 +69,30 @@ def test_only_visible_and_only_reachable_keep_what_is_seen_and_reached(seed):
     me = world.agents[0]
     seen, near = reach.visible(world, me), reach.reachable(world, me)
     index = world.home.index
-    every = set(legal(world, 0))
-    for limits, mask in (({"only_visible": True}, seen), ({"only_reachable": True}, near)):
-        kept = {s for s in every if all(mask >> index[ref.node] & 1 for ref in s.objects)}
+    limited = (({"only_visible": True}, seen, as_seen(world, seen)), ({"only_reachable": True}, near, world))
+    for limits, mask, of in limited:
+        kept = {s for s in legal(of, 0) if all(mask >> index[ref.node] & 1 for ref in s.objects)}
         assert set(legal(world, 0, **limits)) == kept
+
+
+def test_a_closed_door_out_of_sight_does_not_show_in_what_is_legal():
+    names = ("kitchen", "bathroom", "bedroom", "character", "door", "door", "bed")
+    nodes = [node(number, name) for number, name in enumerate(names, 1)]
+    nodes[4:6] = [node(n, "door", properties=["CAN_OPEN"], states=["OPEN"]) for n in (5, 6)]
+    edges = [Edge(4, "INSIDE", 1), Edge(7, "INSIDE", 3), *(Edge(5, "BETWEEN", room) for room in (1, 2))]
+    edges += [Edge(6, "BETWEEN", room) for room in (2, 3)]
+    start = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "", default()))
+    far, near = (edit(start, set=[(door, "CLOSED")]) for door in (6, 5))
+    assert set(legal(far, only_visible=True)) == set(legal(start, only_visible=True))
+    assert 3 in legal(far, only_visible=True).objects("Walk") and 3 not in legal(far).objects("Walk")
+    assert legal(near, only_visible=True).objects("Walk") == (1, 4, 5)
+
+
+@pytest.mark.parametrize("names", [("Walk", "Grab"), ()])
+def test_of_some_actions_legal_has_these_alone(names):
+    world, _ = some_world(random.Random(3), 2, DEFAULT)
+    every = legal(world, 0)
+    assert set(legal(world, 0, actions=frozenset(names))) == {step for step in every if step.action in names}
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -1,5 +1,7 @@
 """Modifiers do what they say, or are refused; wrong ones are faults with their place."""
 
+from dataclasses import replace
+
 import pytest
 
 from hearth.kb.grammar import check
@@ -10,6 +12,8 @@ from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import act, run
+from hearth.simulation.env import Env
+from hearth.simulation.episode import Episode, read, write
 from hearth.simulation.instructions import instruction_of
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
@@ -113,3 +117,38 @@ def test_a_step_with_a_wrong_modifier_is_refused_when_it_is_done(beside, maple):
     ref = ObjectRef("milk", 1, id_of(maple, "milk"))
     refused = act(beside, Step("Grab", (ref,), 0, False, (("hand", "third"),)))
     assert isinstance(refused, Failure) and (refused.code, refused.action) == (Code.NOT_SIMULATED, "Grab")
+
+
+def test_a_stride_takes_no_place_and_no_way_to_look(maple):
+    """Where one stands and looks under way is where the stride ends: `at` would be a jump."""
+    world = placed(World.start(maple))
+    fridge = ObjectRef("fridge", 1, id_of(maple, "fridge"))
+    for name, value in (("at", "3,2"), ("facing", "90"), ("hand", "left")):
+        with pytest.raises(HearthError, match=f"takes no `{name}`"):
+            step(maple, f"[Walktowards] <fridge> (1) {{{name}={value}}}")
+        refused = act(world, Step("Walktowards", (fridge,), 0, False, ((name, value),)))
+        assert isinstance(refused, Failure) and refused.code is Code.NOT_SIMULATED
+    assert isinstance(act(world, step(maple, "[Walktowards] <fridge> (1) {speed=slow}")), World)
+    assert isinstance(act(world, step(maple, "[Turnleft] {speed=fast}")), World)
+
+
+def test_modifiers_are_done_again_with_their_episode(maple, tmp_path):
+    env = Env(knowledge=default())
+    env.reset(maple)
+    box = maple.node(maple.index[id_of(maple, "table")]).box
+    x, z = ground_of(maple).ground.ways.points[ground_of(maple).ground.stands(maple.index[id_of(maple, "fridge")])[0]]
+    for text in (
+        f"[Walk] <fridge> (1) {{at={x:.2f},{z:.2f} facing=45}}", "[Open] <fridge> (1) {hand=left speed=slow}",
+        "[Grab] <milk> (1) {hand=left}", "[Walk] <table> (1) {facing=200}",
+        f"[PutBack] <milk> (1) <table> (1) {{at={box.center[0]:.2f},{box.center[2]:.2f}}}",
+        f"[PutBack] <milk> (1) <table> (1) {{at={box.center[0] + 9:.2f},{box.center[2]:.2f}}}",
+    ):  # fmt: skip
+        env.step(text)
+    assert [bool(tick.failures) for tick in env.ticks] == [False] * 5 + [True]
+    assert env.world.agents[0].pose.yaw == 200
+    write(tmp_path / "e.jsonl", [Episode.of(env)])
+    (again,) = read(tmp_path / "e.jsonl", default())
+    assert again.verify() is None and again == Episode.of(env)
+    assert [tick[0].modifiers for tick in again.ticks] == [tick.instructions[0].modifiers for tick in env.ticks]
+    turned = [{0: replace(again.ticks[0][0], modifiers=(("facing", "46"),))}, *again.ticks[1:]]
+    assert replace(again, ticks=tuple(turned)).verify().line == 1

@@ -1,0 +1,252 @@
+"""`play`: an episode in a home, by people, programs in any language, or nobody."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import typer
+
+from hearth.commands import output
+from hearth.commands.inputs import read_goals, read_home, read_knowledge
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from hearth.agents.protocol import Agent
+    from hearth.challenges.channels import Channel
+    from hearth.challenges.play import Played
+
+TEXT, WAIT, LISTEN, STDIO = "text", "wait", "listen", "stdio"
+"""Agents that are not commands: the terminal, nobody, who connects to a port, and whoever started this command."""
+
+
+def play(
+    home: str,
+    goal: list[str],
+    agent: list[str] | None = None,
+    text: bool = False,
+    actions: str = "",
+    full: bool = False,
+    ticks: int = 250,
+    within: float = 30.0,
+    form: str = "graph",
+    graph: Path | None = None,
+    homes: Path | None = None,
+    kb: Path | None = None,
+    seed: int = 0,
+    out: Path | None = None,
+    transcript: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Play an episode in a home until a goal is reached, with agents of any kind.
+
+    An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal), `listen` or `listen:PORT`
+    (a program that connects to that port of this machine), `stdio` (the program that runs this command), or `wait`.
+    Agents that are not named wait. docs/examples/agents.md describes the messages. The status is 1 if the goal is not reached.
+
+    \b
+    Examples:
+      python cli.py play maple --goal "HOLDS(agent, milk)" --text
+      python cli.py play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
+      python cli.py replay episode.jsonl
+    """
+    seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
+    quiet = any(seat.spec == STDIO for seat in seats)
+    if quiet and (as_json or any(seat.spec == TEXT for seat in seats)):
+        raise typer.BadParameter("`stdio` has the standard output to itself: leave out --json and `text`")
+    if form not in FORMS:
+        raise typer.BadParameter(f"`{form[:60]}` is not a form: {', '.join(FORMS)}")
+    known = read_knowledge(kb)
+    place = read_home(home, graph, homes, known)
+    wanted = read_goals(goal, place)
+    with ExitStack() as stack:
+        how = _How(ticks, within, form, as_json, _transcript(transcript, stack))
+        playing = [_agent(seat, how, stack) for seat in seats]
+        played = _play(place, wanted, playing, seed, how, _actions(actions, known), not full)
+        for each in playing:
+            if (end := getattr(each, "end", None)) is not None:
+                end(played.success, played.ticks)
+    if out is not None:
+        _write(out, played)
+    if not quiet:
+        _print(_result(home, played, seats, playing, out), as_json)
+    output.status(not played.success, strict=True)
+
+
+class _Seat(NamedTuple):
+    """An agent as the command line names it."""
+
+    number: int
+    spec: str
+
+
+class _How(NamedTuple):
+    """What agents have in common."""
+
+    ticks: int
+    within: float
+    form: str
+    as_json: bool
+    keep: Callable[[Mapping[str, Any]], None]
+
+
+PLAYED = "played"
+"""The group of the actions of challenges."""
+
+MOST_AGENTS = 16
+
+FORMS = {"graph": ("graph",), "text": ("text",), "both": ("graph", "text")}
+"""What `--form` may be, and what programs are then sent."""
+
+
+def _seats(given: list[str]) -> list[_Seat]:
+    """The agents by number; those between that are not named wait."""
+    found: dict[int, str] = {}
+    for each in given:
+        number, equals, spec = each.partition("=")
+        if not (equals and number.isdecimal() and int(number) < MOST_AGENTS and spec.strip()):
+            raise typer.BadParameter(f"`{each[:60]}` is not N=AGENT, as in 0=text; N is below {MOST_AGENTS}")
+        if int(number) in found:
+            raise typer.BadParameter(f"agent {int(number)} is given twice")
+        found[int(number)] = spec.strip()
+    for one in (TEXT, STDIO):
+        if list(found.values()).count(one) > 1:
+            raise typer.BadParameter(f"there is one terminal: only one agent can be `{one}`")
+    return [_Seat(number, found.get(number, WAIT)) for number in range(max(found, default=0) + 1)]
+
+
+def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
+    from hearth.challenges.text import TextAgent
+    from hearth.challenges.wire import WireAgent
+
+    if seat.spec == TEXT:
+        return TextAgent(_asked_at_terminal(how.as_json), how.keep)
+    if seat.spec == WAIT:
+        return Waiting()
+    return WireAgent(_channel(seat, how, stack), how.within, FORMS[how.form], how.ticks, how.keep)
+
+
+class Waiting:
+    """An agent that does nothing."""
+
+    def reset(self, *_: object) -> None:
+        """Begin an episode."""
+
+    def act(self, *_: object) -> None:
+        """Wait."""
+
+
+def _channel(seat: _Seat, how: _How, stack: ExitStack) -> Channel:
+    import shlex
+
+    from hearth.challenges.channels import Channel, Listener, ProcessChannel
+
+    if seat.spec == STDIO:
+        return Channel(0, 1)
+    kind, _, port = seat.spec.partition(":")
+    if kind == LISTEN and (port.isdecimal() or seat.spec == LISTEN):
+        listener = Listener(int(port or 0))
+        stack.callback(listener.close)
+        output.note(f"Agent {seat.number}: waiting for a connection to 127.0.0.1:{listener.port}")
+        channel: Channel = listener.accept(max(60.0, how.within))
+    else:
+        try:
+            argv = shlex.split(seat.spec)
+        except ValueError as error:
+            raise typer.BadParameter(f"the command of agent {seat.number} can't be read: {error}") from None
+        channel = ProcessChannel(argv)
+    stack.callback(channel.close)
+    return channel
+
+
+def _asked_at_terminal(as_json: bool) -> Callable[[str], str]:
+    import sys
+
+    def ask(prompt: str) -> str:
+        stream = sys.stderr if as_json else sys.stdout
+        print(f"{prompt}> ", end="", file=stream, flush=True)
+        line = sys.stdin.readline()
+        if not line:
+            raise EOFError
+        return line
+
+    return ask
+
+
+def _transcript(path: Path | None, stack: ExitStack) -> Callable[[Mapping[str, Any]], None]:
+    from hearth.challenges.answers import keep_nothing
+
+    if path is None:
+        return keep_nothing
+    import orjson
+
+    file = stack.enter_context(path.open("wb"))
+
+    def keep(row: Mapping[str, Any]) -> None:
+        file.write(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
+        file.flush()
+
+    return keep
+
+
+def _actions(given: str, known: Any) -> list[str] | None:
+    if not given:
+        return None
+    found: list[str] = []
+    for name in map(str.strip, given.split(",")):
+        action = known.action(name)
+        if action is None and name != PLAYED:
+            raise typer.BadParameter(f"no action is called `{name[:60]}`")
+        found += known.group(PLAYED) if action is None else [action.name]
+    return found
+
+
+def _play(
+    place: Any, goal: Any, agents: list[Agent], seed: int, how: _How, actions: list[str] | None, partial: bool
+) -> Played:
+    from hearth.challenges.play import Player
+    from hearth.challenges.play import play as run
+    from hearth.simulation.env import Env
+
+    env = Env()
+    env.reset(place, len(agents), seed)
+    players = [Player(agent, goal) for agent in agents]
+    return run(env.world, goal, players, seed, actions=actions, partial=partial, limit=how.ticks)
+
+
+def _write(out: Path, played: Played) -> None:
+    from hearth.simulation.episode import Episode, write
+
+    write(out, [Episode.of(played.env)])
+
+
+def _result(home: str, played: Played, seats: list[_Seat], agents: list[Agent], out: Path | None) -> dict[str, Any]:
+    last = played.progress[-1]
+    return {
+        "home": home,
+        "reached": played.success,
+        "fraction": last.fraction,
+        "unmet": str(last.unmet()),
+        "ticks": played.ticks,
+        "agents": [
+            {"agent": seat.number, "is": seat.spec, "faults": [f.as_json() for f in getattr(agent, "faults", ())]}
+            for seat, agent in zip(seats, agents, strict=True)
+        ],
+        "file": out,
+    }
+
+
+def _print(result: dict[str, Any], as_json: bool) -> None:
+    if as_json:
+        output.emit(result)
+        return
+    ticks = output.counted(result["ticks"], "tick")
+    print(f"Goal: {'reached' if result['reached'] else 'not reached'} after {ticks}.")
+    if not result["reached"]:
+        print(f"Unmet: {output.shown(result['unmet'])}.")
+    faults = [{"agent": each["agent"], **fault} for each in result["agents"] for fault in each["faults"]]
+    output.records(faults[:20], "Answers that could not be used:")
+    if faults[20:]:
+        print(f"... and {len(faults) - 20} more; --json has all")
