@@ -19,7 +19,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import normal_name, parse_steps
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.engine import act
-from hearth.simulation.observation.seen import as_seen
+from hearth.simulation.observation.as_seen import as_seen
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
 

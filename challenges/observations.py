@@ -14,7 +14,7 @@ from hearth.schemas.program import Step
 from hearth.schemas.syntax import print_step
 from hearth.simulation.goal_trace import acts
 from hearth.simulation.holds import Candidates, nodes
-from hearth.simulation.observation.seen import as_seen
+from hearth.simulation.observation.as_seen import as_seen
 from hearth.simulation.observation.views import LastAction, Pose, View
 from hearth.simulation.world.home import Home
 
@@ -66,10 +66,6 @@ def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
     """What an agent sees: `tick`, `me`, `others`, `goal` and `graph`, the last in the form of the release.
 
     A box is where a thing stood at the start, so things that were carried elsewhere have none.
-
-    Examples:
-        >>> sorted(observation(env.observe()))
-        ['goal', 'graph', 'me', 'others', 'tick']
     """
     return {
         "tick": view.tick,

@@ -69,7 +69,7 @@ def play(
     limit: int = MOST_TICKS,
     rules: Rules = DEFAULT,
 ) -> Played:
-    """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent ends it or can't go on.
+    """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent ends it.
 
     Args:
         start: a world in which character n belongs to player n.

@@ -16,7 +16,7 @@ import orjson
 from hearth.challenges.answers import Fault, Keep, by_number, by_text, keep_nothing, row
 from hearth.challenges.channels import Channel
 from hearth.challenges.observations import instruction_text, observation
-from hearth.challenges.text import description
+from hearth.challenges.text_protocol import description
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

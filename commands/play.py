@@ -44,7 +44,8 @@ def play(
 
     An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal), `listen` or `listen:PORT`
     (a program that connects to that port of this machine), `stdio` (the program that runs this command), or `wait`.
-    Agents that are not named wait. docs/examples/agents.md describes the messages. The status is 1 if the goal is not reached.
+    Agents that are not named wait. docs/examples/agents.md describes the messages. The status is 1 if the goal is not
+    reached.
 
     \b
     Examples:
@@ -118,7 +119,7 @@ def _seats(given: list[str]) -> list[_Seat]:
 
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
-    from hearth.challenges.text import TextAgent
+    from hearth.challenges.text_protocol import TextAgent
     from hearth.challenges.wire import WireAgent
 
     if seat.spec == TEXT:

@@ -3,11 +3,12 @@
 import json
 import re
 import sys
+from typing import Any
 
 tried: set[str] = set()
 
 
-def choose(wanted: str, legal: list[str], nodes: list[dict[str, list[str]]]) -> str | None:
+def choose(wanted: str, legal: list[str], nodes: list[dict[str, Any]]) -> str | None:
     """The first of these that is legal and was not done before; None to wait."""
     closed = [f"(1.{n['id']})" for n in nodes if "CLOSED" in n["states"] and "GRABBABLE" not in n["properties"]]
     rooms = [f"(1.{n['id']})" for n in nodes if n["category"] == "Rooms"]

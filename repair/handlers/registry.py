@@ -54,10 +54,10 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
         Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
-        Code.BAD_ARGUMENT, Code.AGENT_FAILED,
+        Code.BAD_ARGUMENT, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
     }
 )  # fmt: skip
-"""Codes of reading, checking, grounding, repairing itself, scoring and publishing: no run of a program ends in them."""
+"""Codes of reading, checking, grounding, repairing itself, scoring, publishing, agents: no run of a program ends in them."""
 
 
 def unclassified() -> tuple[Code, ...]:

@@ -11,7 +11,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
-from hearth.simulation.observation.seen import as_seen
+from hearth.simulation.observation.as_seen import as_seen
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
 

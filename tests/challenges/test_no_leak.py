@@ -14,7 +14,7 @@ from scrambled import scrambled
 
 from hearth.challenges.answers import by_text
 from hearth.challenges.observations import observation
-from hearth.challenges.text import description, menu, plain
+from hearth.challenges.text_protocol import description, menu, plain
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError

@@ -45,9 +45,6 @@ class TextAgent:
     Args:
         ask: answers a prompt.
         keep: gets a row for each tick: `tick`, `agent`, `prompt`, `answer`, `instruction`, `fault`.
-
-    Examples:
-        >>> agent = TextAgent(lambda prompt: "wait")
     """
 
     def __init__(self, ask: Ask, keep: Keep = keep_nothing) -> None:
