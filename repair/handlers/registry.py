@@ -57,7 +57,7 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.BAD_ARGUMENT, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
     }
 )  # fmt: skip
-"""Codes of reading, checking, grounding, repairing itself, scoring, publishing, agents: no run of a program ends in them."""
+"""Codes of reading, checking, grounding, repairing itself, scoring, publishing and agents: no run ends in them."""
 
 
 def unclassified() -> tuple[Code, ...]:
