@@ -6,8 +6,10 @@ from that belief and kept; a thing is drawn anew only once what is seen refutes 
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import or_
 from random import Random
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
@@ -19,6 +21,12 @@ from hearth.simulation.world.world import World
 
 USUAL = {CLOSED: "CAN_OPEN", OFF: "HAS_SWITCH", PLUGGED_IN: "HAS_PLUG", CLEAN: "GRABBABLE"}
 """The states in which what is not seen yet is believed to be, and what only things with a property are in."""
+
+
+Extent = Literal["class", "goal", "any"]
+"""The containers in which an agent looks for a thing: those in which its class belongs according to the knowledge, or
+anything that the goal is about, or all.
+"""
 
 
 class Place(NamedTuple):
@@ -76,15 +84,14 @@ class Belief:
         room: index of the room that the agent is in, or -1.
     """
 
-    def __init__(self, home: Home, things: int, chooser: Random, *, usual: bool = True) -> None:
+    def __init__(self, home: Home, things: int, chooser: Random, *, looks_in: Extent = "goal") -> None:
         """Nothing seen yet.
 
         Args:
             home: of the episode.
             things: whose places are of interest.
             chooser: draws places.
-            usual: a thing is in a container in which its class belongs, until all of those are refuted; otherwise in
-                any, as in the thesis.
+            looks_in: the containers in which a thing may be; once all of them are refuted, any.
         """
         self.things = things
         self.where: dict[int, Place] = {}
@@ -98,9 +105,12 @@ class Belief:
         self._rooms = home.rooms
         self._closable = containers(home)
         self._everywhere = self._closable | home.rooms & home.everything
-        names = {home.classes[i] for i in indices(things)} if usual else set()
-        places = {name: usual_containers(home, name) | home.rooms & home.everything for name in names}
-        self._usual = {i: places.get(home.classes[i], self._everywhere) for i in indices(things)}
+        usual = {name: usual_containers(home, name) for name in {home.classes[i] for i in indices(things)}}
+        places = {i: usual[home.classes[i]] for i in indices(things)}
+        if looks_in == "goal":
+            places = dict.fromkeys(places, reduce(or_, usual.values(), 0))
+        rooms = home.rooms & home.everything
+        self._usual = {i: self._everywhere if looks_in == "any" else place | rooms for i, place in places.items()}
         self._possible = dict(self._usual)
         self._rest = dict.fromkeys(self._usual, self._everywhere)
         self._chooser = chooser
@@ -127,6 +137,11 @@ class Belief:
                 self._rest[thing] &= ~empty
                 if thing not in self.where or not self._possible[thing] >> self.where[thing].node & 1:
                     self._draw(thing, empty)
+
+    def rule_out(self, thing: int) -> None:
+        """A thing can't be looked for where it was believed to be; it is drawn anew."""
+        self._possible[thing] &= ~(1 << self.where[thing].node)
+        self._draw(thing, 1 << self.where[thing].node)
 
     def _refuted(self, place: Place, empty: int) -> bool:
         """Whether a thing that is out of view can't be there: its place is in view, or its holder out of view."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 
-from hearth.agents.belief import Belief
+from hearth.agents.belief import Belief, Extent
 from hearth.agents.distances import Distances
 from hearth.agents.mcts import PUBLISHED, Search, Tree
 from hearth.agents.regression import Regression
@@ -29,14 +29,19 @@ class Habits:
     Attributes:
         search: settings of the tree search.
         closes: whether it closes what it opened, once nothing wanted is left there.
-        usual: it looks for things where such things belong first; otherwise anywhere, as in the thesis.
+        looks_in: the containers in which it looks first (see `belief.Extent`); in the thesis any.
         doubt: ticks that a subgoal counts more if its thing was not seen.
+        sees_all: it knows the whole world as it is (the oracles of 6.5).
     """
 
     search: Search = PUBLISHED
     closes: bool = True
-    usual: bool = True
+    looks_in: Extent = "goal"
     doubt: float = 10.0
+    sees_all: bool = False
+
+
+PLAIN = Habits()
 
 
 class HumanLike:
@@ -46,7 +51,7 @@ class HumanLike:
         subgoal: what it is doing now; None before its first tick, and when nothing is left to be done.
     """
 
-    def __init__(self, habits: Habits = Habits()) -> None:
+    def __init__(self, habits: Habits = PLAIN) -> None:
         self.habits = habits
         self.subgoal: Subgoal | None = None
 
@@ -57,14 +62,16 @@ class HumanLike:
         self.chooser: Random = rng(seed, "agent", observation.agent)
         self.me = home.index[observation.me.node]
         self.aims = Aims(self.goal, home, self.me)
-        self.belief = Belief(home, self.aims.things, self.chooser, usual=self.habits.usual)
+        self.belief = Belief(home, self.aims.things, self.chooser, looks_in=self.habits.looks_in)
         self.distances = Distances(home, observation.me.stride)
         self.subgoal = None
         self.opened = 0
+        self._blocked: set[Subgoal] = set()
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The first instruction of its plan."""
-        self.belief.observe(observation)
+        everything = observation.world.home.everything
+        self.belief.observe(replace(observation, mask=everything) if self.habits.sees_all else observation)
         self._note_opened(observation)
         missing = self.aims.missing(self.belief, observation)
         open_now = self.aims.open(self.belief, missing)
@@ -74,11 +81,26 @@ class HumanLike:
         if (clearing := self._clearing(search, needed)) is not None:
             return clearing
         step = search.first(self.subgoal.literal) if self.subgoal else None
+        if step is None:
+            self._give_up()
         return self._closing(search, step, open_now, needed) or step
+
+    def _give_up(self) -> None:
+        """Look elsewhere, or do other things first, where nothing brings the subgoal nearer."""
+        if self.subgoal is not None:
+            thing = self.subgoal.thing
+            if self.belief.things & ~self.belief.known & 1 << thing:
+                self.belief.rule_out(thing)
+            self._blocked.add(self.subgoal)
+            self.subgoal = None
 
     def _decide(self, view: View, open_now: list[Subgoal], missing: Missing) -> None:
         """Keep the subgoal while it is one of those to choose among, and nothing has failed."""
         subgoals = self.available(view, open_now, missing)
+        free = [each for each in subgoals if each not in self._blocked]
+        if not free:
+            self._blocked.clear()
+        subgoals = free or subgoals
         if self.subgoal not in subgoals or self._failed(view):
             self.subgoal = self.choose(view, subgoals, missing)
 
@@ -149,13 +171,13 @@ class HumanLike:
         return search.first(Literal(HANDS[0], (self.me, search.spare[0]), negated=True))
 
     def _note_opened(self, view: View) -> None:
-        """Remember what it opened; forget what is closed again."""
+        """Remember what it opened; forget what is closed again, and doors, which it needs open."""
         last, home = view.me.last, view.world.home
         if last is not None and last.failure is None:
             instruction = last.instruction
             opened = instruction.objects if home.knowledge.state_of(instruction.action) == "OPEN" else ()
             self.opened |= mask_of(home.index[ref.node] for ref in opened if ref.node is not None)
-        self.opened &= self.belief.states[OPEN]
+        self.opened &= self.belief.states[OPEN] & ~home.doors
 
     def _closing(self, search: Regression, step: Step | None, open_now: Sequence[Subgoal], needed: int) -> Step | None:
         """Close what it opened before it walks away, if nothing wanted is left there and nothing more is to go in."""

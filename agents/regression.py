@@ -38,10 +38,12 @@ class Regression:
     """The search in one tick.
 
     Attributes:
+        seen: what is in view.
         spare: held things from the one to be put down first, should a hand be needed.
     """
 
     def __init__(self, view: View, legal: Legal, belief: Belief, spare: tuple[int, ...] = ()) -> None:
+        self.seen = view.mask
         self.world = view.world
         self.home = view.world.home
         self.agent = view.agent
@@ -64,11 +66,13 @@ class Regression:
                 return step
         elif literal.negated and literal.name in HANDS and (step := self._put_down(literal.terms[1], above)):
             return step
-        for action, bound in ways:
-            for condition in action.preconditions:
-                for missing in self._missing(condition.formula, bound):
-                    if (step := self.first(missing, above)) is not None:
-                        return step
+        return next((step for action, bound in ways if (step := self._prepared(action, bound, above))), None)
+
+    def _prepared(self, action: Action, bound: Bound, above: tuple[Literal[int], ...]) -> Step | None:
+        """The instruction of now by which the first condition of an action that does not hold is to hold."""
+        for condition in action.preconditions:
+            if missing := self._missing(condition.formula, bound):
+                return next((step for each in missing if (step := self.first(each, above))), None)
         return None
 
     def _ways(self, literal: Literal[int]) -> Iterator[Way]:
@@ -95,16 +99,31 @@ class Regression:
         return Step(name, tuple(ObjectRef(home.classes[i], 0, home.ids[i]) for i in nodes), self.agent)
 
     def _towards(self, node: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A walk to a node, or to where it is believed to be, or to a door that is closed."""
-        for name in _moves(self.home.knowledge):
+        """A walk to a node, or to where it is believed to be, or what opens the way there."""
+        for name in self._moves():
             if (step := self._legal_step(name, node)) is not None:
                 return step
         if (place := self.place(node)) >= 0 and place != node:
             return self.first(Literal("CLOSE", (self.me.index, place)), above)
-        for door in indices(self.home.doors & self.belief.seen & self.belief.states[STATE_ID["CLOSED"]]):
-            if (step := self.first(Literal("OPEN", (door,)), above)) is not None:
-                return step
-        return None
+        return self._through(node, above) if place < 0 else None
+
+    def _through(self, room: int, above: tuple[Literal[int], ...]) -> Step | None:
+        """A closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
+        home, closed = self.home, self.seen & self.belief.states[STATE_ID["CLOSED"]]
+        rooms = [room]
+        for each in rooms:  # grows
+            for door in indices(home.doors):
+                if not home.between[door] >> each & 1:
+                    continue
+                if closed >> door & 1 and (step := self.first(Literal("OPEN", (door,)), above)) is not None:
+                    return step
+                rooms += [i for i in indices(home.between[door] & home.rooms) if i not in rooms]
+        others = (i for i in rooms[1:] if i != self.belief.room)
+        return next((step for i in others for name in self._moves() if (step := self._legal_step(name, i))), None)
+
+    def _moves(self) -> tuple[str, ...]:
+        """The actions after which one is at, or nearer to, their object: by metres where those are allowed."""
+        return _moves(self.home.knowledge)
 
     def place(self, node: int) -> int:
         """What something is believed to be on or in, and of what stays where it is the room; -1 of a room."""
@@ -115,9 +134,9 @@ class Regression:
         return rows.room_of(self.world, node)
 
     def _put_down(self, thing: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A held thing on a surface within reach, or else on the nearest that is in view."""
+        """A held thing on a surface within reach, or else on one that is in view."""
         home = self.home
-        surfaces = home.properties["SURFACES"] & home.furniture & self.belief.seen
+        surfaces = home.properties["SURFACES"] & home.furniture & self.seen
         for name in sorted(home.knowledge.group("puts") & self.legal.masks.keys()):
             if home.knowledge.relation_of(name) == "ON":
                 near = surfaces & self.legal.masks[name][1]
@@ -184,9 +203,9 @@ class Regression:
 
     def near(self, node: int) -> bool:
         """Whether the agent is close to something; to what is out of view, if it is to what that is in."""
-        if not self.belief.seen >> node & 1:
+        if not self.seen >> node & 1:
             node = self.belief.shut_in(node)
-        return node >= 0 and rows.is_close(self.world, self.me, node)
+        return node >= 0 and bool(self.seen >> node & 1) and rows.is_close(self.world, self.me, node)
 
 
 @lru_cache(maxsize=512)

@@ -84,7 +84,8 @@ class Ground:
         if box is None or not self.ways.main.any():
             return []
         if self.home.between[node]:
-            return [self._nearest(box, room) for room in indices(self.home.between[node] & self.home.rooms)]
+            doorway = self._doorways.get(node, ())
+            return [self._nearest(box, room, doorway) for room in indices(self.home.between[node] & self.home.rooms)]
         middle = (box.center[0], box.center[2])
         if self.home.rooms >> node & 1:
             cells = self._main(node)
@@ -97,8 +98,11 @@ class Ground:
             return [int(cells[np.hypot(*(self.ways.points[cells] - _front(box, yaw)).T).argmin()])]
         return list(map(int, cells[far <= max(BESIDE, far.min() + 1e-6)]))
 
-    def _nearest(self, box: Box, room: int) -> int:
+    def _nearest(self, box: Box, room: int, doorway: tuple[int, ...]) -> int:
+        """The cell of a room nearest to a door, but not in its doorway, which is not free while it is closed."""
         cells = self._main(room)
+        rest = cells[~np.isin(cells, doorway)]
+        cells = rest if len(rest) else cells
         return int(cells[gaps(self.ways.points[cells], box).argmin()])
 
     def _main(self, room: int) -> np.ndarray:

@@ -14,9 +14,11 @@ from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.schemas.rng import rng
 from hearth.simulation.env import Env
+from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.states import OPEN
 from hearth.simulation.world.world import World
 
@@ -103,7 +105,7 @@ def test_two_agents_of_one_seed_have_their_own_generators(kitchen):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_it_closes_what_it_opened_and_opens_nothing_for_ever(kitchen, seed):
-    """What stays open holds something that was wanted."""
+    """What stays open holds something that was wanted, but for the one from which the last thing was taken."""
     played = play(kitchen, wanted(kitchen, "ON", "dining_table", plate=2, fork=2), [HumanLike(), None], seed)
     opened = [tick.instructions[0].objects[0].node for tick in played.ticks if done(tick, "OPEN")]
     assert len(opened) > 3
@@ -112,7 +114,7 @@ def test_it_closes_what_it_opened_and_opens_nothing_for_ever(kitchen, seed):
     end = played.ticks[-1].world
     left = list(indices(end.states[OPEN] & ~kitchen.states[OPEN]))
     things = end.home.instances("plate") | end.home.instances("fork")
-    assert all(rows.contents(end, i) & things for i in left)
+    assert sum(not rows.contents(end, i) & things for i in left) <= 1
 
 
 def test_it_leaves_a_container_open_while_more_is_to_go_in(kitchen):
@@ -145,3 +147,41 @@ def test_it_goes_on_where_another_takes_what_it_wanted(kitchen):
     goal = wanted(kitchen, "ON", "dining_table", plate=2, fork=1)
     played = play(kitchen, goal, [HumanLike(), HumanLike()], 2)
     assert played.progress.satisfied
+
+
+def test_a_closed_door_is_opened_and_left_open(kitchen):
+    """The doors of a room are closed while the agent is in it."""
+    home = kitchen.home
+    room = home.index[target(kitchen, "bedroom")]
+    me = home.ids[kitchen.agents[0].index]
+    closed = edit(
+        kitchen,
+        place={me: ("INSIDE", home.ids[room])},
+        set=[(home.ids[i], "CLOSED") for i in indices(home.doors & home.properties["CAN_OPEN"])],
+        check=False,
+    )
+    assert isinstance(closed, World)
+    ground = ground_of(home).ground
+    pose = Pose(*ground.ways.points[ground.stands(room)[0]].tolist())
+    inside = closed.with_agent(0, closed.agents[0]._replace(pose=pose))
+    played = play(inside, wanted(kitchen, "ON", "dining_table", plate=2, fork=1), [HumanLike(), None])
+    assert played.progress.satisfied
+    doors = [tick for tick in played.ticks if done(tick, "OPEN") and home.doors >> opened_by(tick) & 1]
+    assert doors
+    assert not [tick for tick in played.ticks if done(tick, "CLOSED") and home.doors >> opened_by(tick) & 1]
+
+
+def opened_by(tick) -> int:
+    return tick.world.home.index[tick.instructions[0].objects[0].node]
+
+
+def test_it_does_other_things_while_a_container_does_not_open(kitchen):
+    """The fridge, in which an apple is, is on, so that it can't be opened; nothing allowed switches it off."""
+    home = kitchen.home
+    fridge = target(kitchen, "fridge")
+    apples = [home.ids[i] for i in indices(home.instances("apple"))]
+    locked = edit(kitchen, place={apples[0]: ("INSIDE", fridge)}, set=[(fridge, "CLOSED"), (fridge, "ON")], check=False)
+    assert isinstance(locked, World)
+    goal = wanted(kitchen, "ON", "dining_table", apple=2, plate=2)
+    played = play(locked, goal, [HumanLike(), None], limit=200)
+    assert played.progress.counts == (1, 2)

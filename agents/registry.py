@@ -1,0 +1,60 @@
+"""The agents by name. To add one: a file with its settings, a row here, a test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hearth.agents.hierarchical import Hierarchical, Partner
+from hearth.agents.human_like import Habits, HumanLike
+from hearth.agents.protocol import Agent
+from hearth.agents.random_helper import RandomHelper
+
+MainAgent = HumanLike
+"""Who is helped: an agent that says what it is doing (`subgoal`)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Helper:
+    """A way to help.
+
+    Attributes:
+        make: makes the helper of a main agent.
+        goal: which goal it is told: `true`, `inferred` (from the task's demonstration), `random` (that of another task,
+            which the runner gives), or `none`.
+        main: name of the main agent that it is made for; '' for any.
+        about: what it is, for tables.
+    """
+
+    make: Callable[[Partner], Agent]
+    goal: str
+    about: str
+    main: str = ""
+
+
+SEES_ALL = Habits(sees_all=True)
+
+MAIN: dict[str, Callable[[], MainAgent]] = {
+    "human_like": HumanLike,
+    "oracle": lambda: HumanLike(SEES_ALL),
+}
+"""Who is helped."""
+
+HELPERS: dict[str, Helper] = {
+    "random": Helper(lambda partner: RandomHelper(), "none", "anything that can be done"),
+    "hp_true": Helper(Hierarchical, "true", "planner, true goal, leaves the partner's subgoal"),
+    "hp_timed": Helper(
+        lambda partner: Hierarchical(partner, timed=True),
+        "true",
+        "planner, true goal, leaves what the partner reaches first",
+    ),
+    "hp": Helper(lambda partner: Hierarchical(), "inferred", "planner, inferred goal"),
+    "hp_random": Helper(lambda partner: Hierarchical(), "random", "planner, goal of another task"),
+    "oracle_b": Helper(
+        lambda partner: Hierarchical(partner, SEES_ALL, timed=True), "true", "planner that sees everything"
+    ),
+    "oracle_ab": Helper(
+        lambda partner: Hierarchical(partner, SEES_ALL, timed=True), "true", "planner; both see everything", "oracle"
+    ),
+}
+"""How to help."""
