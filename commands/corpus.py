@@ -14,6 +14,8 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hearth.analysis.corpus_statistics import Corpus, Similarities
     from hearth.schemas.program import Program
 
@@ -46,28 +48,38 @@ def synthesize(
     actions: str = "animated",
     descriptions: int = 2,
     grammar: Path | None = None,
+    described: bool = False,
     out: Path | None = None,
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
     """Draw distinct programs with descriptions from a probabilistic grammar, as JSON Lines that `build` reads.
 
+    With --described: the programs, drawn once, whose descriptions were written one by one.
+
     \b
     Examples:
       python cli.py corpus synthesize --out synthetic.jsonl
+      python cli.py corpus synthesize --described --out described.jsonl
       python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
       python cli.py sample synthetic.jsonl   (runs each of them in every home)
     """
     import orjson
 
+    from hearth.analysis import described as written
     from hearth.analysis import synthesis
     from hearth.storage.files import replacing
 
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
-    weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
-    drawn = synthesis.synthesize(count, seed, weights, descriptions)
-    lines = (orjson.dumps(synthesis.record(one, number, seed)) + b"\n" for number, one in enumerate(drawn, 1))
+    if described:
+        records: Iterable[dict[str, Any]] = tuple(written.described())
+        count = sum(1 for _ in records)
+    else:
+        weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
+        drawn = synthesis.synthesize(count, seed, weights, descriptions)
+        records = (synthesis.record(one, number, seed) for number, one in enumerate(drawn, 1))
+    lines = (orjson.dumps(record) + b"\n" for record in records)
     if out is None:
         sys.stdout.buffer.writelines(lines)
         return

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.analysis import synthesis
+from hearth.analysis.described import described
 from hearth.cli import app
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
@@ -109,3 +110,20 @@ def test_the_command_writes_what_ingest_reads(tmp_path):
     counts = json.loads(CliRunner().invoke(app, arguments).stdout)["stages"]["ingest"]
     assert counts["tally"]["program"] == 30 and counts["tally"]["description"] >= 25
     assert counts["rejected"] == 0
+
+
+def test_described_programs_are_animated_each_in_words_of_its_own(knowledge):
+    records = list(described())
+    programs = [parse_program("\n".join([one["title"], "", *one["steps"]])) for one in records]
+    assert not [faults for _, faults in programs if faults]
+    assert {step.action for program, _ in programs for step in program.steps} <= knowledge.group("animated")
+    assert len({tuple(one["steps"]) for one in records}) == len({one["description"] for one in records}) == 500
+
+
+def test_described_programs_are_written_and_read(tmp_path):
+    file = tmp_path / "described.jsonl"
+    done = CliRunner().invoke(app, ["corpus", "synthesize", "--described", "--out", str(file)])
+    assert done.exit_code == 0 and "500 programs" in done.output, done.output
+    arguments = ["ingest", str(file), "--out", str(tmp_path / "out"), "--workers", "1", "--json"]
+    counts = json.loads(CliRunner().invoke(app, arguments).stdout)["stages"]["ingest"]
+    assert counts["tally"]["program"] == 500 and counts["rejected"] == 0

@@ -1,0 +1,30 @@
+"""Synthetic programs whose descriptions were written one by one, not drawn from the grammar."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+FILE = Path(__file__).parent.parent / "data_raw" / "synthetic.csv"
+"""`program_id`, `title`, `description` and `program` of each; `data_raw/README.md` says how they came about."""
+
+
+def described(file: Path = FILE) -> Iterator[dict[str, Any]]:
+    """The described programs as lines of JSON Lines that `ingest` reads, as `synthesis.record` gives drawn ones.
+
+    Example:
+        >>> len(next(described())["steps"])
+        3
+    """
+    with file.open(encoding="utf-8", newline="") as opened:
+        for row in csv.DictReader(opened):
+            yield {
+                "program_id": row["program_id"],
+                "origin": "synthetic",
+                "title": row["title"],
+                "description": row["description"],
+                "descriptions": [],
+                "steps": row["program"].split("\n"),
+            }
