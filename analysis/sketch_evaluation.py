@@ -9,6 +9,7 @@ from hearth.analysis.coverage import Script
 from hearth.kb.knowledge import Knowledge
 from hearth.pipelines.readers import sketches as reader
 from hearth.repair.sketch import Keep, sketch
+from hearth.repair.sketch_model import SketchModel, learned_sketch
 from hearth.schemas.program import Program
 from hearth.schemas.row_types import IngestedRow
 from hearth.schemas.syntax import print_step
@@ -183,9 +184,13 @@ def _answered(row: IngestedRow, knowledge: Knowledge) -> list[tuple[str, ...]]:
 
 
 def evaluate_sketches(
-    found: Iterable[Annotated | None], homes: Sequence[Home], knowledge: Knowledge, seed: int = 0
+    found: Iterable[Annotated | None],
+    homes: Sequence[Home],
+    knowledge: Knowledge,
+    seed: int = 0,
+    model: SketchModel | None = None,
 ) -> SketchEvaluation:
-    """Infer the sketch of every annotated program, and compare."""
+    """Infer the sketch of every annotated program, by repairs or by a learned model, and compare."""
     dropped = knowledge.group("unsaid") | knowledge.group("takes") | knowledge.achieving("PLUGGED_IN")
     evaluation = SketchEvaluation(dropped)
     for one in found:
@@ -193,5 +198,6 @@ def evaluate_sketches(
             evaluation.unmatched += 1
             continue
         keep = sketch(one.script.program, homes, knowledge, seed, one.script.program_id)
-        evaluation.rows.append((one, keep))
+        learned = learned_sketch(one.script.program, keep, knowledge, model) if model else keep
+        evaluation.rows.append((one, learned))
     return evaluation

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import inputs, output
+from hearth.commands import corpus_comparison, inputs, output
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from hearth.analysis.corpus_statistics import Corpus, Similarities
     from hearth.schemas.program import Program
 
-app = typer.Typer(help="Descriptions and programs: statistics, synthesis, ratings and error detection.")
+app = typer.Typer(help="Descriptions and programs: statistics, comparison, synthesis, ratings and error detection.")
+for _comparison in (corpus_comparison.realism, corpus_comparison.agreement, corpus_comparison.retrieval):
+    app.command()(_comparison)
 
 
 @app.command()

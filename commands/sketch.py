@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
 
@@ -19,6 +21,9 @@ def sketch(
     sources: list[Path],
     judge: Path | None = None,
     disagreements: bool = False,
+    model: str | None = None,
+    fit: Path | None = None,
+    folds: int = 0,
     homes: Path | None = None,
     kb: Path | None = None,
     seed: int = 0,
@@ -28,12 +33,17 @@ def sketch(
 
     A sketch has the fewest steps from which, in several homes, repairs still reach the goal of the program, and the
     steps of which only the description speaks. With --judge the sketches are compared with people's: precision, recall
-    and F1 over steps, beside two baselines, one of which knows the answers.
+    and F1 over steps, beside two baselines, one of which knows the answers. With --model a learned model decides:
+    `ours`, fitted on our own annotations, or a file that --fit wrote, fitted on others' on top of ours. With --folds it
+    is cross-validated: fitted on some activities, tested on others.
 
     \b
     Examples:
       python cli.py sketch watch_tv.txt
       python cli.py sketch release.zip --judge sketch_annotation.json --disagreements
+      python cli.py sketch release.zip --judge sketch_annotation.json --folds 10
+      python cli.py sketch release.zip --judge sketch_annotation.json --fit people.json
+      python cli.py sketch watch_tv.txt --model people.json
     """
     from hearth.analysis.coverage import scripts
     from hearth.schemas.diagnostics import HearthError
@@ -45,10 +55,16 @@ def sketch(
     if not programs:
         raise HearthError([fault for one in found if isinstance(one, Reject) for fault in one.diagnostics])
     places = _homes(homes, known)
-    if judge is None:
-        _show(programs, places, known, seed, as_json)
+    if fit or folds:
+        if judge is None:
+            raise typer.BadParameter("the annotations are missing", param_hint="--judge")
+        from hearth.commands.sketch_fitting import fitted
+
+        fitted(judge, programs, places, known, model, fit, folds, seed, as_json=as_json)
+    elif judge is None:
+        _show(programs, places, known, seed, as_json, model)
     else:
-        _judge(judge, programs, places, known, seed, as_json=as_json, every=disagreements)
+        _judge(judge, programs, places, known, seed, as_json=as_json, every=disagreements, model=model)
 
 
 def _homes(folder: Path | None, known: Knowledge) -> list[Home]:
@@ -60,13 +76,18 @@ def _homes(folder: Path | None, known: Knowledge) -> list[Home]:
     return [Home.from_graph(library.load_graph(name, known, folder), name, known) for name in names]
 
 
-def _show(programs: list[Script], places: list[Home], known: Knowledge, seed: int, as_json: bool) -> None:
+def _show(
+    programs: list[Script], places: list[Home], known: Knowledge, seed: int, as_json: bool, model: str | None
+) -> None:
     from hearth.repair.sketch import sketch as inferred
+    from hearth.repair.sketch_model import learned_sketch, model_of
     from hearth.schemas.syntax import print_step
 
+    learned = model_of(model) if model else None
     rows = []
     for script in programs:
         keep = inferred(script.program, places, known, seed, script.program_id)
+        keep = learned_sketch(script.program, keep, known, learned) if learned else keep
         steps = [print_step(step) for step in script.program.steps]
         rows.append({"program_id": script.program_id, "title": script.program.title, "steps": steps, "keep": keep})
         if not as_json:
@@ -82,15 +103,18 @@ def _print_steps(heading: str, steps: list[str], keep: tuple[bool, ...]) -> None
 
 
 def _judge(
-    file: Path, programs: list[Script], places: list[Home], known: Knowledge, seed: int, *, as_json: bool, every: bool
-) -> None:
+    file: Path, programs: list[Script], places: list[Home], known: Knowledge, seed: int, *, as_json: bool, every: bool,
+    model: str | None
+) -> None:  # fmt: skip
     from hearth.analysis.sketch_evaluation import annotated, evaluate_sketches
+    from hearth.repair.sketch_model import model_of
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
 
     if not file.is_file():
         raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(file))
-    found = evaluate_sketches(annotated(file, file.name, programs, known), places, known, seed)
+    learned = model_of(model) if model else None
+    found = evaluate_sketches(annotated(file, file.name, programs, known), places, known, seed, learned)
     if not found.rows:
         hint = "give the programs that the sketches are of: the release they were drawn for"
         raise HearthError.of(Code.EMPTY, "no sketch is of one of these programs", file=str(file), suggestion=hint)

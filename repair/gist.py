@@ -112,20 +112,22 @@ def asked(program: Program, knowledge: Knowledge) -> tuple[bool, ...]:
 
     Steps that only lead to others are never asked for, nor is taking back what the program itself has done.
     """
-    sentences = [_words(text) for text in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", _texts(program))]
+    sentences = clauses(program)
     return tuple(
         step.action not in knowledge.group("preparation")
-        and not _takes_back(program, number, knowledge)
+        and not takes_back(program, number, knowledge)
         and any(_says(step, sentence, knowledge) for sentence in sentences)
         for number, step in enumerate(program.steps)
     )
 
 
-def _texts(program: Program) -> str:
-    return f"{program.title}. {program.description}".lower()
+def clauses(program: Program) -> list[frozenset[str]]:
+    """The stems of each clause of title and description."""
+    text = f"{program.title}. {program.description}".lower()
+    return [stems(part) for part in re.split(r"[.;!?\n]|,|\band\b|\bthen\b", text)]
 
 
-def _takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
+def takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
     """Whether a step tidies up: puts away what was taken, or switches off what was switched on."""
     step = program.steps[number]
     if step.action in knowledge.group("forgets"):
@@ -136,32 +138,32 @@ def _takes_back(program: Program, number: int, knowledge: Knowledge) -> bool:
 
 
 def _says(step: Step, sentence: frozenset[str], knowledge: Knowledge) -> bool:
-    verbs = any(way <= sentence for way in _ways(step.action, knowledge))
-    return verbs and (not step.objects or any(_names(ref.name, knowledge) & sentence for ref in step.objects))
+    verbs = any(way <= sentence for way in action_phrases(step.action, knowledge))
+    return verbs and (not step.objects or any(names_in_text(ref.name, knowledge) & sentence for ref in step.objects))
 
 
 @lru_cache(maxsize=1 << 12)
-def _ways(action: str, knowledge: Knowledge) -> tuple[frozenset[str], ...]:
+def action_phrases(action: str, knowledge: Knowledge) -> tuple[frozenset[str], ...]:
     """The words of each phrase of an action, objects left out."""
     known = knowledge.actions.get(action)
     if known is None:
         return ()
     phrases = (re.sub(r"\{\d\}", " ", known.template), *known.words)
-    return tuple(_words(phrase) - {"in", "at", "into"} for phrase in phrases)
+    return tuple(stems(phrase) - {"in", "at", "into"} for phrase in phrases)
 
 
 @lru_cache(maxsize=1 << 12)
-def _names(name: str, knowledge: Knowledge) -> frozenset[str]:
+def names_in_text(name: str, knowledge: Knowledge) -> frozenset[str]:
     """The words by which a thing may go: those of its class's names, and of the kind above it."""
     thing = knowledge.object_class(name)
     names = {name, *knowledge.same_class(name)}
     if thing is not None:
         names |= {*thing.synonyms, *knowledge.ancestors(name)} - _ANYTHING
-    return _words(" ".join(names).replace("_", " "))
+    return stems(" ".join(names).replace("_", " "))
 
 
 @lru_cache(maxsize=1 << 14)
-def _words(text: str) -> frozenset[str]:
+def stems(text: str) -> frozenset[str]:
     """Stems of the words of a text."""
     return frozenset(_stem(word) for word in re.findall(r"[a-z]+", text.lower()))
 

@@ -54,7 +54,7 @@ def test_every_parameter_has_its_entry_and_every_entry_its_parameter():
         cli.load(name)
         found = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
         each = [one.callback for one in found.registered_commands] if isinstance(found, typer.Typer) else [found]
-        functions.update({(module, function.__name__): function for function in each})
+        functions.update({(one.__module__.rpartition(".")[2], one.__name__): one for one in each})
     used = set()
     for (module, function), command in functions.items():
         for parameter in signature(command).parameters.values():
