@@ -7,10 +7,10 @@ from statistics import mean
 import pytest
 from small_tasks import play, start, wanted
 
+from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.hierarchical import Hierarchical
 from hearth.agents.human_like import HumanLike
 from hearth.agents.random_helper import RandomHelper
-from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.subgoals import Subgoal
 from hearth.schemas.literals import Literal
 from hearth.simulation.world.bits import indices
