@@ -143,6 +143,13 @@ class Belief:
         self._possible[thing] &= ~(1 << self.where[thing].node)
         self._draw(thing, 1 << self.where[thing].node)
 
+    def forget(self, thing: int) -> None:
+        """A thing may be anywhere again."""
+        self.known &= ~(1 << thing)
+        self._possible[thing] = self._usual[thing]
+        self._rest[thing] = self._everywhere
+        self._draw(thing, 0)
+
     def _refuted(self, place: Place, empty: int) -> bool:
         """Whether a thing that is out of view can't be there: its place is in view, or its holder out of view."""
         if place.relation == HOLDS:
