@@ -2,7 +2,7 @@
 
     python benchmarks/agents_speed.py [--tasks N]
 
-Timed is `act` alone, without views and legal actions; a first pass computes the distance fields of the homes, which stay.
+Timed is `act` alone, without views and legal actions; a first pass computes the distance fields of homes, which stay.
 """
 
 from __future__ import annotations
