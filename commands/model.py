@@ -131,6 +131,47 @@ def score(predicted: Path, dataset: Path, *, seed: int = 0, as_json: bool = Fals
     output.table(["score", "mean", "95% from", "to"], [[name, *interval] for name, interval in summary.items()])
 
 
+@app.command("table")
+def table(
+    number: str,
+    dataset: Path,
+    *,
+    models: list[str] | None = None,
+    split: str = "activities",
+    beam: int = 4,
+    repair: bool = False,
+    seed: int = 0,
+    as_json: bool = False,
+) -> None:
+    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs) or 4.5 (of people's).
+
+    Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
+    Intervals are of activities drawn with replacement. The parts of the test are original programs alone.
+
+    \b
+    Example:
+      python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
+    """
+    from hearth.datasets.dataset import Dataset
+    from hearth.models.text.text_tables import COLUMNS
+    from hearth.models.text.text_tables import table as rows_of
+
+    rows = rows_of(number, Dataset.open(dataset), split, models or (), beam=beam, repaired=repair, seed=seed)
+    if as_json:
+        output.emit(rows)
+        return
+    shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in COLUMNS), row.seeds or None, row.minutes]
+             for row in rows]  # fmt: skip
+    output.table(["method", "of", *COLUMNS, "seeds", "minutes"], shown)
+
+
+def _score(value: Any) -> str:
+    """A mean with its interval, or a number of the thesis."""
+    if value is None:
+        return ""
+    return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"
+
+
 @app.command("show")
 def show(
     model: str,

@@ -53,6 +53,45 @@ MODELS: dict[str, Entry] = {
     "chooser": Entry(
         "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
+    "mle": Entry(
+        "text.text_models:TextModel",
+        "text",
+        "LSTM with attention over a closed list of steps.",
+        "thesis 4.3.1",
+        {"steps": "closed", "copy": False},
+    ),
+    "mle-composed": Entry(
+        "text.text_models:TextModel",
+        "text",
+        "The same; steps composed of action and objects, which may be copied.",
+        "ours",
+    ),
+    "pg-lcs": Entry(
+        "text.self_critical:SelfCritical",
+        "text",
+        "A trained `mle-composed` (--set start=FOLDER) trained on by LCS.",
+        "thesis 4.3.1",
+    ),
+    "pg-lcs-sim": Entry(
+        "text.self_critical:SelfCritical",
+        "text",
+        "The same by LCS and a tenth for programs that run.",
+        "thesis 4.3.1",
+        {"reward": "lcs+sim"},
+    ),
+    "transformer": Entry(
+        "text.text_models:TextModel",
+        "text",
+        "A small transformer with composed steps and copying.",
+        "ours",
+        {"body": "transformer", "layers": 2, "hidden": 128},
+    ),
+    "retrieve-edit": Entry(
+        "text.retrieve_edit:RetrieveEdit",
+        "text",
+        "The consensus of similar texts' programs, with the asked objects.",
+        "ours",
+    ),
 }
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.words import words
+from hearth.models.text.text_words import words
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.rng import rng
 from hearth.schemas.syntax import parse_steps, print_step

@@ -1,0 +1,130 @@
+"""Retrieve and edit: the programs of the most similar texts, with the objects that the new text asks for (ours).
+
+Each retrieved program is edited: an object that its own text mentions, and the new one does not, gives way to one that
+the new text alone mentions, if every action done with it takes that, too. Of the edited programs the answer is the one
+most like the others by LCS, each weighted by the similarity of its text: what one neighbour alone does is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from hearth.models.checkpoint import Checkpoint
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.mentions import mentions
+from hearth.models.text.retrieval import Memory, Similarity, text_of
+from hearth.models.text.step_vocabulary import StepVocabulary
+from hearth.models.text.text_words import words
+from hearth.schemas.program import Step
+from hearth.scoring.metrics.lcs import score_pairs
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.data import Corpus
+
+
+@dataclass(frozen=True, slots=True)
+class RetrieveEdit(Settings):
+    """Retrieve and edit.
+
+    Attributes:
+        neighbours: texts whose programs are edited.
+        sharpness: the power of the similarity by which a neighbour counts.
+        edit: whether objects are replaced.
+    """
+
+    neighbours: int = 20
+    sharpness: float = 2.0
+    edit: bool = True
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedRetrieveEdit:
+        """Remember the training texts and programs."""
+        pairs = [(each.request, each.steps) for each in corpus.train]
+        vocabulary = StepVocabulary.of(pairs, corpus.dataset.knowledge)
+        return TrainedRetrieveEdit(self, Memory.of(corpus), vocabulary)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedRetrieveEdit:
+        """The model of a checkpoint."""
+        content = checkpoint.content
+        vocabulary = StepVocabulary.read(content["vocabulary"])
+        return TrainedRetrieveEdit(cls.of(checkpoint.settings), Memory.read(content["memory"]), vocabulary)
+
+
+@dataclass(frozen=True)
+class TrainedRetrieveEdit:
+    """The training texts with their programs, and which action takes which object."""
+
+    settings: RetrieveEdit
+    memory: Memory
+    vocabulary: StepVocabulary
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """For each text the edited program that is most like the others."""
+        texts = [text_of(each.title, each.description) for each in requests]
+        found = self.similarity.nearest(texts, self.settings.neighbours)
+        return [self._answer(text, *neighbours) for text, neighbours in zip(texts, found, strict=True)]
+
+    def _answer(self, text: str, places: Sequence[int], alike: Sequence[float]) -> Steps:
+        wanted = self._mentioned(text)
+        programs = [self.memory.programs[place] for place in places]
+        if self.settings.edit:
+            own = (self._mentioned(self.memory.texts[place]) for place in places)
+            programs = [self._edited(one, its, wanted) for its, one in zip(own, programs, strict=True)]
+        weights = [max(one, 1e-3) ** self.settings.sharpness for one in alike]
+        return consensus(programs, weights)
+
+    def _mentioned(self, text: str) -> dict[str, int]:
+        """The classes that a text mentions, in order of their first mention, and the places of these."""
+        found: dict[str, int] = {}
+        for place, name in mentions(words(text), self.vocabulary.spelt):
+            found.setdefault(name, place)
+        return found
+
+    def _edited(self, program: Steps, own: Mapping[str, int], wanted: Mapping[str, int]) -> Steps:
+        used = {ref.name for step in program for ref in step.objects}
+        new = [name for name in wanted if name not in used]
+        swaps: dict[str, str] = {}
+        for old in (name for name in own if name in used and name not in wanted):
+            fitting = [name for name in new if name not in swaps.values() and self._fits(program, old, name)]
+            if fitting:
+                swaps[old] = fitting[0]
+        return renamed(program, swaps)
+
+    def _fits(self, program: Steps, old: str, new: str) -> bool:
+        """Whether each action that a program does with an object takes another in its place."""
+        known, number = self.vocabulary, self.vocabulary.class_numbers[new]
+        uses = {(step.action, place) for step in program for place, ref in enumerate(step.objects) if ref.name == old}
+        return all(number in known.takes[known.action_numbers[action] - 1][place] for action, place in uses)
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs; the weights of words are made again from the texts."""
+        content = {"memory": self.memory.document(), "vocabulary": self.vocabulary.document()}
+        return Checkpoint("retrieve-edit", asdict(self.settings), content, {})
+
+    @cached_property
+    def similarity(self) -> Similarity:
+        """Similarities to the training texts."""
+        return Similarity(self.memory.texts)
+
+
+def renamed(program: Steps, swaps: Mapping[str, str]) -> Steps:
+    """A program with other classes in place of some."""
+    return tuple(_renamed(step, swaps) for step in program)
+
+
+def _renamed(step: Step, swaps: Mapping[str, str]) -> Step:
+    return replace(step, objects=tuple(replace(ref, name=swaps.get(ref.name, ref.name)) for ref in step.objects))
+
+
+def consensus(programs: Sequence[Steps], weights: Sequence[float]) -> Steps:
+    """The program with the highest weighted mean LCS (of steps, actions, objects) with all; of equal ones the first."""
+    if not programs:
+        return ()
+    distinct = list(dict.fromkeys(programs))
+    scores = iter(score_pairs((one, other) for one in distinct for other in programs))
+    totals = [round(sum(next(scores).mean * weight for weight in weights), 9) for _ in distinct]
+    return distinct[totals.index(max(totals))]

@@ -1,0 +1,134 @@
+"""The second phase of training: policy gradient with the greedy program as its baseline (thesis 4.3.1, eq. 4.6 to 4.8).
+
+The reward is the LCS of a program with the true one (eq. 4.1), or that and a tenth if the program runs in the
+environment of its example, its objects bound to the nearest of their classes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import torch
+
+from hearth.grounding.binding import nearest
+from hearth.models.checkpoint import Checkpoint, load
+from hearth.models.data import requests
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.text_batches import step_batch, text_batch
+from hearth.models.text.text_models import TextModel, TrainedTextModel
+from hearth.models.text.writer import Numbers, beam, sample
+from hearth.models.training import Task, train
+from hearth.schemas.program import Program
+from hearth.scoring.metrics.lcs import score_pairs
+from hearth.simulation.engine import run
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.data import Corpus, Example
+
+SIM = 0.1
+"""The weight of running in the reward."""
+
+Reward = Callable[[Sequence["Example"], Sequence[Steps]], list[float]]
+"""The rewards of programs for examples."""
+
+
+class Drawn(NamedTuple):
+    """A batch: examples, and the seed of what is drawn for them."""
+
+    examples: list[Example]
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class SelfCritical(Settings):
+    """A model after the first phase, trained on.
+
+    Attributes:
+        reward: `lcs`, or `lcs+sim`.
+        start: folder of a checkpoint of the first phase; if empty, the first phase is trained here, too.
+        batch: examples in a batch.
+    """
+
+    reward: Literal["lcs", "lcs+sim"] = "lcs"
+    start: str = ""
+    batch: int = 32
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
+        """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS."""
+        if self.start:
+            model = TextModel.restored(load(Path(self.start)))
+        else:
+            first = replace(how, folder=how.folder / "first") if how.folder else how
+            model = TextModel().fit(corpus, first, seen)
+        rewarded = lcs_reward if self.reward == "lcs" else sim_reward(corpus)
+        data = list(corpus.train)
+
+        def batches(random: Random) -> Iterator[Drawn]:
+            order = random.sample(range(len(data)), len(data))
+            for begin in range(0, len(order), self.batch):
+                yield Drawn([data[place] for place in order[begin : begin + self.batch]], random.getrandbits(32))
+
+        task = Task(model.writer, batches, lambda batch: surrogate(model, batch, rewarded),
+                    lambda: model.score(corpus.validation), [self.reward, self.batch, corpus.facts])  # fmt: skip
+        before = {"first_phase": dict(model.trained)}
+        model.trained.clear()
+        model.trained.update({**train(task, replace(how, rate=how.rate / 10), seen).record(), **before})
+        return model
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedTextModel:
+        """The model of a checkpoint, which has the settings of the network."""
+        return TextModel.restored(checkpoint)
+
+
+def surrogate(model: TrainedTextModel, batch: Drawn, rewarded: Reward) -> torch.Tensor:
+    """A number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
+
+    Without dropout: what is drawn and what is rewarded are programs of the same policy.
+    """
+    writer, known = model.writer, model.vocabulary
+    writer.eval()
+    texts = text_batch([each.request for each in batch.examples], known, writer.device)
+    with torch.no_grad():
+        drawn = sample(writer, texts, model.settings.longest, torch.Generator().manual_seed(batch.seed))
+        greedy = beam(writer, texts, 1, model.settings.longest)
+    gain = [one - other for one, other in zip(_rewards(model, batch, drawn, rewarded),
+                                              _rewards(model, batch, greedy, rewarded), strict=True)]  # fmt: skip
+    logarithms = writer.log_probabilities(texts, step_batch(drawn, writer.device)).sum(1)  # (B,)
+    return -(logarithms * torch.tensor(gain, device=writer.device)).mean()
+
+
+def _rewards(model: TrainedTextModel, batch: Drawn, programs: Sequence[Numbers], rewarded: Reward) -> list[float]:
+    return rewarded(batch.examples, [model.program(numbers) for numbers in programs])
+
+
+def lcs_reward(examples: Sequence[Example], programs: Sequence[Steps]) -> list[float]:
+    """The LCS of whole steps, from 0 to 1 (eq. 4.1)."""
+    pairs = ((program, example.steps) for example, program in zip(examples, programs, strict=True))
+    return [score.step for score in score_pairs(pairs)]
+
+
+def sim_reward(corpus: Corpus) -> Reward:
+    """The LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
+
+    def rewards(examples: Sequence[Example], programs: Sequence[Steps]) -> list[float]:
+        names = [example.executions[0] for example in examples]
+        found: dict[str, Request] = {}
+        for share in requests(corpus.dataset, sorted(set(names)), worlds=True):
+            found |= {request.id: request for request in share}
+        pairs = zip(lcs_reward(examples, programs), names, programs, strict=True)
+        return [value + SIM * runs(steps, found[name]) for value, name, steps in pairs]
+
+    return rewards
+
+
+def runs(steps: Steps, request: Request) -> bool:
+    """Whether a program, bound to the nearest nodes, runs in the world of a request; the empty program does not."""
+    assert request.world is not None
+    program = Program(steps=steps)
+    return bool(steps) and run(request.world, nearest(program, request.world).apply(program)).executable

@@ -1,0 +1,118 @@
+"""What a model of texts knows by number: words, actions, classes of objects, and which action takes which class."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.models.interface import Request, Steps
+from hearth.models.text.mentions import mentions, spellings
+from hearth.models.text.text_words import words_of
+from hearth.schemas.program import ObjectRef, Step
+
+PAD, UNKNOWN = 0, 1
+"""Numbers of no word, and of a word that was not in training."""
+
+END = 0
+"""Number of the end of a program, in the place of an action; of no object, in the place of a class."""
+
+
+@dataclass(frozen=True)
+class StepVocabulary:
+    """Numbers of words, actions and classes, from 1 for actions and classes, from 2 for words.
+
+    Attributes:
+        words: of the training texts that occur at least twice, sorted.
+        actions: those that are executed or occur in training, sorted.
+        arity: of each action.
+        classes: all of the knowledge and of training, sorted: what no training program has can be copied from a text.
+        takes: for each action and argument, the numbers of the classes that it takes by the grammar, or in training.
+        spelt: spelling -> class.
+    """
+
+    words: tuple[str, ...]
+    actions: tuple[str, ...]
+    arity: tuple[int, ...]
+    classes: tuple[str, ...]
+    takes: tuple[tuple[tuple[int, ...], ...], ...]
+    spelt: Mapping[str, str]
+
+    @classmethod
+    def of(cls, examples: Iterable[tuple[Request, Steps]], knowledge: Knowledge) -> StepVocabulary:
+        """The vocabulary of training examples."""
+        pairs = list(examples)
+        counts = Counter(word for request, _ in pairs for word in set(words_of(request)))
+        used = {(step.action, place, ref.name) for _, steps in pairs for step in steps
+                for place, ref in enumerate(step.objects)}  # fmt: skip
+        arity = {name: action.arity for name, action in knowledge.actions.items() if action.executed}
+        arity |= {step.action: len(step.objects) for _, steps in pairs for step in steps}
+        actions = sorted(arity)
+        classes = sorted(set(knowledge.objects) | {name for _, _, name in used})
+        takes = tuple(
+            tuple(
+                tuple(number for number, name in enumerate(classes, 1)
+                      if (action, place, name) in used or knowledge.affords(action, place, name))
+                for place in range(arity[action])
+            )
+            for action in actions
+        )  # fmt: skip
+        return cls(
+            tuple(sorted(word for word, count in counts.items() if count > 1)),
+            tuple(actions),
+            tuple(arity[action] for action in actions),
+            tuple(classes),
+            takes,
+            spellings(knowledge, classes),
+        )
+
+    @classmethod
+    def read(cls, document: Mapping[str, Any]) -> StepVocabulary:
+        """The vocabulary of `document`."""
+        takes = tuple(tuple(tuple(found) for found in places) for places in document["takes"])
+        lists = {name: tuple(document[name]) for name in ("words", "actions", "arity", "classes")}
+        return cls(**lists, takes=takes, spelt=document["spelt"])
+
+    def document(self) -> dict[str, Any]:
+        """The vocabulary as JSON."""
+        return asdict(self)
+
+    def read_words(self, words: Sequence[str]) -> list[int]:
+        """The numbers of words; `UNKNOWN` for others."""
+        return [self._words.get(word, UNKNOWN) for word in words]
+
+    def mentioned(self, words: Sequence[str]) -> list[tuple[int, int]]:
+        """The places of the classes that a text mentions, and their numbers."""
+        return [(place, self.class_numbers[name]) for place, name in mentions(words, self.spelt)]
+
+    def numbers(self, step: Step) -> tuple[int, int, int] | None:
+        """A step as the numbers of its action and two classes, 0 for none; None if the vocabulary lacks a part."""
+        names = [ref.name for ref in step.objects]
+        action = self.action_numbers.get(step.action)
+        classes = [self.class_numbers.get(name) for name in names]
+        if action is None or None in classes or len(names) != self.arity[action - 1]:
+            return None
+        first, second, *_ = (*(number or 0 for number in classes), 0, 0)
+        return action, first, second
+
+    def step(self, action: int, first: int, second: int) -> Step:
+        """The step of some numbers; objects have number 1 of their class."""
+        names = [self.classes[number - 1] for number in (first, second)[: self.arity[action - 1]]]
+        return Step(self.actions[action - 1], tuple(ObjectRef(name) for name in names))
+
+    @cached_property
+    def _words(self) -> dict[str, int]:
+        return {word: number for number, word in enumerate(self.words, UNKNOWN + 1)}
+
+    @cached_property
+    def action_numbers(self) -> dict[str, int]:
+        """Action -> its number."""
+        return {name: number for number, name in enumerate(self.actions, 1)}
+
+    @cached_property
+    def class_numbers(self) -> dict[str, int]:
+        """Class -> its number."""
+        return {name: number for number, name in enumerate(self.classes, 1)}

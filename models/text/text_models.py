@@ -1,0 +1,185 @@
+"""Models that read a text and write a program step by step: their settings, training and predictions (thesis 4.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from random import Random
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import torch
+
+from hearth.models.checkpoint import Checkpoint
+from hearth.models.devices import device
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.seq2seq import Seq2SeqBody
+from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
+from hearth.models.text.step_vocabulary import UNKNOWN, StepVocabulary
+from hearth.models.text.text_batches import StepBatch, TextBatch, encoded, step_batch, text_batch
+from hearth.models.text.text_words import words, words_of
+from hearth.models.text.transformer import TransformerBody
+from hearth.models.text.word_vectors import word_vectors
+from hearth.models.text.writer import Numbers, Writer, beam
+from hearth.models.training import Task, train
+from hearth.schemas.rng import derive
+from hearth.scoring.metrics.lcs import score_pairs
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.data import Corpus, Example
+
+AT_ONCE = 64
+"""Texts that are read at once in prediction."""
+
+
+@dataclass(frozen=True, slots=True)
+class TextModel(Settings):
+    """An encoder-decoder over words and steps.
+
+    Attributes:
+        body: an LSTM with attention, or a transformer.
+        layers: of the transformer.
+        steps: `closed`: a list of the steps of training, as in the thesis; `composed`: an action and its objects.
+        copy: whether composed steps score the objects that the text mentions apart.
+        hidden: numbers in a hidden state.
+        vector: numbers in the vector of a word, and of a step.
+        dropout: share of numbers left out in training.
+        batch: examples in a batch.
+        longest: steps of the longest program.
+    """
+
+    body: Literal["lstm", "transformer"] = "lstm"
+    layers: int = 1
+    steps: Literal["closed", "composed"] = "composed"
+    copy: bool = True
+    hidden: int = 100
+    vector: int = 100
+    dropout: float = 0.4
+    batch: int = 32
+    longest: int = 40
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedTextModel:
+        """Train on the pairs of text and program by the likelihood of the true steps (thesis 4.3.1, first phase)."""
+        pairs = [(each.request, each.steps) for each in corpus.train]
+        vocabulary = StepVocabulary.of(pairs, corpus.dataset.knowledge)
+        torch.manual_seed(derive(how.seed, "weights"))
+        closed = _listed(pairs, vocabulary, self.longest) if self.steps == "closed" else ()
+        writer = self.network(vocabulary, closed, _vectors(pairs, vocabulary, self.vector)).to(device())
+        model = TrainedTextModel(self, vocabulary, closed, writer, {})
+        data = [(request, encoded(steps, vocabulary, self.longest)) for request, steps in pairs]
+
+        def batches(random: Random) -> Iterator[tuple[TextBatch, StepBatch]]:
+            order = random.sample(range(len(data)), len(data))
+            for start in range(0, len(order), self.batch):
+                rows = [data[place] for place in order[start : start + self.batch]]
+                texts = text_batch([request for request, _ in rows], vocabulary, writer.device, random)
+                yield texts, step_batch([steps for _, steps in rows], writer.device)
+
+        task = Task(writer, batches, lambda batch: writer.loss(*batch), lambda: model.score(corpus.validation),
+                    [asdict(self), corpus.facts])  # fmt: skip
+        model.trained.update(train(task, how, seen).record())
+        return model
+
+    def network(
+        self, vocabulary: StepVocabulary, closed: Sequence[tuple[int, int, int]], vectors: np.ndarray | None
+    ) -> Writer:
+        """The network before training; vectors of words and of names, if given, are where they begin."""
+        count = len(vocabulary.words) + UNKNOWN + 1
+        given = torch.zeros(count + len(vocabulary.classes), self.vector) if vectors is None else torch.tensor(vectors)
+        embedding = StepEmbedding(vocabulary, self.vector, given[count:])
+        body: Any
+        if self.body == "lstm":
+            body = Seq2SeqBody(given[:count], self.hidden, self.vector, self.dropout)
+        else:
+            body = TransformerBody(given[:count], self.hidden, self.vector, self.dropout, self.layers)
+        if self.steps == "closed":
+            head: Any = ClosedHead(vocabulary, embedding, body.features, self.vector, closed)
+        else:
+            head = ComposedHead(vocabulary, embedding, body.features, self.vector, self.copy)
+        return Writer(body, embedding, head, self.dropout)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedTextModel:
+        """The model of a checkpoint."""
+        settings = cls.of(checkpoint.settings)
+        vocabulary = StepVocabulary.read(checkpoint.content["vocabulary"])
+        closed = tuple((int(a), int(b), int(c)) for a, b, c in checkpoint.content["closed"])
+        writer = settings.network(vocabulary, closed, None)
+        writer.load_state_dict({name: torch.tensor(array) for name, array in checkpoint.weights.items()})
+        return TrainedTextModel(settings, vocabulary, closed, writer.to(device()).eval(), dict(checkpoint.trained))
+
+
+@dataclass(frozen=True)
+class TrainedTextModel:
+    """A network with its vocabulary."""
+
+    settings: TextModel
+    vocabulary: StepVocabulary
+    closed: tuple[tuple[int, int, int], ...]
+    writer: Writer
+    trained: dict[str, Any]
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """The most probable program for each text, by greedy or beam search."""
+        return [self.program(numbers) for numbers in self.numbers(requests, beam)]
+
+    def numbers(self, requests: Sequence[Request], width: int = 1) -> list[Numbers]:
+        """The programs as numbers of the vocabulary."""
+        self.writer.eval()
+        order = sorted(range(len(requests)), key=lambda place: len(words_of(requests[place])))
+        found: dict[int, Numbers] = {}
+        with torch.no_grad():
+            for start in range(0, len(order), AT_ONCE):
+                places = order[start : start + AT_ONCE]
+                texts = text_batch([requests[place] for place in places], self.vocabulary, self.writer.device)
+                found |= dict(zip(places, beam(self.writer, texts, width, self.settings.longest), strict=True))
+        return [found[place] for place in range(len(requests))]
+
+    def program(self, numbers: Numbers) -> Steps:
+        """The program of some numbers."""
+        return tuple(self.vocabulary.step(*each) for each in numbers)
+
+    def score(self, examples: Sequence[Example]) -> float:
+        """The mean LCS (of steps, actions and objects) of greedy programs for some examples; 0 without any."""
+        texts = {(each.title, each.description): each.request for each in examples}
+        known = dict(zip(texts, self.predict(list(texts.values())), strict=True))
+        predicted = [known[each.title, each.description] for each in examples]
+        return mean_lcs(predicted, [each.steps for each in examples])
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        weights = {name: value.detach().cpu().numpy() for name, value in self.writer.state_dict().items()}
+        content = {"vocabulary": self.vocabulary.document(), "closed": [list(each) for each in self.closed]}
+        return Checkpoint("", asdict(self.settings), content, weights, self.trained)
+
+
+def mean_lcs(predicted: Sequence[Steps], references: Sequence[Steps]) -> float:
+    """The mean over programs of the mean LCS of steps, actions and objects; 0 without programs."""
+    scores = score_pairs(zip(predicted, references, strict=True))
+    return sum(score.mean for score in scores) / len(scores) if scores else 0.0
+
+
+def _listed(
+    pairs: Sequence[tuple[Request, Steps]], vocabulary: StepVocabulary, longest: int
+) -> tuple[tuple[int, int, int], ...]:
+    """Every step of the training programs once, sorted."""
+    return tuple(sorted({numbers for _, steps in pairs for numbers in encoded(steps, vocabulary, longest)}))
+
+
+def _vectors(pairs: Sequence[tuple[Request, Steps]], vocabulary: StepVocabulary, size: int) -> np.ndarray:
+    """(words and classes, size): no word, the unknown word, the words, and the names of the classes."""
+    names = [words(name.replace("_", " ")) for name in vocabulary.classes]
+    documents = (
+        (
+            words_of(request),
+            [word for step in steps for ref in step.objects for word in words(ref.name.replace("_", " "))],
+        )
+        for request, steps in pairs
+    )
+    known = sorted({*vocabulary.words, *(word for name in names for word in name)})
+    place = {word: number for number, word in enumerate(known)}
+    vectors = word_vectors(documents, known, size)
+    of_names = [vectors[[place[word] for word in name]].mean(0) if name else np.zeros(size) for name in names]
+    of_words = vectors[[place[word] for word in vocabulary.words]].reshape(-1, size)
+    return np.concatenate((np.zeros((UNKNOWN + 1, size)), of_words, np.array(of_names))).astype(np.float32)

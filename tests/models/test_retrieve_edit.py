@@ -1,0 +1,34 @@
+"""Retrieve and edit: objects of the new text in the programs of similar ones."""
+
+from __future__ import annotations
+
+from hearth.models.interface import Request, Training
+from hearth.schemas.syntax import parse_steps
+
+
+def lines(steps):
+    return [(step.action, *(ref.name for ref in step.objects)) for step in steps]
+
+
+def test_objects_of_the_new_text_take_the_place_of_those_of_the_old(tiny):
+    from hearth.models.text.retrieve_edit import RetrieveEdit
+
+    model = RetrieveEdit(neighbours=1).fit(tiny, Training())
+    (found,) = model.predict([Request("x", "Drink juice", "Take the juice out of the fridge and drink it.")])
+    assert lines(found) == [("Walk", "kitchen"), ("Open", "fridge"), ("Grab", "juice"), ("Drink", "juice")]
+    (same,) = model.predict([Request("x", "Drink milk", "Take the milk out of the fridge and drink it.")])
+    assert lines(same)[2] == ("Grab", "milk")
+    (odd,) = model.predict([Request("x", "Drink", "Take the piano out of the fridge and drink it.")])
+    assert lines(odd)[2] == ("Grab", "milk"), "one can't drink a piano"
+
+
+def test_the_consensus_is_what_most_do():
+    from hearth.models.text.retrieve_edit import consensus
+
+    one, two, odd = (
+        tuple(step for line in text for step in parse_steps(line))
+        for text in (("[Walk] <sofa> (1)", "[Sit] <sofa> (1)"), ("[Walk] <sofa> (1)",), ("[Open] <fridge> (1)",))
+    )
+    assert consensus([odd, one, two], [1, 1, 1]) in (one, two)
+    assert consensus([odd, one, two], [9, 1, 1]) == odd
+    assert consensus([], []) == ()

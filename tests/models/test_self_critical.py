@@ -1,0 +1,91 @@
+"""Policy gradient: the baseline leaves the mean gradient as it is, and a rewarded step becomes more probable."""
+
+from __future__ import annotations
+
+import pytest
+
+from hearth.models.interface import Training
+
+
+@pytest.fixture
+def untrained(dataset, eight):
+    from hearth.models.data import Corpus
+    from hearth.models.text.text_models import TextModel
+
+    settings = TextModel(hidden=16, vector=16, dropout=0.0, longest=4)
+    corpus = Corpus(dataset, "activities", eight[:1], eight[:1])
+    return settings.fit(corpus, Training(epochs=1, rate=1e-6)), corpus
+
+
+def test_the_mean_gradient_of_the_baseline_is_about_zero(untrained, eight):
+    """Eq. 4.7: any constant times the gradient of the logarithm of the probability of samples has the mean 0."""
+    import torch
+
+    from hearth.models.text.text_batches import step_batch, text_batch
+    from hearth.models.text.writer import sample
+
+    model, _ = untrained
+    writer = model.writer.eval()
+    gradients = []
+    texts = text_batch([eight[0].request] * 400, model.vocabulary, writer.device)
+    with torch.no_grad():
+        programs = sample(writer, texts, 40, torch.Generator().manual_seed(0))
+    for start in range(0, 400, 20):
+        part = text_batch([eight[0].request] * 20, model.vocabulary, writer.device)
+        writer.zero_grad()
+        writer.log_probabilities(part, step_batch(programs[start : start + 20], writer.device)).sum(1).mean().backward()
+        gradients.append(writer.head.action.bias.grad.clone())
+    found = torch.stack(gradients)  # (20, A + 1)
+    error = found.std(0) / len(found) ** 0.5
+    assert (found.mean(0).abs() < 4.5 * error + 1e-3).all()
+    assert found.abs().max() > 0.05
+
+
+def test_what_is_rewarded_becomes_more_probable(untrained, eight):
+    import torch
+
+    from hearth.models.text.self_critical import Drawn, surrogate
+    from hearth.models.text.text_batches import step_batch, text_batch
+
+    model, _ = untrained
+    wanted = model.vocabulary.action_numbers["Sleep"]
+    program = step_batch([[(wanted, 0, 0)]], model.writer.device)
+
+    def probability():
+        texts = text_batch([eight[0].request], model.vocabulary, model.writer.device)
+        with torch.no_grad():
+            return float(model.writer.log_probabilities(texts, program)[0, 0])
+
+    def rewarded(examples, programs):
+        return [float(any(step.action == "Sleep" for step in steps)) for steps in programs]
+
+    before = probability()
+    optimiser = torch.optim.Adam(model.writer.parameters(), lr=0.02)
+    for seed in range(8):
+        optimiser.zero_grad()
+        surrogate(model, Drawn([eight[0]] * 32, seed), rewarded).backward()
+        optimiser.step()
+    assert probability() > before + 0.1
+
+
+def test_rewards(dataset, eight):
+    from hearth.models.data import Corpus, examples
+    from hearth.models.text.self_critical import SIM, lcs_reward, sim_reward
+
+    assert lcs_reward(eight, [each.steps for each in eight]) == [1.0] * 8
+    assert lcs_reward(eight[:1], [()]) == [0.0]
+    known = examples(dataset, "activities", "train", originals=True)[:3]
+    rewarded = sim_reward(Corpus(dataset, "activities", known, ()))
+    assert all(value <= 1 + SIM for value in rewarded(known, [each.steps for each in known]))
+    assert max(rewarded(known, [each.steps for each in known])) == pytest.approx(1 + SIM)
+    assert rewarded(known, [()] * len(known)) == [0.0] * len(known), "the empty program runs, and is not rewarded"
+
+
+def test_both_phases_run_and_are_recorded(dataset):
+    from hearth.models.data import Corpus, examples
+    from hearth.models.text.self_critical import SelfCritical
+
+    known = examples(dataset, "activities", "train", originals=True)[:4]
+    corpus = Corpus(dataset, "activities", known, known)
+    model = SelfCritical(reward="lcs+sim", batch=4).fit(corpus, Training(epochs=1))
+    assert model.trained["epochs"] == 1 and model.trained["first_phase"]["epochs"] == 1
