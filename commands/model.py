@@ -89,6 +89,7 @@ def predict(
     part: str = "test",
     beam: int = 1,
     repair: bool = False,
+    constrained: bool = False,
     originals: bool = False,
     as_json: bool = False,
 ) -> None:
@@ -103,7 +104,16 @@ def predict(
 
     with bar("executions") as seen:
         count = predict_part(
-            model, dataset, out, split, part, beam=beam, repaired=repair, originals=originals, seen=seen
+            model,
+            dataset,
+            out,
+            split,
+            part,
+            beam=beam,
+            repaired=repair,
+            is_constrained=constrained,
+            originals=originals,
+            seen=seen,
         )
     output.say(f"{output.counted(count, 'prediction')} in {out}", {"out": out, "predictions": count}, as_json)
 

@@ -16,9 +16,13 @@ from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.completion import complete
 from hearth.models.data import AT_ONCE, requests
+from hearth.models.decoding.scorers import Scorer
+from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.interface import Steps
 from hearth.models.model_registry import MODELS, restore
-from hearth.models.protocols import Trained
+from hearth.models.protocols import Decoded, Trained
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
 from hearth.scoring.dataset_scores import chosen
@@ -55,6 +59,41 @@ def predict(
         seen(done, len(names))
 
 
+def constrained(
+    trained: Trained, dataset: Dataset, names: Sequence[str], beam: int = 1, seen: Seen = unseen
+) -> Iterator[tuple[str, Steps]]:
+    """As `predict`, decoded with the engine in the loop: each program parses, and runs in its environment.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, if the model can't be decoded so.
+    """
+    scorer = scorer_of(trained)
+    done = 0
+    for share in requests(dataset, names, worlds=True):
+        for first in range(0, len(share), WRITTEN):
+            part = share[first : first + WRITTEN]
+            starts = [Start(each.world, each) for each in part if each.world]
+            yield from zip((each.id for each in part), decode(scorer, starts, Search(beam=beam)), strict=True)
+        done += len(share)
+        seen(done, len(names))
+
+
+WRITTEN = 32
+"""Programs that are decoded at once."""
+
+
+def scorer_of(trained: Trained) -> Scorer:
+    """A model as decoding sees it.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, if it can't be decoded with the engine in the loop.
+    """
+    if isinstance(trained, Decoded):
+        return trained.scorer()
+    message = "this model does not write step by step, and can't be decoded with the engine in the loop"
+    raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="use --repair")
+
+
 def write(predicted: Iterator[tuple[str, Steps]], path: Path) -> int:
     """Write a file of predictions, a JSON object a line; their number."""
     lines = [_line({"id": name, "predicted": list(print_lines(Program(steps=steps)))}) for name, steps in predicted]
@@ -76,6 +115,7 @@ def predict_part(
     *,
     beam: int = 1,
     repaired: bool = False,
+    is_constrained: bool = False,
     originals: bool = False,
     seen: Seen = unseen,
 ) -> int:
@@ -88,6 +128,7 @@ def predict_part(
         split, part: of the dataset; `part` is a prefix.
         beam: as in `Trained.predict`.
         repaired: bind and repair each program in its environment, and leave out what can't run there.
+        is_constrained: decode with the engine in the loop.
         originals: leave out executions of augmented programs.
         seen: reports progress.
 
@@ -98,7 +139,10 @@ def predict_part(
     name, trained = restore(model)
     names = _asked(dataset, split, part, originals)
     text = MODELS[name].input == "text"
-    found = predict(trained, dataset, names, beam, text=text, seen=seen)
+    if is_constrained:
+        found = constrained(trained, dataset, names, beam, seen)
+    else:
+        found = predict(trained, dataset, names, beam, text=text, seen=seen)
     return write(completed(dataset, found) if repaired else found, out)
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from hearth.models.interface import Request, Steps, Training
-from hearth.schemas.program import Step
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
     from hearth.models.data import Corpus
+    from hearth.models.decoding.scorers import Scorer
 
 
 class Model(Protocol):
@@ -40,24 +40,13 @@ class Trained(Protocol):
         """All that `restored` needs."""
 
 
-class StepScorer(Protocol):
-    """A trained model as decoding sees it: it scores candidates for the next step, whoever chooses among them.
+@runtime_checkable
+class Decoded(Protocol):
+    """A trained model that decoding with the engine in the loop can step through."""
 
-    A state is a value of the model's own that stands for the request and the steps so far.
-    """
+    def scorer(self) -> Scorer:
+        """The model as a scorer of the parts of steps; its inputs are requests.
 
-    def start(self, request: Request) -> Any:
-        """The state before the first step."""
-
-    def scores(self, state: Any, candidates: Sequence[Step | None]) -> list[float]:
-        """The logarithm of the probability of each candidate as the next step; None stands for the program's end."""
-
-    def advance(self, state: Any, step: Step) -> Any:
-        """The state after a step."""
-
-
-class Scoring(Protocol):
-    """A trained model that decoding can step through."""
-
-    def scorer(self) -> StepScorer:
-        """The model as a scorer of steps."""
+        Raises:
+            HearthError: BAD_ARGUMENT, if its settings do not allow it.
+        """

@@ -99,7 +99,8 @@ def surrogate(model: TrainedTextModel, batch: Drawn, rewarded: Reward) -> torch.
         greedy = beam(writer, texts, 1, model.settings.longest)
     gain = [one - other for one, other in zip(_rewards(model, batch, drawn, rewarded),
                                               _rewards(model, batch, greedy, rewarded), strict=True)]  # fmt: skip
-    logarithms = writer.log_probabilities(texts, step_batch(drawn, writer.device)).sum(1)  # (B,)
+    programs = step_batch(drawn, writer.device, model.settings.longest)
+    logarithms = writer.log_probabilities(texts, programs).sum(1)  # (B,)
     return -(logarithms * torch.tensor(gain, device=writer.device)).mean()
 
 

@@ -85,15 +85,15 @@ def _without_title(words: list[str]) -> list[str]:
     return words[words.index(BREAK) + 1 :] or words if BREAK in words else words
 
 
-def step_batch(programs: Sequence[Sequence[tuple[int, int, int]]], device: torch.device) -> StepBatch:
-    """Programs as numbers of steps, with their ends."""
-    longest = max(map(len, programs), default=0) + 1
-    steps = torch.full((len(programs), longest, 3), END, dtype=torch.int64)
-    weights = torch.zeros(len(programs), longest)
+def step_batch(programs: Sequence[Sequence[tuple[int, int, int]]], device: torch.device, longest: int = 0) -> StepBatch:
+    """Programs as numbers of steps, with their ends; one of `longest` steps was cut off, and its end does not count."""
+    width = max(map(len, programs), default=0) + 1
+    steps = torch.full((len(programs), width, 3), END, dtype=torch.int64)
+    weights = torch.zeros(len(programs), width)
     for row, program in enumerate(programs):
         if program:
             steps[row, : len(program)] = torch.tensor(program)
-        weights[row, : len(program) + 1] = 1
+        weights[row, : len(program) + (not longest or len(program) < longest)] = 1
     return StepBatch(steps.to(device), weights.to(device))
 
 

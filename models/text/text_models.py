@@ -17,6 +17,7 @@ from hearth.models.text.seq2seq import Seq2SeqBody
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import UNKNOWN, StepVocabulary
 from hearth.models.text.text_batches import StepBatch, TextBatch, encoded, step_batch, text_batch
+from hearth.models.text.text_scorer import TextScorer
 from hearth.models.text.text_words import words, words_of
 from hearth.models.text.transformer import TransformerBody
 from hearth.models.text.word_vectors import word_vectors
@@ -74,7 +75,7 @@ class TextModel(Settings):
             for start in range(0, len(order), self.batch):
                 rows = [data[place] for place in order[start : start + self.batch]]
                 texts = text_batch([request for request, _ in rows], vocabulary, writer.device, random)
-                yield texts, step_batch([steps for _, steps in rows], writer.device)
+                yield texts, step_batch([steps for _, steps in rows], writer.device, self.longest)
 
         task = Task(writer, batches, lambda batch: writer.loss(*batch), lambda: model.score(corpus.validation),
                     [asdict(self), corpus.facts])  # fmt: skip
@@ -146,6 +147,10 @@ class TrainedTextModel:
         known = dict(zip(texts, self.predict(list(texts.values())), strict=True))
         predicted = [known[each.title, each.description] for each in examples]
         return mean_lcs(predicted, [each.steps for each in examples])
+
+    def scorer(self) -> TextScorer:
+        """The model for decoding with the engine in the loop."""
+        return TextScorer(self.writer, self.vocabulary)
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""

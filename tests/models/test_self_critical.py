@@ -33,7 +33,9 @@ def test_the_mean_gradient_of_the_baseline_is_about_zero(untrained, eight):
     for start in range(0, 400, 20):
         part = text_batch([eight[0].request] * 20, model.vocabulary, writer.device)
         writer.zero_grad()
-        writer.log_probabilities(part, step_batch(programs[start : start + 20], writer.device)).sum(1).mean().backward()
+        writer.log_probabilities(part, step_batch(programs[start : start + 20], writer.device, 40)).sum(
+            1
+        ).mean().backward()
         gradients.append(writer.head.action.bias.grad.clone())
     found = torch.stack(gradients)  # (20, A + 1)
     error = found.std(0) / len(found) ** 0.5
