@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from hearth.analysis.synthesis_wording import HELD_OUT, TYPO, Speaker, Wording, load_words, mistyped, paraphrase
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -63,12 +62,13 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """An activity: titles, distributions of objects by slot, and parts."""
+    """An activity: titles, distributions of objects by slot, parts, and what it is for."""
 
     name: str
     titles: tuple[str, ...]
     slots: Mapping[str, Weighted]
     parts: tuple[Part, ...]
+    aims: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,15 +81,21 @@ class Grammar:
     join: float
     first: float
     known: Knowledge
+    words: Wording
 
 
 @dataclass(frozen=True, slots=True)
 class Synthetic:
-    """A synthetic program: title, steps as (action, objects), and distinct descriptions."""
+    """A synthetic program: title, steps as (action, objects), distinct descriptions, and its tasks.
+
+    `held_out` says of each description whether it uses the paraphrases that are held out.
+    """
 
     title: str
     steps: tuple[tuple[str, tuple[str, ...]], ...]
     descriptions: tuple[str, ...]
+    tasks: tuple[str, ...] = ()
+    held_out: tuple[bool, ...] = ()
 
     def lines(self) -> list[str]:
         """The steps as text."""
@@ -110,8 +116,9 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
     data = load_yaml(path)
     try:
         described = float(data["described"] if "described" in data else data["told"])
-        tasks = {name: _task(name, entry, described) for name, entry in data["tasks"].items()}
-        weights = {name: float(entry["weight"]) for name, entry in data["tasks"].items()}
+        entries = {name: _inherited(entry, data["tasks"]) for name, entry in data["tasks"].items()}
+        tasks = {name: _task(name, entry, described) for name, entry in entries.items()}
+        weights = {name: float(entry["weight"]) for name, entry in entries.items()}
         plan = Weighted.of(data["plan"])
         join, first = float(data["join"]), float(data["first"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -123,8 +130,14 @@ def load(path: Path, known: Knowledge, every_action: bool = False) -> Grammar:
         raise HearthError(faults)
     kept = {name: task if every_action else _animated(task, known) for name, task in tasks.items()}
     return Grammar(
-        plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first, known
-    )
+        plan, Weighted.of({n: weights[n] for n, task in kept.items() if task.parts}), kept, join, first, known,
+        load_words(known),
+    )  # fmt: skip
+
+
+def _inherited(entry: Mapping[str, Any], entries: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A task's entry, with what it lacks from the task that it is like."""
+    return {**entries[entry["like"]], "aims": (), **entry} if "like" in entry else entry
 
 
 def _task(name: str, entry: Mapping[str, Any], described: float) -> Task:
@@ -138,13 +151,13 @@ def _task(name: str, entry: Mapping[str, Any], described: float) -> Task:
         )
         for part in entry["parts"]
     )
-    return Task(name, tuple(entry["titles"]), slots, parts)
+    return Task(name, tuple(entry["titles"]), slots, parts, tuple(map(str, entry.get("aims", ()))))
 
 
 def _animated(task: Task, known: Knowledge) -> Task:
     animated = known.group("animated")
     parts = tuple(part for part in task.parts if all(action in animated for action, _ in part.steps))
-    return Task(task.name, task.titles, task.slots, parts)
+    return Task(task.name, task.titles, task.slots, parts, task.aims)
 
 
 def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
@@ -166,11 +179,10 @@ def _faults(task: Task, known: Knowledge, file: str) -> Iterator[Diagnostic]:
 
 
 class ChosenPart(NamedTuple):
-    """A drawn part, the objects of its task by slot, and their names in descriptions."""
+    """A drawn part, and the objects of its task by slot."""
 
     part: Part
     chosen: dict[str, str]
-    names_by_slot: dict[str, str]
 
 
 def synthesize(count: int, seed: int, grammar: Grammar, descriptions: int = 2) -> Iterator[Synthetic]:
@@ -211,17 +223,17 @@ def _draw(grammar: Grammar, chance: Random, descriptions: int) -> Synthetic | No
     for name in names:
         task = grammar.tasks[name]
         chosen = {slot: weighted.draw(chance) for slot, weighted in task.slots.items()}
-        names_by_slot = {slot: _phrase(name) for slot, name in chosen.items()}
-        parts += [
-            ChosenPart(part, chosen, names_by_slot)
-            for part in task.parts
-            if part.chance >= 1 or chance.random() < part.chance
-        ]
+        parts += [ChosenPart(part, chosen) for part in task.parts if part.chance >= 1 or chance.random() < part.chance]
     steps = _steps(parts, grammar.known)
     if not steps:
         return None
-    ways = dict.fromkeys(_describe(parts, grammar, chance) for _ in range(descriptions))
-    return Synthetic(chance.choice(grammar.tasks[names[0]].titles), tuple(steps), tuple(ways))
+    aims = [aim for name in names for aim in grammar.tasks[name].aims]
+    ways: dict[str, bool] = {}
+    for _ in range(descriptions):
+        held_out = chance.random() < 1 / HELD_OUT
+        ways.setdefault(_describe(parts, aims, grammar, held_out, chance), held_out)
+    title = chance.choice(grammar.tasks[names[0]].titles)
+    return Synthetic(title, tuple(steps), tuple(ways), tuple(names), tuple(ways.values()))
 
 
 def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tuple[str, ...]]]:
@@ -230,7 +242,7 @@ def _steps(parts: Sequence[ChosenPart], known: Knowledge) -> list[tuple[str, tup
     made: dict[tuple[str, str], str] = {}
     held: set[str] = set()
     seated = False
-    for part, chosen, _ in parts:
+    for part, chosen in parts:
         for action, slots in part.steps:
             names = tuple(chosen.get(slot, slot) for slot in slots)
             if seated and action in known.group("goes"):
@@ -273,43 +285,18 @@ def _possible(
     return True
 
 
-def _describe(parts: Sequence[ChosenPart], grammar: Grammar, chance: Random) -> str:
+def _describe(
+    parts: Sequence[ChosenPart], aims: Sequence[str], grammar: Grammar, held_out: bool, chance: Random
+) -> str:
     """A description of the parts; commonsense ones may be omitted (thesis 3.3)."""
-    shown: dict[str, str] = {}
-    for each in parts:
-        shown.update(each.names_by_slot)
-    clauses: list[str] = []
-    for part, _, names_by_slot in parts:
-        if chance.random() < part.described:
-            shown.update(names_by_slot)
-            clauses.append(chance.choice(part.say).format_map(shown))
-    if not clauses:
-        clauses.append(parts[0].part.say[0].format_map(parts[0].names_by_slot))
-    start = "I " if chance.random() < grammar.first else ""
-    sentences: list[str] = []
-    while clauses:
-        words = clauses.pop(0)
-        if clauses and " and " not in words and chance.random() < grammar.join:
-            words = f"{words} and {clauses.pop(0)}"
-        sentences.append(_sentence(words, start))
-    return " ".join(sentences)
-
-
-_YOU = re.compile(r"\byou(r?)\b( are\b)?")
-
-
-def _sentence(words: str, start: str) -> str:
-    if start:
-        words = _YOU.sub(lambda m: "my" if m[1] else "I am" if m[2] else "I", words)
-    return f"{start}{words}." if start else f"{words[0].upper()}{words[1:]}."
-
-
-_PHRASES = {"food_food": "food", "coffe_maker": "coffee maker", "ceilinglamp": "ceiling lamp"}
-
-
-@cache
-def _phrase(name: str) -> str:
-    return _PHRASES.get(name) or name.removeprefix("food_").replace("_", " ")
+    speaker = Speaker(grammar.words, chance.random() < grammar.first, chance)
+    said = [each for each in parts if chance.random() < each.part.described] or list(parts[:1])
+    clauses = [
+        speaker.clause(paraphrase(part.say, held_out, chance), chosen, next(iter(part.steps[-1][1]), ""))
+        for part, chosen in said
+    ]
+    text = " ".join(speaker.sentences(clauses, aims or grammar.words.aims, grammar.join))
+    return mistyped(text, chance) if chance.random() < TYPO else text
 
 
 def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:
@@ -321,4 +308,5 @@ def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:
         "description": found.descriptions[0],
         "descriptions": list(found.descriptions[1:]),
         "steps": found.lines(),
+        "tasks": list(found.tasks),
     }

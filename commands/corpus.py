@@ -51,17 +51,21 @@ def synthesize(
     descriptions: int = 2,
     grammar: Path | None = None,
     described: bool = False,
+    splits: Path | None = None,
     out: Path | None = None,
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
     """Draw distinct programs with descriptions from a probabilistic grammar, as JSON Lines that `build` reads.
 
-    With --described: the programs, drawn once, whose descriptions were written one by one.
+    Programs have one to three tasks of the grammar. With --splits a table says which descriptions train and test:
+    splits hold out paraphrases, tasks, pairs of tasks, or objects; --json then has their sizes. With --described: the
+    programs, drawn once, whose descriptions were written one by one.
 
     \b
     Examples:
       python cli.py corpus synthesize --out synthetic.jsonl
+      python cli.py corpus synthesize --out synthetic.jsonl --splits splits.csv --json
       python cli.py corpus synthesize --described --out described.jsonl
       python cli.py corpus synthesize 20000 --seed 7 --actions all --out more.jsonl
       python cli.py sample synthetic.jsonl   (runs each of them in every home)
@@ -70,16 +74,19 @@ def synthesize(
 
     from hearth.analysis import described as written
     from hearth.analysis import synthesis
+    from hearth.analysis import synthesis_splits as numbers
     from hearth.storage.files import replacing
 
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
+    figures: dict[str, Any] = {"programs": count}
     if described:
         records: Iterable[dict[str, Any]] = tuple(written.described())
         count = sum(1 for _ in records)
     else:
         weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
-        drawn = synthesis.synthesize(count, seed, weights, descriptions)
+        drawn = list(synthesis.synthesize(count, seed, weights, descriptions))
+        figures = numbers.figures(drawn, numbers.write(drawn, seed, splits) if splits else ())
         records = (synthesis.record(one, number, seed) for number, one in enumerate(drawn, 1))
     lines = (orjson.dumps(record) + b"\n" for record in records)
     if out is None:
@@ -88,7 +95,7 @@ def synthesize(
     with replacing(out) as temporary, temporary.open("wb") as file:
         file.writelines(lines)
     text = f"{output.counted(count, 'program')} in {out}"
-    output.say(text, {"programs": count, "seed": seed, "file": out}, as_json)
+    output.say(text, {**figures, "seed": seed, "file": out}, as_json)
 
 
 @app.command()

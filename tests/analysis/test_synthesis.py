@@ -2,17 +2,21 @@
 
 import json
 import re
+from itertools import combinations
 
 import pytest
 from typer.testing import CliRunner
 
-from hearth.analysis import synthesis
+from hearth.analysis import synthesis, synthesis_splits, synthesis_wording
 from hearth.analysis.described import described
 from hearth.cli import app
+from hearth.datasets.format.near_duplicates import near_texts
+from hearth.datasets.format.splits import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
 from hearth.pipelines.checks.programs import contradictions
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.rng import rng
 from hearth.schemas.syntax import parse_program
 
 
@@ -46,11 +50,11 @@ def test_averages_are_near_table_4_1(drawn):
     programs, _ = drawn
     texts = [text for one in programs for text in one.descriptions]
     steps = sum(len(one.steps) for one in programs) / len(programs)
-    sentences = sum(len(re.findall(r"\.(?:\s|$)", text)) for text in texts) / len(texts)
+    sentences = sum(len(re.findall(r"[.!](?:\s|$)", text)) for text in texts) / len(texts)
     words = sum(len(text.split()) for text in texts) / len(texts)
-    assert steps == pytest.approx(9.6, abs=0.5)
-    assert sentences == pytest.approx(3.4, abs=0.2)
-    assert words == pytest.approx(20.5, abs=1)
+    assert steps == pytest.approx(9.6, rel=0.1)
+    assert sentences == pytest.approx(3.4, rel=0.1)
+    assert words == pytest.approx(20.5, rel=0.1)
 
 
 def test_programs_are_told_in_several_ways(drawn):
@@ -127,3 +131,88 @@ def test_described_programs_are_written_and_read(tmp_path):
     arguments = ["ingest", str(file), "--out", str(tmp_path / "out"), "--workers", "1", "--json"]
     counts = json.loads(CliRunner().invoke(app, arguments).stdout)["stages"]["ingest"]
     assert counts["tally"]["program"] == 500 and counts["rejected"] == 0
+
+
+def test_words_are_many_and_word_orders_are_not_repeated(drawn):
+    found = synthesis_splits.figures(drawn[0])
+    assert found["tasks"] >= 60 and set(found["programs_by_tasks"]) == {1, 2, 3}
+    assert found["word_types"] >= 1_500 and found["word_types_used_three_times"] >= 1_300
+    assert found["distinct_4_grams"] >= 0.5
+
+
+@pytest.fixture(scope="module")
+def split(drawn):
+    programs = drawn[0][:1_500]
+    parts = {}
+    for row in synthesis_splits.splits(programs):
+        parts.setdefault(row.split, {}).setdefault(row.part, []).append((programs[row.program - 1], row.description))
+    return parts
+
+
+def held_out(split, names):
+    """Names of test programs that no program in train has, and the share of test programs with one."""
+    train = {name for one, _ in split["train"] for name in names(one)}
+    shares = [bool(set(names(one)) - train) for one, _ in split["test"]]
+    return sum(shares) / len(shares)
+
+
+def test_what_a_split_holds_out_is_in_the_test_part_alone(split):
+    assert held_out(split["tasks"], lambda one: one.tasks) == 1
+    assert held_out(split["pairs"], lambda one: list(combinations(sorted(one.tasks), 2))) == 1
+    assert held_out(split["objects"], lambda one: [name for _, names in one.steps for name in names]) == 1
+    assert all(one.held_out[place] for one, place in split["paraphrases"]["test"])
+    assert not any(one.held_out[place] for one, place in split["paraphrases"]["train"])
+    # Each task of a held-out pair is in train, with others.
+    train = {task for one, _ in split["pairs"]["train"] for task in one.tasks}
+    assert train >= {task for one, _ in split["pairs"]["test"] for task in one.tasks}
+
+
+def test_no_near_duplicates_are_in_two_parts(split):
+    for parts in split.values():
+        test = [normalised(one.descriptions[place]) for one, place in parts["test"]]
+        train = [normalised(one.descriptions[place]) for one, place in parts["train"]]
+        texts = sorted({*test, *train})
+        for one, other in near_texts(texts, NEAR):
+            pair = {texts[one], texts[other]}
+            assert not (pair & set(test) and pair & set(train))
+        assert not set(test) & set(train)
+
+
+def test_every_paraphrase_of_a_part_is_held_out_or_not_for_any_seed():
+    say = ["take the {thing}", "get the {thing}", "grab the {thing}", "lift the {thing}", "fetch the {thing}"]
+    out = [each for each in say if synthesis_wording.is_held_out(each)]
+    drawn = {synthesis_wording.paraphrase(say, True, rng(seed, "x")) for seed in range(30)}
+    assert drawn == set(out or say)
+
+
+def test_a_pronoun_stands_for_the_last_thing_alone(knowledge):
+    words = synthesis_wording.load_words(knowledge)
+    for seed in range(40):
+        speaker = synthesis_wording.Speaker(words, False, rng(seed, "pronouns"))
+        first = speaker.clause("put it on the {spot}", {"cup": "cup", "spot": "table"}, "cup")
+        assert not re.search(r"\bit\b", first), first
+        assert "cup" in first
+
+
+def test_a_typing_error_changes_one_word():
+    text = "Take the kettle from the cupboard."
+    for seed in range(30):
+        other = synthesis_wording.mistyped(text, rng(seed, "typing"))
+        assert sum(a != b for a, b in zip(text.split(), other.split(), strict=True)) <= 1
+
+
+def test_words_with_an_unknown_list_are_an_error(knowledge, tmp_path):
+    page = synthesis_wording.WORDS.read_text().replace("- for <person>\n", "- for <nobody>\n")
+    (tmp_path / "words.yaml").write_text(page)
+    with pytest.raises(HearthError, match="unknown list `nobody`"):
+        synthesis_wording.load_words(knowledge, tmp_path / "words.yaml")
+
+
+def test_the_command_writes_the_splits(tmp_path):
+    words = ["--out", str(tmp_path / "s.jsonl"), "--splits", str(tmp_path / "s.csv"), "--json"]
+    done = CliRunner().invoke(app, ["corpus", "synthesize", "40", *words])
+    assert done.exit_code == 0, done.output
+    rows = (tmp_path / "s.csv").read_text().splitlines()
+    assert rows[0] == "split,program_id,description,part"
+    found = json.loads(done.stdout)
+    assert len(rows) - 1 == 4 * found["descriptions"] and set(found["splits"]) == set(synthesis_splits.SPLITS)
