@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from hearth.agents.hierarchical import Hierarchical, Partner
+from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.protocol import Agent
 from hearth.agents.random_helper import RandomHelper
@@ -32,11 +32,11 @@ class Helper:
     main: str = ""
 
 
-SEES_ALL = Habits(sees_all=True)
+SEES_ALL = replace(HELPING, sees_all=True)
 
 MAIN: dict[str, Callable[[], MainAgent]] = {
     "human_like": HumanLike,
-    "oracle": lambda: HumanLike(SEES_ALL),
+    "oracle": lambda: HumanLike(Habits(sees_all=True)),
 }
 """Who is helped."""
 

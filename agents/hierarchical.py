@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from hearth.agents.human_like import PLAIN, Habits, HumanLike
+from hearth.agents.belief import Place
+from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.subgoals import Missing, Subgoal
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import Pose, View
+from hearth.simulation.world.bits import indices
 
 
 class Partner(Protocol):
@@ -20,13 +22,17 @@ class Partner(Protocol):
         """What it is doing; None if nothing."""
 
 
+HELPING = Habits(closes=False, gives=True)
+"""Habits of helpers: closing what one has opened is a habit of people (thesis B.1.1) that helps nobody."""
+
+
 class Hierarchical(HumanLike):
     """Pursues a goal that it is given beside somebody, to whom it leaves what that one is doing.
 
     Where nothing else is left to be done and, as far as it can see, the partner's hands are empty, it does that, too.
     """
 
-    def __init__(self, partner: Partner | None = None, habits: Habits = PLAIN, *, timed: bool = False) -> None:
+    def __init__(self, partner: Partner | None = None, habits: Habits = HELPING, *, timed: bool = False) -> None:
         """A helper.
 
         Args:
@@ -46,8 +52,21 @@ class Hierarchical(HumanLike):
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The first instruction of its plan, now that it has seen where the partner is."""
-        self._other = next(iter(observation.others), self._other)
+        self._note_other(observation)
         return super().act(observation, legal)
+
+    def _note_other(self, view: View) -> None:
+        """Where the other one is: as last seen; in any other room, if it is not where it was."""
+        home = view.world.home
+        for other in view.others:
+            self._other = other
+            if other.room is not None:
+                self.belief.where[home.index[other.node]] = Place("INSIDE", home.index[other.room])
+        for node in indices(home.characters & ~view.mask):
+            place = self.belief.where.get(node)
+            if place is None or home.ids[place.node] == view.me.room:
+                rooms = [i for i in indices(home.rooms) if home.ids[i] != view.me.room]
+                self.belief.where[node] = Place("INSIDE", self.chooser.choice(rooms))
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
         """The subgoals but those of its partner; those too, if there are no others."""
@@ -62,9 +81,7 @@ class Hierarchical(HumanLike):
 
     def _provided(self, mine: Subgoal, theirs: Subgoal, missing: Missing) -> bool:
         """Whether the partner is doing the last that a part of the goal lacks."""
-        same = mine.target == theirs.target and mine.literal.name == theirs.literal.name
-        part = next(each for each in self.aims.wanted if each.part == mine.part)
-        return same and bool(part.counted >> theirs.thing & 1) and missing[mine.part][0] < 2
+        return mine.part == theirs.part and missing[mine.part][0] < 2
 
     def _left_to_partner(self, view: View, theirs: Subgoal) -> bool:
         """Whether the partner is at the thing of its subgoal before oneself; it is if it has it, or if one knows

@@ -10,7 +10,7 @@ from hearth.agents.belief import Belief, Extent
 from hearth.agents.distances import Distances
 from hearth.agents.mcts import PUBLISHED, Search, Tree
 from hearth.agents.regression import Regression
-from hearth.agents.subgoals import Aims, Missing, Subgoal
+from hearth.agents.subgoals import HELD, Aims, Missing, Subgoal
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, Literal
 from hearth.schemas.program import Step
@@ -31,6 +31,7 @@ class Habits:
         closes: whether it closes what it opened, once nothing wanted is left there.
         looks_in: the containers in which it looks first (see `belief.Extent`); in the thesis any.
         doubt: ticks that a subgoal counts more if its thing was not seen.
+        gives: it hands over what another character is to hold.
         sees_all: it knows the whole world as it is (the oracles of 6.5).
     """
 
@@ -38,6 +39,7 @@ class Habits:
     closes: bool = True
     looks_in: Extent = "goal"
     doubt: float = 10.0
+    gives: bool = False
     sees_all: bool = False
 
 
@@ -61,7 +63,7 @@ class HumanLike:
         self.goal = goal or Goal()
         self.chooser: Random = rng(seed, "agent", observation.agent)
         self.me = home.index[observation.me.node]
-        self.aims = Aims(self.goal, home, self.me)
+        self.aims = Aims(self.goal, home, self.me, gives=self.habits.gives)
         self.belief = Belief(home, self.aims.things, self.chooser, looks_in=self.habits.looks_in)
         self.distances = Distances(home, observation.me.stride)
         self.subgoal = None
@@ -76,7 +78,7 @@ class HumanLike:
         missing = self.aims.missing(self.belief, observation)
         open_now = self.aims.open(self.belief, missing)
         self._decide(observation, open_now, missing)
-        needed = self._needed(missing)
+        needed = self._needed(missing, observation.world.agents[observation.agent].held)
         search = Regression(observation, legal, self.belief, self._spare(observation, needed))
         if (clearing := self._clearing(search, needed)) is not None:
             return clearing
@@ -147,12 +149,14 @@ class HumanLike:
         """Whether its last instruction failed, so that another subgoal may be better."""
         return view.me.last is not None and view.me.last.failure is not None
 
-    def _needed(self, missing: Missing) -> int:
-        """The things that could still count for a missing part."""
+    def _needed(self, missing: Missing, held: int) -> int:
+        """The things that could still count for a missing part, and what it holds because it is to hold it."""
         found = 0
         for wanted in self.aims.wanted:
             if wanted.part in missing:
                 found |= wanted.counted & ~missing[wanted.part][1]
+            elif wanted.last == HELD:
+                found |= mask_of(list(indices(held & wanted.counted))[: wanted.count])
         return found & self.aims.things
 
     def _spare(self, view: View, needed: int) -> tuple[int, ...]:

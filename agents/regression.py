@@ -105,7 +105,7 @@ class Regression:
                 return step
         if (place := self.place(node)) >= 0 and place != node:
             return self.first(Literal("CLOSE", (self.me.index, place)), above)
-        return self._through(node, above) if place < 0 else None
+        return self._through(node, above) if self.home.rooms >> node & 1 else None
 
     def _through(self, room: int, above: tuple[Literal[int], ...]) -> Step | None:
         """A closed door on the way to a room opened, or a walk to where more doors are seen, nearest first."""
@@ -126,10 +126,11 @@ class Regression:
         return _moves(self.home.knowledge)
 
     def place(self, node: int) -> int:
-        """What something is believed to be on or in, and of what stays where it is the room; -1 of a room."""
+        """What something is believed to be on or in, and of what stays where it is the room; -1 of a room
+        and of a character of whom nothing is known."""
         if node in self.belief.where:
             return self.belief.where[node].node
-        if self.home.rooms >> node & 1:
+        if (self.home.rooms | self.home.characters) >> node & 1:
             return -1
         return rows.room_of(self.world, node)
 

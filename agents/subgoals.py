@@ -11,8 +11,11 @@ from hearth.schemas.literals import HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.holds import Candidates, binary, candidates
 from hearth.simulation.observation.views import View
-from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
+
+HELD, RESTS = 1, 2
+"""When a part of a goal that is about characters comes, after those about things."""
 
 Missing = dict[int, tuple[int, int]]
 """By part of a goal that is not reached by belief: how many are missing, and the set of what counts."""
@@ -69,15 +72,17 @@ class Aims:
         things: the movable things that it is about.
     """
 
-    def __init__(self, goal: Goal, home: Home, me: int) -> None:
+    def __init__(self, goal: Goal, home: Home, me: int, *, gives: bool = False) -> None:
         """Read a goal.
 
         Args:
             goal: counted literals; joined parts are not pursued.
             home: of the episode.
             me: index of the agent's node.
+            gives: what another character is to hold, it hands over.
         """
-        self._home, self._me = home, me
+        self._home, self._me, self._gives = home, me, gives
+        self._handed = 0
         every = [self._wanted(number, literal, count) for number, (literal, count) in enumerate(goal)]
         self.wanted = tuple(each for each in every if self._mine(each))
         self.things = 0
@@ -88,17 +93,21 @@ class Aims:
         found = candidates(literal, self._home)
         last = 0
         if found.by_target:
-            last = 1 if literal.name in (HOLDS, *HANDS) else 2
+            last = HELD if literal.name in (HOLDS, *HANDS) else RESTS
         return Wanted(part, found.needed(count), found, last)
 
     def _mine(self, wanted: Wanted) -> bool:
-        """Whether it is the agent's to do: not what another character is to hold or sit on."""
-        return not wanted.candidates.by_target or bool(wanted.candidates.subjects >> self._me & 1)
+        """Whether it is the agent's to do: not where another character is to sit."""
+        if not wanted.candidates.by_target or wanted.candidates.subjects >> self._me & 1:
+            return True
+        return self._gives and wanted.last == HELD
 
     def met(self, wanted: Wanted, belief: Belief, view: View) -> int:
         """The set of what is counted for a literal by belief."""
         name, targets = wanted.literal.name, wanted.candidates.targets
-        if wanted.last:
+        if self._by_others(wanted):
+            found = self._given(wanted, belief)
+        elif wanted.last:
             found = binary(name)(view.world, self._me, targets)
         elif name in STATE_ID and len(wanted.literal.terms) == 1:
             found = belief.states[STATE_ID[name]] & wanted.candidates.subjects
@@ -110,6 +119,18 @@ class Aims:
                     found |= 1 << thing
         return wanted.counted & ~found if wanted.literal.negated else found
 
+    def _given(self, wanted: Wanted, belief: Belief) -> int:
+        """What others were last seen to hold of what they are to hold."""
+        seen = wanted.counted & belief.known
+        held = (t for t in indices(seen) if belief.where[t].relation == HOLDS)
+        subjects = wanted.candidates.subjects
+        self._handed = self._handed & ~seen | mask_of(t for t in held if subjects >> belief.where[t].node & 1)
+        return self._handed & wanted.counted
+
+    def _by_others(self, wanted: Wanted) -> bool:
+        """Whether it is another character that is to hold something."""
+        return wanted.last == HELD and not wanted.candidates.subjects >> self._me & 1
+
     def missing(self, belief: Belief, view: View) -> Missing:
         """The parts of the goal that are not reached by belief."""
         found = {}
@@ -120,14 +141,14 @@ class Aims:
         return found
 
     def open(self, belief: Belief, missing: Missing) -> list[Subgoal]:
-        """The subgoals that would bring a missing part nearer: first those about things, then what is to be held, then
-        where to rest. What another character holds is left to it.
+        """The subgoals that would bring a missing part nearer: first those about things, then what it is to hold,
+        then where to rest. What another character holds is left to it.
         """
         for last in range(3):
             found = [
                 subgoal
                 for wanted in self.wanted
-                if wanted.last == last and wanted.part in missing
+                if wanted.part in missing and last == (0 if self._by_others(wanted) else wanted.last)
                 for subgoal in self._open(wanted, missing[wanted.part][1], belief)
             ]
             if found:
@@ -139,6 +160,9 @@ class Aims:
         held = {t for t in indices(things) if t in belief.where and belief.where[t].relation == HOLDS}
         free = [t for t in indices(things) if t not in held or belief.where[t].node == self._me]
         name = wanted.literal.name
+        if self._by_others(wanted):
+            other = lowest(wanted.candidates.subjects)
+            return [Subgoal(Literal("ON", (t, other)), wanted.part, t, other) for t in free]
         if wanted.last:
             return [Subgoal(Literal(name, (self._me, t)), wanted.part, t) for t in free]
         if len(wanted.literal.terms) == 1:

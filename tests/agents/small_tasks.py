@@ -143,3 +143,16 @@ def allowed(env: Env, number: int, mask: int) -> Legal:
         if masks is not None and all(kept := tuple(each & mask for each in masks)):
             found[name] = kept
     return Legal(env.world.home, number, found)
+
+
+def scrambled(world: World, mask: int) -> World:
+    """The world with everything movable that is out of view elsewhere, and closed furniture out of view open."""
+    home = world.home
+    rest = home.everything & home.properties["GRABBABLE"] & ~mask
+    chooser = rng(len(str(world.moved)), "scrambled")
+    containers = list(indices(home.properties["CAN_OPEN"] & home.furniture & ~mask))
+    place = {home.ids[i]: ("INSIDE", home.ids[chooser.choice(containers)]) for i in indices(rest)}
+    opened = [(home.ids[i], "OPEN") for i in containers]
+    changed = edit(world, place=place if containers else {}, set=opened, check=False)
+    assert isinstance(changed, World)
+    return changed

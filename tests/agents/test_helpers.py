@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from statistics import mean
 
 import pytest
-from small_tasks import play, start, wanted
+from small_tasks import play, scrambled, start, wanted
 
 from hearth.agents.agent_registry import HELPERS, MAIN
-from hearth.agents.hierarchical import Hierarchical
+from hearth.agents.hierarchical import HELPING, Hierarchical
 from hearth.agents.human_like import HumanLike
 from hearth.agents.random_helper import RandomHelper
 from hearth.agents.subgoals import Subgoal
+from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.world import World
 
 
 @pytest.fixture(scope="module")
@@ -62,14 +65,14 @@ def test_the_partners_subgoal_is_left_to_it_until_nothing_else_is_left(kitchen):
 
 def test_what_the_partner_holds_is_left_to_it(kitchen):
     """It stands there with the last thing in its hand."""
-    goal = wanted(kitchen, "ON", "dining_table", plate=3)
+    goal = wanted(kitchen, "ON", "dining_table", plate=2)
     plate = next(indices(kitchen.home.instances("plate")))
     partner = Standing()
     holding = kitchen.with_agent(0, kitchen.agents[0]._replace(right=1 << plate))
     pose = kitchen.agents[0].pose
     beside = holding.with_agent(1, kitchen.agents[1]._replace(inside=kitchen.agents[0].inside, pose=pose))
     played = play(beside, goal, [partner, Hierarchical(partner)], limit=120)
-    assert played.progress.counts == (2,)
+    assert played.progress.counts == (1,)
 
 
 def test_a_random_helper_is_no_planner(kitchen):
@@ -96,3 +99,46 @@ def test_every_helper_repeats_itself(kitchen, name):
         main = MAIN[HELPERS[name].main or "human_like"]()
         runs.append(play(kitchen, goal, [main, HELPERS[name].make(main)], 4, limit=60).choices)
     assert runs[0] == runs[1]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_helper_hands_over_what_its_partner_is_to_hold(maple, seed):
+    """The partner stands still, so that only the helper can put the book into a hand of it."""
+    world = start(maple, {"book": 2, "plate": 1}, seed)
+    goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"))
+    played = play(world, goal, [None, Hierarchical(habits=replace(HELPING, gives=True))])
+    assert played.progress.satisfied
+    assert not play(
+        world, goal, [None, Hierarchical(habits=replace(HELPING, gives=False))], limit=100
+    ).progress.satisfied
+
+
+def test_where_an_unseen_partner_is_is_not_known(maple):
+    """The partner is put into another room in what the helper is shown; that room is out of its view."""
+    world = start(maple, {"book": 2, "plate": 1}, seed=4)
+    goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"))
+
+    def elsewhere(shown: World, mask: int) -> World:
+        if mask & shown.agents[0].bit:
+            return shown
+        rooms = list(indices(shown.home.rooms & ~shown.agents[1].inside))
+        return shown.with_agent(0, shown.agents[0]._replace(inside=1 << rooms[-1], close=0))
+
+    plain = play(world, goal, [None, Hierarchical()], 1)
+    assert play(world, goal, [None, Hierarchical()], 1, scramble=elsewhere).choices == plain.choices
+
+
+@pytest.mark.parametrize("name", ["hp_true", "hp_timed", "hp_random"])
+def test_what_a_helper_does_not_see_changes_nothing(kitchen, name):
+    goal = wanted(kitchen, "ON", "dining_table", plate=2, fork=2)
+    runs = []
+    for change in (None, scrambled):
+        partner = HumanLike()
+        helper = HELPERS[name].make(partner)
+        runs.append(play(kitchen, goal, [partner, helper], 3, scramble=change).choices)
+    assert runs[0] == runs[1]
+
+
+def test_habits_of_helpers_close_nothing():
+    assert HumanLike().habits.closes
+    assert not Hierarchical().habits.closes

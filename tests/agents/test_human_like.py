@@ -6,13 +6,12 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-from small_tasks import play, start, target, wanted
+from small_tasks import play, scrambled, start, target, wanted
 
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.mcts import Search
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
-from hearth.schemas.rng import rng
 from hearth.simulation.env import Env
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world import rows
@@ -63,19 +62,6 @@ def test_it_switches_on_what_is_to_be_on(kitchen):
 
 
 def test_what_it_does_not_see_changes_nothing(kitchen):
-    """Everything movable that is out of view lies elsewhere in what the agent is shown."""
-
-    def scrambled(world: World, mask: int) -> World:
-        home = world.home
-        rest = home.everything & home.properties["GRABBABLE"] & ~mask
-        chooser = rng(len(str(world.moved)), "scrambled")
-        containers = list(indices(home.properties["CAN_OPEN"] & home.furniture & ~mask))
-        place = {home.ids[i]: ("INSIDE", home.ids[chooser.choice(containers)]) for i in indices(rest)}
-        opened = [(home.ids[i], "OPEN") for i in containers]
-        changed = edit(world, place=place if containers else {}, set=opened, check=False)
-        assert isinstance(changed, World)
-        return changed
-
     goal = wanted(kitchen, "ON", "dining_table", plate=2, fork=1)
     plain = play(kitchen, goal, [HumanLike(), None], 3)
     assert play(kitchen, goal, [HumanLike(), None], 3, scramble=scrambled).choices == plain.choices
@@ -185,3 +171,13 @@ def test_it_does_other_things_while_a_container_does_not_open(kitchen):
     goal = wanted(kitchen, "ON", "dining_table", apple=2, plate=2)
     played = play(locked, goal, [HumanLike(), None], limit=200)
     assert played.progress.counts == (1, 2)
+
+
+def test_of_two_books_in_its_hands_it_keeps_the_one_that_it_is_to_hold(kitchen):
+    home = kitchen.home
+    right, left = list(indices(home.instances("book")))[:2]
+    full = kitchen.with_agent(0, kitchen.agents[0]._replace(right=1 << right, left=1 << left))
+    sofa = target(kitchen, "sofa")
+    goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"), Literal.of("ON", "agent:0", sofa))
+    played = play(full, goal, [HumanLike(), None], limit=60)
+    assert played.progress.satisfied
