@@ -16,10 +16,12 @@ from hearth.simulation.actions.registry import EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.env import Env, Tick, with_agents
 from hearth.simulation.goals import Progress
+from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.edit import edit, free_id
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
 ALLOWED = ("Walktowards", "Open", "Close", "Grab", "PutBack", "PutIn", "Sit", "StandUp", "SwitchOn")
@@ -51,6 +53,15 @@ def start(home: Home, counts: dict[str, int], seed: int = 0) -> World:
     world = edit(world, place=place, check=False)
     assert isinstance(world, World)
     return placed(with_agents(world, 2, seed), rng(seed, "poses"))
+
+
+def standing(world: World, number: int, room: str) -> World:
+    """The world with a character in the middle of a room."""
+    there = lowest(world.home.instances(room))
+    ground = ground_of(world.home).ground
+    pose = Pose(*ground.ways.points[ground.stands(there)[0]].tolist())
+    agent = world.agents[number]._replace(pose=pose, inside=1 << there, close=0)
+    return world.with_agent(number, agent)
 
 
 def target(world: World, name: str) -> int:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from statistics import mean
 
 import pytest
-from small_tasks import play, scrambled, start, wanted
+from small_tasks import play, scrambled, standing, start, wanted
 
 from hearth.agents.agent_registry import HELPERS, MAIN
 from hearth.agents.hierarchical import HELPING, Hierarchical
@@ -104,7 +104,8 @@ def test_every_helper_repeats_itself(kitchen, name):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_helper_hands_over_what_its_partner_is_to_hold(maple, seed):
     """The partner stands still, so that only the helper can put the book into a hand of it."""
-    world = start(maple, {"book": 2, "plate": 1}, seed)
+    apart = standing(start(maple, {"book": 2, "plate": 1}, seed), 0, "bathroom")
+    world = standing(apart, 1, "kitchen")
     goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"))
     played = play(world, goal, [None, Hierarchical(habits=replace(HELPING, gives=True))])
     assert played.progress.satisfied

@@ -6,18 +6,16 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-from small_tasks import play, scrambled, start, target, wanted
+from small_tasks import play, scrambled, standing, start, target, wanted
 
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.mcts import Search
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.simulation.env import Env
-from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
-from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.states import OPEN
 from hearth.simulation.world.world import World
 
@@ -138,18 +136,13 @@ def test_it_goes_on_where_another_takes_what_it_wanted(kitchen):
 def test_a_closed_door_is_opened_and_left_open(kitchen):
     """The doors of a room are closed while the agent is in it."""
     home = kitchen.home
-    room = home.index[target(kitchen, "bedroom")]
-    me = home.ids[kitchen.agents[0].index]
     closed = edit(
         kitchen,
-        place={me: ("INSIDE", home.ids[room])},
         set=[(home.ids[i], "CLOSED") for i in indices(home.doors & home.properties["CAN_OPEN"])],
         check=False,
     )
     assert isinstance(closed, World)
-    ground = ground_of(home).ground
-    pose = Pose(*ground.ways.points[ground.stands(room)[0]].tolist())
-    inside = closed.with_agent(0, closed.agents[0]._replace(pose=pose))
+    inside = standing(closed, 0, "bedroom")
     played = play(inside, wanted(kitchen, "ON", "dining_table", plate=2, fork=1), [HumanLike(), None])
     assert played.progress.satisfied
     doors = [tick for tick in played.ticks if done(tick, "OPEN") and home.doors >> opened_by(tick) & 1]
@@ -173,11 +166,9 @@ def test_it_does_other_things_while_a_container_does_not_open(kitchen):
     assert played.progress.counts == (1, 2)
 
 
-def test_of_two_books_in_its_hands_it_keeps_the_one_that_it_is_to_hold(kitchen):
+def test_with_full_hands_it_keeps_what_it_is_to_hold(kitchen):
     home = kitchen.home
-    right, left = list(indices(home.instances("book")))[:2]
-    full = kitchen.with_agent(0, kitchen.agents[0]._replace(right=1 << right, left=1 << left))
-    sofa = target(kitchen, "sofa")
-    goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"), Literal.of("ON", "agent:0", sofa))
-    played = play(full, goal, [HumanLike(), None], limit=60)
-    assert played.progress.satisfied
+    book, apple = (next(indices(home.instances(name))) for name in ("book", "apple"))
+    full = kitchen.with_agent(0, kitchen.agents[0]._replace(right=1 << book, left=1 << apple))
+    goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"), Literal.of("ON", "agent:0", target(kitchen, "sofa")))
+    assert play(full, goal, [HumanLike(), None], limit=60).progress.satisfied
