@@ -52,6 +52,12 @@ class Distances:
         field = ground.ways.field(stands)
         return field.distance[start], _end(field, start)
 
+    def end(self, node: int) -> int:
+        """A cell at which one stands for something that stays where it is; -1 without geometry."""
+        if self._here is None or node >= len(self._here.ground.home):
+            return -1
+        return next(iter(self._here.ground.stands(node)), -1)
+
     def ticks(self, metres: float) -> int:
         """Ticks until one is within reach of what is that far away."""
         return max(0, math.ceil((metres - REACH / 2) / self.stride)) if math.isfinite(metres) else 1_000

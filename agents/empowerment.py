@@ -1,0 +1,29 @@
+"""Help by empowerment: what would be done for most goals, whatever the goal is (thesis 7.4, a baseline)."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from hearth.agents.goal_space import Edge, GoalsIn
+from hearth.agents.online import OnlineHelper
+from hearth.agents.prospects import Planner
+from hearth.simulation.observation.views import View
+
+
+class Empowerment(OnlineHelper):
+    """Brings about the edge that most of some goals, drawn uniformly in each tick, have in their plans."""
+
+    def __init__(self, goals: GoalsIn, particles: int = 20, horizon: float = 15.0) -> None:
+        super().__init__(goals)
+        self._particles, self._horizon = particles, horizon
+
+    def choose(self, view: View) -> Edge | None:
+        """The commonest edge that can still be helped with."""
+        planner = Planner(self.space, view.world, view.others[0], self.posterior.distances)
+        theirs = view.world.agents[view.others[0].agent].held
+        held = self.held(view)
+        found: Counter[Edge] = Counter()
+        for goal in (self.chooser.randrange(len(self.space.goals)) for _ in range(self._particles)):
+            found.update(planner.prospect(goal, self._horizon).edges.keys())
+        able = [each for each in found if not theirs >> each.thing & 1 and (not held or each.thing in held)]
+        return max(able, key=lambda each: (found[each], each), default=None)

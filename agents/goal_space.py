@@ -1,0 +1,113 @@
+"""The goals that somebody may have, as arrays over the things of a home: what inference and helping reckon with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.agents.belief import place_of
+from hearth.schemas.goals import Goal
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+Floats = NDArray[np.floating[Any]]
+Numbers = NDArray[np.integer[Any]]
+Flags = NDArray[np.bool_]
+
+
+class Edge(NamedTuple):
+    """An edge of the graph that somebody brings about.
+
+    Attributes:
+        relation: `ON` or `INSIDE` furniture; HOLDS of what a character is to have; "" for taking a thing along,
+            without knowing where to.
+        thing: index of what is carried.
+        target: index of the furniture or character; -1 for taking it along.
+    """
+
+    relation: str
+    thing: int
+    target: int = -1
+
+
+GoalsIn = Callable[[Home], Mapping[Goal, float]]
+"""The goals that there may be in a home, naming its furniture by id, with their probabilities."""
+
+
+@dataclass(frozen=True, eq=False)
+class GoalSpace:
+    """Goals over a home. G goals, P predicates `relation(class, furniture)`, T movable things that these count.
+
+    Attributes:
+        goals: all of them.
+        prior: (G,) their probabilities.
+        relations: of each predicate.
+        targets: (P,) index of the furniture of each.
+        counts: (G, P) how many are wanted.
+        things: indices of the things.
+        fits: (P, T) whether a thing counts for a predicate, once it is there.
+    """
+
+    goals: tuple[Goal, ...]
+    prior: Floats
+    relations: tuple[str, ...]
+    targets: Numbers
+    counts: Numbers
+    things: tuple[int, ...]
+    fits: Flags
+
+    @classmethod
+    def of(cls, goals: Mapping[Goal, float], home: Home) -> GoalSpace:
+        """The goals of a home; literals about characters are left out."""
+        places = {
+            literal: home.index[literal.target]
+            for goal in goals
+            for literal, _ in goal
+            if isinstance(literal.target, int) and isinstance(literal.subject, str) and ":" not in literal.subject
+        }
+        predicates = list(places)
+        numbers = {literal: number for number, literal in enumerate(predicates)}
+        counts = np.zeros((len(goals), len(predicates)), np.int32)
+        for row, goal in enumerate(goals):
+            for literal, wanted in goal:
+                if literal in numbers:
+                    counts[row, numbers[literal]] = wanted
+        masks = [home.instances(str(literal.subject)) & home.properties["GRABBABLE"] for literal in predicates]
+        every = 0
+        for mask in masks:
+            every |= mask
+        things = tuple(indices(every))
+        fits = np.array([[bool(mask >> thing & 1) for thing in things] for mask in masks], np.bool_)
+        prior = np.array(list(goals.values()), np.float64)
+        return cls(
+            tuple(goals),
+            prior / prior.sum(),
+            tuple(literal.name for literal in predicates),
+            np.array(list(places.values()), np.int64),
+            counts,
+            things,
+            fits.reshape(len(predicates), len(things)),
+        )
+
+    def places(self, world: World) -> list[tuple[str, int]]:
+        """(T) where each thing is now: what it is on or in, who holds it, or its room."""
+        return [place_of(world, thing) for thing in self.things]
+
+    def counted(self, places: list[tuple[str, int]]) -> Flags:
+        """(P, T) whether a thing counts for a predicate where it is."""
+        nodes = np.array([node for _, node in places], np.int64)
+        here: Flags = self.fits & (self.targets[:, None] == nodes)
+        for number, relation in enumerate(self.relations):
+            if here[number].any():
+                here[number] &= np.array([found == relation for found, _ in places])
+        return here
+
+    def missing(self, counted: Flags) -> Numbers:
+        """(G, P) how many of each predicate a goal still lacks."""
+        found: Numbers = np.maximum(0, self.counts - counted.sum(axis=1, dtype=np.int32))
+        return found

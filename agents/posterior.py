@@ -1,0 +1,198 @@
+"""The exact posterior over all goals that somebody may have, by the likelihood of each action that is seen.
+
+A model of the one who acts says how probable an action is under a goal: it goes for one of the things that the goal
+still lacks, a near one rather than a far one, takes it, and carries it to where the goal wants it. Chapter 7
+approximates this by particles; 661 goals can be reckoned with one by one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from hearth.agents.distances import Distances
+from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Failure
+from hearth.schemas.literals import HANDS, HOLDS
+from hearth.schemas.program import Step
+from hearth.simulation.observation.views import Pose
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.states import CLOSED
+from hearth.simulation.world.world import World
+
+FAR = 1e6
+"""Ticks to what can't be reached."""
+
+
+@dataclass(frozen=True, slots=True)
+class ActionModel:
+    """How the one who acts is thought to choose.
+
+    Attributes:
+        rationality: how much less probable a thing becomes with each tick that it is farther.
+        slip: probability of an action that the model does not explain.
+    """
+
+    rationality: float = 0.2
+    slip: float = 0.02
+
+
+USUAL_MODEL = ActionModel()
+
+
+class Posterior:
+    """Probabilities of all goals of a space, updated by every action that is seen.
+
+    Attributes:
+        space: the goals.
+        weights: (G,) their probabilities now.
+        missing: (G, P) what each goal lacks now.
+        pursued: (G, T) under each goal, the probability that a thing is what is being fetched or carried.
+    """
+
+    def __init__(self, space: GoalSpace, home: Home, stride: float, model: ActionModel = USUAL_MODEL) -> None:
+        self.space = space
+        self.model = model
+        self.weights: Floats = space.prior
+        self.distances = Distances(home, stride)
+        self._number = {thing: number for number, thing in enumerate(space.things)}
+        self._known = home.knowledge
+        self._home = home
+        self._last: tuple[Step, Failure | None] | None = None
+        self._places: list[tuple[str, int]] = []
+
+    def observe(self, world: World, other: Pose) -> None:
+        """Take in what somebody has just tried, and the world since then.
+
+        Args:
+            world: now.
+            other: how that one stands, with what it last tried.
+        """
+        last = None if other.last is None else (other.last.instruction, other.last.failure)
+        if last is not None and self._places and last != self._last:
+            self._weigh(last[0])
+        self._last = last
+        places = self.space.places(world)
+        if places != self._places:
+            self._places = places
+            counted = self.space.counted(places)
+            self.missing = self.space.missing(counted)
+            self._keep(np.asarray(self.missing.any(axis=1), np.float64))
+            self._expect(world, other, counted)
+            self._last = None
+
+    def _expect(self, world: World, other: Pose, counted: Flags) -> None:
+        """What is fetched or carried next under each goal, by cost from where the one who acts stands."""
+        space, me = self.space, self._home.index[other.node]
+        self._held = np.array([place == (HOLDS, me) for place in self._places])
+        cost = self.costs(world, other)
+        near = np.exp(-self.model.rationality * (cost - cost.min(axis=1, keepdims=True)))
+        useful = np.where(space.fits & ~counted & (cost < FAR), near, 0.0)
+        found = (self.missing > 0).astype(np.float64) @ useful
+        carried = found * self._held
+        found = np.where(carried.any(axis=1, keepdims=True), carried, found)
+        total = found.sum(axis=1, keepdims=True)
+        self.pursued = np.divide(found, total, out=np.zeros_like(found), where=total > 0)
+
+    def costs(self, world: World, other: Pose) -> Floats:
+        """(P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
+        start = self.distances.cell(other.place)
+        me, closed = self._home.index[other.node], world.states[CLOSED]
+        found = np.full(self.space.fits.shape, FAR)
+        for number, (relation, node) in enumerate(self._places):
+            if relation == HOLDS and node != me:
+                continue
+            fetched, cell = 0.0, start
+            if relation != HOLDS:
+                metres, cell = self.distances.leg(start, node)
+                fetched = self.distances.ticks(metres) + 1 + (relation == "INSIDE" and closed >> node & 1)
+            for row in np.flatnonzero(self.space.fits[:, number]):
+                target = int(self.space.targets[row])
+                carried = self.distances.ticks(self.distances.leg(cell, target)[0])
+                shut = self.space.relations[row] == "INSIDE" and closed >> target & 1
+                found[row, number] = fetched + carried + 1 + shut
+        return found
+
+    def _weigh(self, step: Step) -> None:
+        """Weigh the goals by an action, and what may be pursued under each."""
+        match = self._matching(step)
+        if match is None:
+            return
+        explained = (self.pursued * match).sum(axis=1)
+        slip = self.model.slip
+        self._keep((1 - slip) * explained + slip / max(1, len(self.space.things)))
+        joint = self.pursued * match
+        total = explained[:, None]
+        self.pursued = np.where(total > 0, joint / np.where(total > 0, total, 1.0), self.pursued)
+
+    def _keep(self, likelihood: Floats) -> None:
+        weights = self.weights * likelihood
+        total = weights.sum()
+        if total > 0:
+            self.weights = weights / total
+
+    def _matching(self, step: Step) -> Floats | None:
+        """(G, T) whether an action is one towards a thing, under a goal; None of an action that tells nothing."""
+        nodes = [self._home.index[ref.node] for ref in step.objects if ref.node in self._home.index]
+        known, name = self._known, step.action
+        if not nodes or known.state_of(name) == "CLOSED":
+            return None
+        if name in known.group("goes"):
+            return self._towards(nodes[0], rooms=True)
+        if known.state_of(name) == "OPEN":
+            return self._towards(nodes[0], rooms=False)
+        if name in _taking(known):
+            taken = np.array([thing == nodes[0] for thing in self.space.things], np.float64)
+            return np.broadcast_to(taken, self.pursued.shape)
+        if name in known.group("puts") and len(nodes) > 1 and nodes[0] in self._number:
+            put = np.array([thing == nodes[0] for thing in self.space.things], np.float64)
+            return self._wanted_at(nodes[1]) * put
+        return None
+
+    def _towards(self, node: int, rooms: bool) -> Floats:
+        """Walks and openings: towards a thing or its place, and with a thing in hand to where it is wanted."""
+        of_room = rooms and bool(self._home.rooms >> node & 1)
+        fetched = np.array(
+            [
+                node in (thing, place) or (of_room and bool(self._home.inside[place] >> node & 1))
+                for thing, (_, place) in zip(self.space.things, self._places, strict=True)
+            ],
+            np.float64,
+        )
+        carried = self._wanted_at(node) if self._held.any() else np.zeros((1, 1))
+        found: Floats = np.where(self._held, carried, fetched)
+        return found
+
+    def _wanted_at(self, node: int) -> Floats:
+        """(G, T) whether a goal lacks a thing on or in some furniture."""
+        here = (self.space.targets == node).astype(np.float64)
+        lacking = (self.missing > 0) * here
+        found: Floats = (lacking @ self.space.fits.astype(np.float64) > 0).astype(np.float64)
+        return found
+
+    @property
+    def expected(self) -> Floats:
+        """(P,) the probability that each predicate is still wanted at least once more."""
+        return self.weights @ (self.missing > 0)
+
+    def probability(self, number: int) -> float:
+        """The probability of a goal by its number."""
+        return float(self.weights[number])
+
+    def likeliest(self, number: int) -> Numbers:
+        """The numbers of the likeliest goals, the likeliest first."""
+        return np.argsort(-self.weights, kind="stable")[:number]
+
+
+@lru_cache(maxsize=8)
+def _taking(knowledge: Knowledge) -> frozenset[str]:
+    """The actions by which one gets something into a hand."""
+    return frozenset(
+        action.name
+        for action in knowledge.actions.values()
+        for effect in action.effects
+        if effect.literal.name in HANDS and not effect.literal.negated
+    )

@@ -1,0 +1,295 @@
+"""Helpers that are not told the goal: the posterior, NOPA's values, handing over, bringing back."""
+
+import math
+
+import numpy as np
+import pytest
+from small_tasks import ALLOWED, start, target, wanted
+
+from hearth.agents.empowerment import Empowerment
+from hearth.agents.expected_time import ExpectedTime
+from hearth.agents.goal_space import Edge, GoalSpace
+from hearth.agents.human_like import HumanLike
+from hearth.agents.nopa import Nopa, Settings
+from hearth.agents.online_registry import ONLINE
+from hearth.agents.posterior import FAR, ActionModel, Posterior
+from hearth.agents.prospects import Planner
+from hearth.challenges.play import Player
+from hearth.challenges.play import play as played_by
+from hearth.homes.library import load_graph
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import HOLDS, Literal
+from hearth.simulation.actions.legal import legal
+from hearth.simulation.env import Env
+from hearth.simulation.observation.views import LastAction, pose
+from hearth.simulation.world.bits import indices
+from hearth.simulation.world.home import Home
+
+COUNTS = {"plate": 3, "fork": 3, "apple": 3}
+
+
+@pytest.fixture(scope="module")
+def home(knowledge):
+    return Home.from_graph(load_graph("maple", knowledge), "maple", knowledge)
+
+
+@pytest.fixture
+def world(home):
+    return start(home, COUNTS, seed=3)
+
+
+class Nobody:
+    """Stands still."""
+
+    def reset(self, observation, goal, seed):
+        pass
+
+    def act(self, observation, legal):
+        return None
+
+
+def play(world, goal, agents, seed=0, limit=250):
+    """An episode in which everybody sees everything, and only the first is told the goal."""
+    players = [Player(agents[0], goal), Player(agents[1] or Nobody(), None)]
+    return played_by(world, goal, players, seed, actions=ALLOWED, partial=False, limit=limit)
+
+
+def goals_of(world):
+    """A toy grammar: what may be wanted, with its probability."""
+    return {
+        wanted(world, "ON", "desk", plate=2): 0.3,
+        wanted(world, "ON", "coffee_table", plate=1, fork=1): 0.3,
+        wanted(world, "INSIDE", "fridge", apple=2): 0.2,
+        wanted(world, "ON", "coffee_table", apple=1, fork=2): 0.2,
+    }
+
+
+def watched(world, goal, seed=0):
+    """Each world of an episode of one agent, with what it has just tried."""
+    played = play(world, goal, [HumanLike(), None], seed)
+    assert played.success
+    last = None
+    for tick in played.env.ticks:
+        yield tick.before, pose(tick.before, 0, last)
+        step = tick.instructions.get(0)
+        last = LastAction(step, tick.failures.get(0)) if step else None
+
+
+class Plain:
+    """The posterior, goal by goal and thing by thing."""
+
+    def __init__(self, goals, home, model):
+        self.goals, self.home, self.model = list(goals), home, model
+        self.weights = dict(goals)
+        self.pursued, self.last, self.places = {}, None, None
+
+    def observe(self, world, other, costs, space):
+        step = other.last and (other.last.instruction, other.last.failure)
+        if step and self.places and step != self.last:
+            self.weigh(step[0])
+        self.last = step
+        places = space.places(world)
+        if places == self.places:
+            return
+        self.places, self.last = places, None
+        me = self.home.index[other.node]
+        rows = list(dict.fromkeys(literal for goal in self.goals for literal, _ in goal))
+        for goal in self.goals:
+            lacking = self.lacking(goal, places)
+            if not lacking:
+                self.weights[goal] = 0.0
+            found = {}
+            for number, thing in enumerate(space.things):
+                for literal in lacking:
+                    row = rows.index(literal)
+                    if self.counts(literal, thing, None) and not self.counts(literal, thing, places[number]):
+                        ticks = costs[row, number]
+                        nearest = costs[row].min()
+                        if ticks < FAR:
+                            worth = math.exp(-self.model.rationality * (ticks - nearest))
+                            found[thing] = found.get(thing, 0.0) + worth
+            held = {t: v for t, v in found.items() if places[space.things.index(t)] == (HOLDS, me)}
+            found = held or found
+            total = sum(found.values())
+            self.pursued[goal] = {t: v / total for t, v in found.items()} if total else {}
+        self.normalise()
+        self.me, self.things = me, space.things
+
+    def counts(self, literal, thing, place):
+        fits = bool(self.home.instances(literal.subject) >> thing & 1)
+        return fits and (place is None or place == (literal.name, self.home.index[literal.target]))
+
+    def lacking(self, goal, places):
+        return [
+            literal for literal, number in goal
+            if sum(self.counts(literal, t, p) for t, p in zip(self.all, places, strict=True)) < number
+        ]  # fmt: skip
+
+    def weigh(self, step):
+        known, nodes = self.home.knowledge, [self.home.index[ref.node] for ref in step.objects]
+        name = step.action
+        if not nodes or known.state_of(name) == "CLOSED":
+            return
+        before = dict(zip(self.all, self.places, strict=True))
+        for goal in self.goals:
+            pursued, match = self.pursued[goal], {}
+            for thing in pursued:
+                held = before[thing] == (HOLDS, self.me)
+                ends = {
+                    self.home.index[literal.target]
+                    for literal in self.lacking(goal, self.places)
+                    if self.counts(literal, thing, None)
+                }
+                if name == "Grab":
+                    match[thing] = thing == nodes[0]
+                elif name in known.group("puts"):
+                    match[thing] = thing == nodes[0] and nodes[1] in ends
+                elif held:
+                    match[thing] = nodes[0] in ends
+                else:
+                    match[thing] = nodes[0] in (thing, before[thing][1])
+            explained = sum(pursued[t] * match[t] for t in pursued)
+            self.weights[goal] *= (1 - self.model.slip) * explained + self.model.slip / len(self.all)
+            if explained > 0:
+                self.pursued[goal] = {t: pursued[t] * match[t] / explained for t in pursued}
+        self.normalise()
+
+    def normalise(self):
+        total = sum(self.weights.values())
+        self.weights = {goal: weight / total for goal, weight in self.weights.items()}
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_the_posterior_is_that_of_a_plain_count_over_all_goals(world, number):
+    goals = goals_of(world)
+    space, model = GoalSpace.of(goals, world.home), ActionModel(0.25, 0.03)
+    fast, plain = Posterior(space, world.home, 1.0, model), Plain(goals, world.home, model)
+    plain.all = space.things
+    probable = []
+    for now, other in watched(world, list(goals)[number]):
+        fast.observe(now, other)
+        plain.observe(now, other, fast.costs(now, other), space)
+        assert np.allclose(fast.weights, list(plain.weights.values()), atol=1e-9)
+        probable.append(fast.probability(number))
+    assert fast.weights.sum() == pytest.approx(1)
+    assert probable[-1] > 0.9 > 0.5 > probable[0]
+
+
+def test_goals_count_what_lies_where_they_want_it(world):
+    goals = goals_of(world)
+    space = GoalSpace.of(goals, world.home)
+    assert space.counts.sum(axis=1).tolist() == [2, 2, 2, 3]
+    assert len(space.things) == sum(COUNTS.values())
+    places = space.places(world)
+    plate = next(n for n, thing in enumerate(space.things) if world.home.classes[thing] == "plate")
+    places[plate] = ("ON", world.home.index[target(world, "desk")])
+    assert (space.counts.sum() - space.missing(space.counted(places)).sum()) == 1
+    places[plate] = ("INSIDE", world.home.index[target(world, "desk")])
+    assert space.missing(space.counted(places)).sum() == space.counts.sum()
+
+
+def test_the_value_of_an_edge_is_equation_7_1(world, monkeypatch):
+    """w_r p max(L_M - L_H, 0) - w_c L_H - w_m change, with p .5, L_M 20, L_H 6: .5 * 14 - .5 * 6 - 2 = 2."""
+    helper = Nopa(lambda home: goals_of(world), Settings(reward=1.0, cost=0.5, moves=2.0))
+    monkeypatch.setattr(helper, "_own", lambda view, edge: 6.0)
+    edge = Edge("ON", 1, 2)
+    assert helper._value(None, edge, 0.5, 20.0, False) == pytest.approx(2.0)
+    assert helper._value(None, edge, 0.5, 20.0, True) == pytest.approx(4.0)
+    assert helper._value(None, edge, 0.5, 4.0, True) == pytest.approx(-3.0)
+
+
+def test_a_plan_fetches_the_nearest_and_brings_it(world):
+    goals = goals_of(world)
+    space = GoalSpace.of(goals, world.home)
+    other = pose(world, 0)
+    posterior = Posterior(space, world.home, 1.0)
+    posterior.observe(world, other)
+    planner = Planner(space, world, other, posterior.distances)
+    found = planner.prospect(0, 200.0)
+    brought = [edge for edge in found.edges if edge.relation == "ON"]
+    assert len(brought) == 2 and not found.later
+    assert all(found.edges[edge] > found.edges[Edge(HOLDS, edge.thing, world.agents[0].index)] for edge in brought)
+    near = planner.prospect(0, 1.0)
+    assert not near.edges and {edge.target for edge in near.later} == {brought[0].target}
+
+
+@pytest.mark.parametrize("make", [ExpectedTime, Nopa])
+def test_who_knows_the_goal_for_certain_moves_nothing_else_and_is_faster(world, make):
+    goal = list(goals_of(world))[3]
+    alone = play(world, goal, [HumanLike(), None])
+    both = play(world, goal, [HumanLike(), make(lambda home: {goal: 1.0})])
+    assert both.success and both.ticks < alone.ticks
+    names = {literal.subject for literal, _ in goal}
+    taken = [
+        tick.instructions[1].objects[0].name
+        for tick in both.env.ticks
+        if 1 in tick.instructions and tick.instructions[1].action == "Grab"
+    ]
+    assert taken and set(taken) <= names
+
+
+@pytest.mark.parametrize("name", sorted(ONLINE))
+def test_no_helper_keeps_the_goal_from_being_reached(world, name):
+    goals = goals_of(world)
+    for number, goal in enumerate(goals):
+        played = play(world, goal, [HumanLike(), ONLINE[name].make(lambda home: goals)], number)
+        assert played.success, goal
+
+
+@pytest.mark.parametrize("name", sorted(ONLINE))
+def test_the_seed_decides_everything(world, name):
+    goals = goals_of(world)
+    goal = next(iter(goals))
+
+    def choices():
+        helper = ONLINE[name].make(lambda home: goals)
+        return [tick.instructions for tick in play(world, goal, [HumanLike(), helper], 5, limit=15).env.ticks]
+
+    assert choices() == choices()
+
+
+def holding(world, name):
+    """An environment in which the second character holds something."""
+    goal = Goal.of(Literal(HOLDS, ("agent:1", name)))
+    players = [Player(Nobody(), None), Player(HumanLike(), goal)]
+    env = played_by(world, goal, players, 0, actions=ALLOWED, partial=False).env
+    (thing,) = indices(env.world.agents[1].held)
+    return env, thing
+
+
+def decided(helper, env):
+    helper.reset(env.observe(1), None, 0)
+    helper.act(env.observe(1), legal(env.world, 1, env.rules))
+    return helper.subgoal
+
+
+def test_what_is_wanted_nobody_knows_where_is_handed_over(world):
+    """Figure 7-5a: both goals want an apple, in places that are equally probable, and the one who is helped is near."""
+    env, apple = holding(world, "apple")
+    goals = {
+        wanted(world, "INSIDE", "fridge", apple=1): 0.5,
+        wanted(world, "ON", "coffee_table", apple=1): 0.5,
+    }
+    assert decided(ExpectedTime(lambda home: goals), env) == Edge(HOLDS, apple, env.world.agents[0].index)
+
+
+def test_what_is_not_wanted_is_brought_back(home):
+    """Figure 7-5b: what it has taken is of no use for any goal."""
+    env, apple = holding(start(home, {"apple": 2}), "apple")
+    goals = {wanted(env.world, "ON", "desk", plate=2): 1.0, wanted(env.world, "ON", "desk", apple=1): 0.0}
+    helper = ExpectedTime(lambda home: goals)
+    helper.reset(env.observe(1), None, 0)
+    desk = env.world.home.index[target(env.world, "desk")]
+    helper.first_places[apple] = helper.first_places[apple]._replace(relation="ON", node=desk)
+    helper.act(env.observe(1), legal(env.world, 1, env.rules))
+    assert helper.subgoal == Edge("ON", apple, desk)
+
+
+def test_empowerment_wants_what_most_goals_want(world):
+    same = wanted(world, "ON", "desk", fork=1)
+    goals = {same & wanted(world, "ON", "desk", plate=1): 0.5, same & wanted(world, "INSIDE", "fridge", apple=1): 0.5}
+    helper = Empowerment(lambda home: goals, particles=40, horizon=500.0)
+    env = Env(partial=False)
+    env.restore(world)
+    found = decided(helper, env)
+    assert found is not None and world.home.classes[found.thing] == "fork"
