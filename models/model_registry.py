@@ -50,6 +50,16 @@ MODELS: dict[str, Entry] = {
         "ours",
         learns=False,
     ),
+    **{
+        name: Entry("sketches.graph_model:GraphModel", "sketch", line, "thesis 5.4.2, 5.6.2", settings)
+        for name, line, settings in (
+            ("unaries", "Nodes without their relations.", {"change": "none", "rounds": 0}),
+            ("graph", "A graph network; what is done changes nothing in it.", {"change": "none"}),
+            ("fcactgraph", "A layer changes the nodes that a step is about.", {"change": "layer"}),
+            ("gruactgraph", "A recurrent cell changes the nodes that a step is about.", {"change": "recurrent"}),
+            ("resactgraph", "Residuals change the nodes that a step is about.", {"change": "residual"}),
+        )
+    },
     "chooser": Entry(
         "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
