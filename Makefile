@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all full mini frames setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
+.PHONY: all models full mini frames setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -94,6 +94,10 @@ TORCH := 2.13.0
 	@{ $(PY) -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 'safetensors>=0.5' 2>/dev/null \
 	   || $(PY) -m pip install -qq --no-compile 'torch>=2.9' 'safetensors>=0.5'; } \
 	  && touch $@ || echo "torch can't be installed: the tests of models are skipped" >&2
+
+models: .venv/.models $(call manifest,publish)  ## train the models of texts that come with Hearth, in models/trained
+	@$(HEARTH) model train retrieve-edit $(OUT) --seed $(SEED) --out models/trained/retrieve-edit
+	@$(HEARTH) model train mle-composed $(OUT) --seed $(SEED) --out models/trained/mle-composed --epochs 15 --rate 0.003
 
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"

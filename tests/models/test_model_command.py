@@ -92,6 +92,15 @@ def test_unknown_names(words, message):
     assert result.exit_code in (1, 2) and message in result.output and "Traceback" not in result.output
 
 
+@pytest.mark.parametrize("name", ["mle-composed", "retrieve-edit"])
+def test_models_that_come_with_hearth_write_programs_at_once(name):
+    assert name in [row["name"] for row in json.loads(call("list", "--json").stdout) if row["trained"]]
+    result = call("show", name, "Turn on the TV and sit down", "--home", "maple", "--beam", "2", "--json")
+    assert result.exit_code == 0, result.output
+    program = " ".join(json.loads(result.stdout)["program"])
+    assert "[SwitchOn] <television>" in program and "[Sit]" in program
+
+
 def test_unknown_settings(made, tmp_path):
     result = call("train", "nearest", made.out, "--out", tmp_path, "--set", "size=4")
     assert result.exit_code == 1 and "singular=0" in result.output
