@@ -154,7 +154,7 @@ class HumanLike:
         found = 0
         for wanted in self.aims.wanted:
             if wanted.part in missing:
-                found |= wanted.counted & ~missing[wanted.part][1]
+                found |= wanted.counted & ~missing[wanted.part][1] & ~self.aims.settled
             elif wanted.last == HELD:
                 found |= mask_of(list(indices(held & wanted.counted))[: wanted.count])
         return found & self.aims.things

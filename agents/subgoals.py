@@ -70,6 +70,7 @@ class Aims:
     Attributes:
         wanted: its literals, those about other characters left out.
         things: the movable things that it is about.
+        settled: those that a part needs where they are, and no other part may take.
     """
 
     def __init__(self, goal: Goal, home: Home, me: int, *, gives: bool = False) -> None:
@@ -83,6 +84,7 @@ class Aims:
         """
         self._home, self._me, self._gives = home, me, gives
         self._handed = 0
+        self.settled = 0
         every = [self._wanted(number, literal, count) for number, (literal, count) in enumerate(goal)]
         self.wanted = tuple(each for each in every if self._mine(each))
         self.things = 0
@@ -134,8 +136,11 @@ class Aims:
     def missing(self, belief: Belief, view: View) -> Missing:
         """The parts of the goal that are not reached by belief."""
         found = {}
+        self.settled = 0
         for wanted in self.wanted:
             met = self.met(wanted, belief, view)
+            if not wanted.literal.negated:
+                self.settled |= mask_of(list(indices(met))[: wanted.count])
             if (number := wanted.count - met.bit_count()) > 0:
                 found[wanted.part] = number, met
         return found
@@ -156,7 +161,7 @@ class Aims:
         return []
 
     def _open(self, wanted: Wanted, met: int, belief: Belief) -> list[Subgoal]:
-        things = wanted.counted & ~met
+        things = wanted.counted & ~met & ~self.settled
         held = {t for t in indices(things) if t in belief.where and belief.where[t].relation == HOLDS}
         free = [t for t in indices(things) if t not in held or belief.where[t].node == self._me]
         name = wanted.literal.name

@@ -19,6 +19,8 @@ from hearth.simulation.world.edit import edit
 from hearth.simulation.world.states import OPEN
 from hearth.simulation.world.world import World
 
+PUTS = ("PutBack", "PutIn")
+
 FAST = Habits(search=Search(simulations=20))
 
 
@@ -172,3 +174,12 @@ def test_with_full_hands_it_keeps_what_it_is_to_hold(kitchen):
     full = kitchen.with_agent(0, kitchen.agents[0]._replace(right=1 << book, left=1 << apple))
     goal = Goal.of(Literal.of("HOLDS", "agent:0", "book"), Literal.of("ON", "agent:0", target(kitchen, "sofa")))
     assert play(full, goal, [HumanLike(), None], limit=60).progress.satisfied
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_one_part_of_a_goal_needs_is_not_taken_for_another(kitchen, seed):
+    goal = wanted(kitchen, "ON", "dining_table", plate=1, fork=1) & wanted(kitchen, "INSIDE", "fridge", plate=2, fork=1)
+    played = play(kitchen, goal, [HumanLike(), None], seed)
+    assert played.progress.satisfied
+    put = [t.instructions[0].objects[0].node for t in played.ticks if t.instructions[0].action in PUTS]
+    assert len(put) == len(set(put))
