@@ -152,7 +152,7 @@ class TrainedChooser:
         worlds = [_world(request) for request in requests]
         sketches = self.bound([request.sketch for request in requests], worlds)
         starts = [Start(world, sketch) for world, sketch in zip(worlds, sketches, strict=True)]
-        search = Search(beam=beam, least=0, free_moves=12)
+        search = Search(beam=beam, least=0)
         programs = decode(self.scorer(), starts, search)
         return [_named(program, sketch) for program, sketch in zip(programs, sketches, strict=True)]
 
