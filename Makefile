@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models full mini frames setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
+.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -51,6 +51,9 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as 
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/full/synthetic.jsonl
 	@$(FULL) --strength mild --out $(OUT)/full
 	@$(FULL) --strength thesis --out $(OUT)/full-thesis
+
+challenges: $(READY)  ## all tasks and demonstrations of Watch-And-Help, in data_out/challenges/wah
+	@$(HEARTH) challenge build wah --out $(OUT)/challenges/wah --workers $(JOBS)
 
 mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
 frames: $(READY)  ## a dataset of our corpus with many pictures and some films, in data_out/frames
@@ -149,7 +152,7 @@ wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
 
 clean:  ## remove the output; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/challenges $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## also remove .venv

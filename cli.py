@@ -78,6 +78,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "replay": Entry("replay:replay", "Run a release's programs, or episodes, again, and compare with the stored."),
         "play": Entry("play:play", "Play an episode in a home: you, programs in any language, or language models."),
     },
+    "Help somebody": {
+        "challenge": Entry("challenge:app", "Watch-And-Help: tasks, runs of agents, scores that can be verified."),
+    },
     "Make pictures": {
         "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),
         "render-visible": Entry("render:visible", "Count the steps whose objects are visible, over many programs."),

@@ -28,7 +28,7 @@ class Split:
         tasks: how many.
         sets: how many goal sets a goal is made of.
         homes: where the agents are.
-        goals: `seen`, `held_out` or `all` (see `splits.goals_of`).
+        goals: `seen`, `held_out` or `all` (see `published_tasks.tasks`).
     """
 
     tasks: int

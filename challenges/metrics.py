@@ -10,8 +10,6 @@ from typing import Any
 
 from hearth.challenges.definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
-from hearth.schemas.goals import Goal
-from hearth.schemas.literals import Literal, Name
 
 PER_TICK = 0.004
 """What each tick costs of the reward."""
@@ -155,33 +153,3 @@ def paired(one: Mapping[str, float], other: Mapping[str, float]) -> Paired:
         return Paired(None, None, len(tasks) - 1, None)
     found = stats.ttest_rel([one[task] for task in tasks], [other[task] for task in tasks])
     return Paired(float(found.statistic), float(found.pvalue), len(tasks) - 1, mean(differences).value / deviation)
-
-
-@dataclass(frozen=True, slots=True)
-class Recognition:
-    """How well a goal was inferred: of its predicates with their counts.
-
-    Attributes:
-        precision: share of what was inferred that is wanted; 1 of nothing.
-        recall: share of what is wanted that was inferred.
-        exact: whether nothing is missing and nothing too much.
-    """
-
-    precision: float
-    recall: float
-    exact: bool
-
-
-def recognition(inferred: Goal, wanted: Goal) -> Recognition:
-    """Compare two goals of one grammar."""
-    guess, truth = dict(inferred), dict(wanted)
-    common = sum(min(number, _count(guess, literal)) for literal, number in truth.items())
-    return Recognition(
-        common / sum(guess.values()) if guess else 1.0,
-        common / sum(truth.values()) if truth else 1.0,
-        guess == truth,
-    )
-
-
-def _count(goal: Mapping[Literal[Name], int], literal: Literal[Name]) -> int:
-    return goal.get(literal, 0)

@@ -10,7 +10,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from hearth.challenges import splits
+from hearth.challenges import published_tasks
 from hearth.challenges.definition import Challenge, challenge
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
@@ -33,7 +33,7 @@ class Suite:
     Attributes:
         challenge: its name.
         split: which tasks these are.
-        seed: they were drawn with; `splits.PUBLISHED` for the published ones.
+        seed: they were drawn with; `published_tasks.PUBLISHED` for the published ones.
         tasks: in their order.
     """
 
@@ -54,14 +54,14 @@ class Suite:
     def published(self) -> bool:
         """Whether these are the first tasks of the published split."""
         try:
-            return self.tasks == splits.tasks(self.challenge, self.split, limit=len(self.tasks))
+            return self.tasks == published_tasks.tasks(self.challenge, self.split, limit=len(self.tasks))
         except HearthError:
             return False
 
 
-def suite(name: str, split: str, seed: int = splits.PUBLISHED, limit: int | None = None) -> Suite:
-    """The tasks of a split (see `splits.tasks`)."""
-    return Suite(name, split, seed, splits.tasks(name, split, seed, limit))
+def suite(name: str, split: str, seed: int = published_tasks.PUBLISHED, limit: int | None = None) -> Suite:
+    """The tasks of a split (see `published_tasks.tasks`)."""
+    return Suite(name, split, seed, published_tasks.tasks(name, split, seed, limit))
 
 
 def task_data(task: Task) -> dict[str, Any]:
@@ -82,7 +82,7 @@ def suite_data(found: Suite) -> dict[str, Any]:
         "format": FORMAT,
         "challenge": found.challenge,
         "split": found.split,
-        "seed": None if found.seed == splits.PUBLISHED else found.seed,
+        "seed": None if found.seed == published_tasks.PUBLISHED else found.seed,
         "digest": found.digest,
         "tasks": [task_data(task) for task in found.tasks],
     }
@@ -121,7 +121,7 @@ def read_suite(data: Any, file: str) -> Suite:
     if (
         not isinstance(split, str)
         or not _ID.fullmatch(split)
-        or not _is_seed(splits.PUBLISHED if seed is None else seed)
+        or not _is_seed(published_tasks.PUBLISHED if seed is None else seed)
     ):
         raise HearthError.of(Code.BAD_JSON, "`split` is not a name, or `seed` not a number", file=file)
     if not isinstance(given, list) or not 0 < len(given) <= MOST_TASKS:
@@ -129,7 +129,7 @@ def read_suite(data: Any, file: str) -> Suite:
     tasks = tuple(_task(which, split, each, f"{file}: task {number}") for number, each in enumerate(given, 1))
     if len({task.id for task in tasks}) < len(tasks):
         raise HearthError.of(Code.DUPLICATE, "two tasks have one id", file=file)
-    found = Suite(which.name, split, splits.PUBLISHED if seed is None else seed, tasks)
+    found = Suite(which.name, split, published_tasks.PUBLISHED if seed is None else seed, tasks)
     if data.get("digest") != found.digest:
         message = f"the tasks have the digest {found.digest}, not {str(data.get('digest'))[:40]}"
         raise HearthError.of(
@@ -139,7 +139,7 @@ def read_suite(data: Any, file: str) -> Suite:
 
 
 def _is_seed(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and splits.PUBLISHED <= value < 1 << 63
+    return isinstance(value, int) and not isinstance(value, bool) and published_tasks.PUBLISHED <= value < 1 << 63
 
 
 def _task(which: Challenge, split: str, given: Any, place: str) -> Task:
@@ -154,7 +154,7 @@ def _task(which: Challenge, split: str, given: Any, place: str) -> Task:
         "home": places[0] not in homes,
         "demonstration_home": places[1] not in homes,
         "sets": not isinstance(sets, list) or not all(isinstance(s, str) and s in which.grammar.sets for s in sets),
-        "seed": not _is_seed(seed) or seed == splits.PUBLISHED,
+        "seed": not _is_seed(seed) or seed == published_tasks.PUBLISHED,
         "goal": not isinstance(goal, Mapping),
     }
     if wrong := [name for name, fault in faults.items() if fault]:

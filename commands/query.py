@@ -15,7 +15,8 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
     perturbations, repairs, splits, sketches, frames, videos, vocabulary, rejects, ledger. Macros:
     program_text(program_id), graph_nodes(execution_id, tick), graph_edges(execution_id, tick),
     final_state(execution_id). View start_relations: edges per relation at the start of all executions. The dataset is
-    opened read-only.
+    opened read-only. What `challenge build` writes has tasks, demonstrations, episodes, trajectories, and the views
+    goal_predicates and demonstration_steps.
 
     \b
     Examples:
@@ -24,10 +25,13 @@ def query(dataset: Path, sql: str, rows: int = 100, as_json: bool = False) -> No
     """
     import sys
 
+    from hearth.challenges.challenge_tables import ChallengeData
     from hearth.datasets.dataset import Dataset
 
     text = sys.stdin.read() if sql == "-" else sql
-    columns, found = Dataset.open(dataset).rows(text, rows + 1 if rows and not as_json else None)
+    challenge = ChallengeData.found(dataset)
+    opened = Dataset.open(dataset) if challenge is None else challenge
+    columns, found = opened.rows(text, rows + 1 if rows and not as_json else None)
     if as_json:
         output.emit([dict(zip(columns, map(_json, row), strict=True)) for row in found])
         return

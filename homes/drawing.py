@@ -1,6 +1,6 @@
 """A home's floor plan as a drawing: SVG written directly, PNG from the same shapes. North is up."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -10,6 +10,7 @@ from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.shell import Thing, before
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph import Spot
 from hearth.schemas.libraries import library
 
 SCALE = 90
@@ -44,6 +45,21 @@ class Shape:
     edge: str = ""
     text: str = ""
     size: float = 0.12
+
+
+@dataclass(frozen=True, slots=True)
+class Trail:
+    """A way over the floor, with moments on it.
+
+    Attributes:
+        points: where it leads, metres.
+        colour: of the line and the moments.
+        moments: points that are marked by a circle with a black border.
+    """
+
+    points: tuple[Spot, ...]
+    colour: str
+    moments: tuple[Spot, ...] = ()
 
 
 def shapes(layout: Layout) -> Iterator[Shape]:
@@ -92,8 +108,8 @@ def bounds(layout: Layout) -> Rect:
     return Rect.over(room.rect for room in layout.plan.rooms).inset(-BORDER)
 
 
-def svg(layout: Layout) -> str:
-    """The floor plan as an SVG document."""
+def svg(layout: Layout, trails: Sequence[Trail] = ()) -> str:
+    """The floor plan as an SVG document, with ways over it."""
     area = bounds(layout)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{area.width * SCALE:.0f}" height="{area.depth * SCALE:.0f}" '
@@ -101,6 +117,7 @@ def svg(layout: Layout) -> str:
     )
     parts = [head, f"<title>{escape(layout.plan.name)}</title>", '<rect width="100%" height="100%" fill="#ffffff"/>']
     parts.extend(_svg_shape(shape, area) for shape in shapes(layout))
+    parts.extend(part for trail in trails for part in _svg_trail(trail, area))
     return "\n".join([*parts, "</svg>", ""])
 
 
@@ -119,22 +136,34 @@ def _svg_shape(shape: Shape, area: Rect) -> str:
     return f'<rect x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{shape.fill}"{edge}/>'
 
 
-def write(layout: Layout, path: Path | str) -> None:
-    """Write the floor plan as SVG or PNG, by the file's ending.
+def _svg_trail(trail: Trail, area: Rect) -> Iterator[str]:
+    def at(point: Spot) -> str:
+        return f"{(point[0] - area.x0) * SCALE:.1f},{(area.z1 - point[1]) * SCALE:.1f}"
+
+    points = " ".join(map(at, trail.points))
+    style = f'fill="none" stroke="{trail.colour}" stroke-width="4" stroke-opacity="0.75" stroke-linejoin="round"'
+    yield f'<polyline points="{points}" {style}/>'
+    for point in trail.moments:
+        x, y = at(point).split(",")
+        yield f'<circle cx="{x}" cy="{y}" r="8" fill="{trail.colour}" stroke="#000000" stroke-width="2"/>'
+
+
+def write(layout: Layout, path: Path | str, trails: Sequence[Trail] = ()) -> None:
+    """Write the floor plan as SVG or PNG, by the file's ending, with ways over it.
 
     Raises:
         HearthError: UNSUPPORTED_FILE for another ending.
     """
     target = Path(path)
     if target.suffix == ".svg":
-        target.write_text(svg(layout), encoding="utf-8")
+        target.write_text(svg(layout, trails), encoding="utf-8")
     elif target.suffix == ".png":
-        _write_png(layout, target)
+        _write_png(layout, target, trails)
     else:
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a floor plan is written as .svg or .png", file=str(path))
 
 
-def _write_png(layout: Layout, path: Path) -> None:
+def _write_png(layout: Layout, path: Path, trails: Sequence[Trail]) -> None:
     canvas = library("matplotlib.backends.backend_agg").FigureCanvasAgg
     rectangle = library("matplotlib.patches").Rectangle
     area = bounds(layout)
@@ -151,4 +180,9 @@ def _write_png(layout: Layout, path: Path) -> None:
         else:
             axes.add_patch(rectangle((rect.x0, rect.z0), rect.width, rect.depth, facecolor=shape.fill,
                                      edgecolor=shape.edge or "none", linewidth=0.5, zorder=number))  # fmt: skip
+    for trail in trails:
+        xs, zs = zip(*trail.points, strict=True)
+        axes.plot(xs, zs, color=trail.colour, linewidth=3, alpha=0.75, zorder=10_000)
+        for x, z in trail.moments:
+            axes.plot(x, z, "o", color=trail.colour, markersize=9, markeredgecolor="black", zorder=10_001)
     canvas(figure).print_png(str(path), metadata={"Software": None})

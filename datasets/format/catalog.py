@@ -155,6 +155,11 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> An
             here = f"no_{table}"
         text = text.replace(_reading(table), here)
     connection.execute(text)
+    return limited(connection, root)
+
+
+def limited(connection: Any, root: str) -> Any:
+    """The connection, which reaches one folder only from now on."""
     connection.execute(f"SET allowed_directories = [{quoted(root)}]")
     for setting in _CLOSED:
         connection.execute(f"SET {setting}")

@@ -7,7 +7,7 @@ from collections import Counter
 
 import pytest
 
-from hearth.challenges import splits
+from hearth.challenges import published_tasks
 from hearth.challenges.definition import challenge
 from hearth.challenges.task_files import read, read_suite, suite, suite_data, write
 from hearth.schemas.diagnostics import HearthError
@@ -28,37 +28,39 @@ def test_the_published_tasks_stay_as_they_are(split):
 
 
 def test_the_numbers_are_the_thesis_s():
-    numbers = [len(splits.tasks("wah", split)) for split in PUBLISHED]
+    numbers = [len(published_tasks.tasks("wah", split)) for split in PUBLISHED]
     assert numbers == [1011, 100, 100, 5303]
 
 
 def test_no_goal_of_testing_is_among_those_of_training_and_demonstrations():
-    seen = {task.goal for split in ("train", "demonstrations") for task in splits.tasks("wah", split)}
+    seen = {task.goal for split in ("train", "demonstrations") for task in published_tasks.tasks("wah", split)}
     for split in ("test-1", "test-2"):
-        for seed in (splits.PUBLISHED, 0, 7):
-            assert seen.isdisjoint({task.goal for task in splits.tasks("wah", split, seed)})
+        for seed in (published_tasks.PUBLISHED, 0, 7):
+            assert seen.isdisjoint({task.goal for task in published_tasks.tasks("wah", split, seed)})
 
 
 def test_homes_are_held_out_and_demonstrations_are_elsewhere():
     for split in PUBLISHED:
-        tasks = splits.tasks("wah", split)
+        tasks = published_tasks.tasks("wah", split)
         assert {task.home for task in tasks} == set(WAH.test if split.startswith("test") else WAH.train)
         assert all(task.home != task.demonstration_home in WAH.train for task in tasks)
     assert len(WAH.test) == 2
 
 
 def test_goal_sets_come_equally_often_and_test_2_has_two_at_once():
-    assert set(Counter(task.sets for task in splits.tasks("wah", "test-1")).values()) == {20}
-    two = splits.tasks("wah", "test-2")
+    assert set(Counter(task.sets for task in published_tasks.tasks("wah", "test-1")).values()) == {20}
+    two = published_tasks.tasks("wah", "test-2")
     assert set(Counter(task.sets for task in two).values()) == {10}
     assert {len(task.sets) for task in two} == {2}
     assert max(WAH.grammar.size(task.goal) for task in two) <= 8
-    assert len({task.goal for task in splits.tasks("wah", "test-1")}) == 100
+    assert len({task.goal for task in published_tasks.tasks("wah", "test-1")}) == 100
 
 
 def test_a_seed_draws_other_tasks_and_a_limit_takes_the_first():
-    assert splits.tasks("wah", "train", limit=9) == splits.tasks("wah", "train")[:9]
-    published, other, again = (splits.tasks("wah", "test-1", seed) for seed in (splits.PUBLISHED, 4, 4))
+    assert published_tasks.tasks("wah", "train", limit=9) == published_tasks.tasks("wah", "train")[:9]
+    published, other, again = (
+        published_tasks.tasks("wah", "test-1", seed) for seed in (published_tasks.PUBLISHED, 4, 4)
+    )
     assert other == again
     assert {task.seed for task in other}.isdisjoint({task.seed for task in published})
     assert {task.id for task in other}.isdisjoint({task.id for task in published})
@@ -66,7 +68,7 @@ def test_a_seed_draws_other_tasks_and_a_limit_takes_the_first():
 
 def test_an_unknown_split_is_refused():
     with pytest.raises(HearthError) as raised:
-        splits.tasks("wah", "test-3")
+        published_tasks.tasks("wah", "test-3")
     assert raised.value.diagnostics[0].code is Code.BAD_ARGUMENT
 
 

@@ -1,0 +1,66 @@
+"""An episode on the floor plan: the agents' ways, and the moments at which they handled something (figure 6-6)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from hearth.challenges.definition import challenge
+from hearth.challenges.episodes import Record, replayed, start_of
+from hearth.challenges.tasks import Task
+from hearth.homes.drawing import Trail
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.simulation.env import Tick
+from hearth.simulation.world.world import World
+
+COLOURS = ("#d1495b", "#2a6fbb")
+"""Of the main agent and of the helper."""
+
+
+def ticks_of(task: Task, record: Record, knowledge: Knowledge) -> tuple[World, list[Tick]]:
+    """The start of an episode and what happened; errors as of `episodes.again`."""
+    start = start_of(task, knowledge, None if record.helped else 1)
+    return start, replayed(challenge(task.challenge), task, record, start)[0]
+
+
+def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
+    """The way of each agent.
+
+    Raises:
+        HearthError: NOT_RENDERED: the agents have no places.
+    """
+    found = []
+    for number, agent in enumerate(start.agents):
+        if agent.pose is None:
+            raise HearthError.of(Code.NOT_RENDERED, f"{start.home.name} has no geometry, and agents no places")
+        points, moments = [agent.pose.point], []
+        for tick in ticks:
+            pose = tick.world.agents[number].pose
+            assert pose is not None
+            if pose.point != points[-1]:
+                points.append(pose.point)
+            if _handles(tick, number):
+                moments.append(pose.point)
+        found.append(Trail(tuple(points), COLOURS[number % len(COLOURS)], tuple(moments)))
+    return found
+
+
+def _handles(tick: Tick, number: int) -> bool:
+    """Whether an agent did something with things other than walking to them."""
+    step = tick.instructions.get(number)
+    if step is None or number in tick.failures or not step.objects:
+        return False
+    return step.action not in tick.world.home.knowledge.group("goes")
+
+
+def narrated(ticks: Sequence[Tick]) -> Iterator[tuple[int, int, str, str]]:
+    """What was done but for walking: tick, agent, instruction in words, and why it failed, if it did."""
+    for number, tick in enumerate(ticks):
+        for agent, step in sorted(tick.instructions.items()):
+            known = tick.world.home.knowledge
+            if step.action in known.group("goes") and agent not in tick.failures:
+                continue
+            names = ", ".join(f"{ref.name} ({ref.node})" for ref in step.objects)
+            failure = tick.failures.get(agent)
+            yield number + 1, agent, f"{step.action} {names}".strip(), str(failure.code) if failure else ""

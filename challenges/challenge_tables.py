@@ -1,0 +1,190 @@
+"""A challenge as a dataset: tasks, demonstrations, episodes and trajectories as Parquet, with SQL views over them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from hearth.challenges import published_tasks, table_rows
+from hearth.challenges.definition import challenge
+from hearth.challenges.demonstrations import Demonstration, demonstrations
+from hearth.challenges.episodes import Known, Record
+from hearth.challenges.result_files import Results
+from hearth.challenges.tasks import Task
+from hearth.datasets.damage import reading
+from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.catalog import SQL, limited, quoted
+from hearth.schemas.tables import comment_of, struct
+from hearth.storage.files import read_json, value_digest, write_bytes
+from hearth.storage.manifest import NAME, describe
+from hearth.storage.names import inside
+from hearth.storage.parallel import Seen, unseen
+from hearth.storage.partitions import write_table
+
+STAGE = "challenge"
+
+TABLES: dict[str, pa.Schema] = {
+    name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
+    for name, row in {
+        "tasks": table_rows.TaskRow,
+        "demonstrations": table_rows.DemonstrationRow,
+        "episodes": table_rows.EpisodeRow,
+        "trajectories": table_rows.TrajectoryRow,
+    }.items()
+}
+"""Published tables by name; each is one file."""
+
+VIEWS = {
+    "demonstration_steps": (
+        "SELECT task_id, s.tick, s.action, s.objects FROM "
+        "(SELECT task_id, unnest(instructions) AS s FROM demonstrations)"
+    ),
+    "goal_predicates": (
+        "SELECT task_id, split, g.predicate, g.count FROM (SELECT task_id, split, unnest(goal) AS g FROM tasks)"
+    ),
+}
+"""Views over the tables, by name."""
+
+
+def publish(
+    folder: Path,
+    name: str,
+    known: Known,
+    results: Sequence[Results] = (),
+    limit: int | None = None,
+    rate: float = 1.0,
+    workers: int = 1,
+    seen: Seen = unseen,
+) -> dict[str, int]:
+    """Write all tasks of a challenge with their demonstrations, and the episodes of some runs.
+
+    Args:
+        folder: gets the tables.
+        name: of the challenge.
+        known: gives the knowledge.
+        results: runs whose episodes are written, too.
+        limit: tasks of each split, at most.
+        rate: of habits in demonstrations; 0 for clean ones.
+        workers: processes.
+        seen: called with the number of demonstrations done.
+
+    Returns:
+        The rows of each table.
+    """
+    parts = (*challenge(name).splits, *([published_tasks.DEMONSTRATIONS] if challenge(name).demonstrations else []))
+    tasks = [task for part in parts for task in published_tasks.tasks(name, part, limit=limit)]
+    shown = demonstrations(tasks, known, rate, workers, seen)
+    rows: dict[str, Iterable[Mapping[str, Any]]] = {
+        "tasks": map(_task, tasks),
+        "demonstrations": (_demonstration(each, rate) for each in shown),
+        "episodes": (_episode(found, each) for found in results for each in found.records),
+        "trajectories": (row for found in results for each in found.records for row in _trajectory(found, each)),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    counts = {}
+    for table, schema in TABLES.items():
+        whole = pa.Table.from_pylist(list(rows[table]), schema=schema)
+        write_table(inside(folder, f"{table}.parquet"), whole)
+        counts[table] = whole.num_rows
+    write_bytes(folder / SQL, _sql("").encode())
+    asked = {"stage": STAGE, "challenge": name, "rate": rate}
+    describe(folder, asked, {}, value_digest(asked), rows=counts).write()
+    return counts
+
+
+def _sql(root: str) -> str:
+    """The views of a folder, whose path is `root`; relative to it where that is empty."""
+    lines = [f"CREATE VIEW {table} AS FROM read_parquet({quoted(f'{root}{table}.parquet')});" for table in TABLES]
+    lines += [f"CREATE VIEW {name} AS {query};" for name, query in VIEWS.items()]
+    for table, schema in TABLES.items():
+        lines.append(f"COMMENT ON VIEW {table} IS {quoted(comment_of(schema))};")
+        lines += [f"COMMENT ON COLUMN {table}.{each.name} IS {quoted(comment_of(each))};" for each in schema]
+    return "\n".join(lines) + "\n"
+
+
+class ChallengeData(Dataset):
+    """A published challenge, opened for queries (see `datasets.dataset.Dataset.rows`)."""
+
+    @classmethod
+    def found(cls, path: Path) -> ChallengeData | None:
+        """The published challenge of a folder; None where there is none."""
+        content = read_json(path / NAME)
+        published = isinstance(content, dict) and content.get("stage") == STAGE
+        return cls(path, content) if published and isinstance(content, dict) else None
+
+    @cached_property
+    def _attached(self) -> Any:
+        import duckdb
+
+        root = f"{self.folder.resolve()}/"
+        with reading(self.folder):
+            connection = duckdb.connect()
+            connection.execute(_sql(root))
+            return limited(connection, root)
+
+    @cached_property
+    def _described(self) -> None:
+        return None
+
+
+def _task(task: Task) -> table_rows.TaskRow:
+    grammar = challenge(task.challenge).grammar
+    return {
+        "task_id": task.id,
+        "challenge": task.challenge,
+        "split": task.split,
+        "home": task.home,
+        "demonstration_home": task.demonstration_home,
+        "sets": list(task.sets),
+        "goal": [{"predicate": text, "count": number} for text, number in grammar.written(task.goal).items()],
+        "predicates": grammar.size(task.goal),
+        "seed": task.seed,
+    }
+
+
+def _demonstration(shown: Demonstration, rate: float) -> table_rows.DemonstrationRow:
+    return {
+        "task_id": shown.task.id,
+        "clean": rate == 0,
+        "ticks": len(shown.actions),
+        "instructions": [_instruction(tick, text) for tick, text in enumerate(shown.actions) if text is not None],
+        "habits": [{"tick": tick, "name": name} for tick, name in shown.habits],
+    }
+
+
+def _instruction(tick: int, text: str) -> table_rows.InstructionRow:
+    action, *objects = text.split(" ")
+    return {"tick": tick, "action": action, "objects": list(map(int, objects))}
+
+
+def episode_id(found: Results, record: Record) -> str:
+    """The name of an episode: task, agents, seed."""
+    lineup = found.header.lineup
+    helper = f"{lineup.helper.rpartition('/')[2]}.{lineup.goal}" if record.helped else "alone"
+    return f"{record.task}/{lineup.main}/{helper}/{record.seed}"
+
+
+def _episode(found: Results, record: Record) -> dict[str, Any]:
+    lineup = found.header.lineup
+    return {
+        "episode_id": episode_id(found, record),
+        "task_id": record.task,
+        "main": lineup.main,
+        "helper": lineup.helper if record.helped else "none",
+        "goal": lineup.goal if record.helped else "none",
+        "seed": record.seed,
+        **record.metrics,
+        "end": record.end["code"] if record.end else "",
+    }
+
+
+def _trajectory(found: Results, record: Record) -> Iterator[dict[str, Any]]:
+    name = episode_id(found, record)
+    for tick, texts in enumerate(record.actions):
+        for agent, text in enumerate(texts):
+            if text is not None:
+                yield {"episode_id": name, "agent": agent, **_instruction(tick, text)}

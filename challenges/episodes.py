@@ -1,0 +1,172 @@
+"""Episodes of tasks: played by agents, or again from a record of what they did."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.failure_analysis import analysed
+from hearth.challenges.lineup import Lineup
+from hearth.challenges.metrics import Outcome, outcome
+from hearth.challenges.play import play
+from hearth.challenges.tasks import Task
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.rng import derive
+from hearth.simulation.env import Env, Tick
+from hearth.simulation.goals import Progress
+from hearth.simulation.world.digest import digest
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+Known = Callable[[], Knowledge]
+"""Gives the knowledge; a function of a module, so that other processes find it."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """An episode to be played.
+
+    Attributes:
+        task: what is to be done.
+        seed: number of the episode of its task.
+        lineup: who takes part.
+        helped: whether the helper does.
+        helper_goal: what the helper is asked to do; None if nothing.
+        known: gives the knowledge.
+    """
+
+    task: Task
+    seed: int
+    lineup: Lineup
+    helped: bool
+    helper_goal: Goal | None
+    known: Known
+
+
+@dataclass(frozen=True)
+class Record:
+    """An episode that was played, as result files have it.
+
+    Attributes:
+        task: id of its task.
+        seed: number of the episode of its task.
+        helped: whether there was a helper.
+        helper_goal: what that was asked to do, in the words of the grammar; None if nothing.
+        actions: of each tick what each agent tried, `Grab 41`; None where it waited.
+        final: digest of the world at the end.
+        metrics: the outcome.
+        end: why an agent could not go on: its number, a code, a message; None where all could.
+    """
+
+    task: str
+    seed: int
+    helped: bool
+    helper_goal: Mapping[str, int] | None
+    actions: tuple[tuple[str | None, ...], ...]
+    final: str
+    metrics: Mapping[str, Any]
+    end: Mapping[str, Any] | None = None
+
+
+def played(job: Job) -> Record:
+    """Play an episode."""
+    which, knowledge = challenge(job.task.challenge), job.known()
+    start = start_of(job.task, knowledge, None if job.helped else 1)
+    goals = _goals(which, job.task, job.helper_goal, start.home, job.helped)
+    players = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped)
+    seed = derive(job.task.seed, "episode", job.seed)
+    allowed = which.allowed(knowledge)
+    done = play(
+        start, goals[0], players, seed, actions=allowed, partial=which.partial, limit=which.ticks, rules=which.rules
+    )
+    found = measured(which, start, done.env.ticks, goals, done.progress)
+    actions = tuple(
+        tuple(map(written, (tick.instructions.get(n) for n in range(len(players))))) for tick in done.env.ticks
+    )
+    asked = None if job.helper_goal is None or not job.helped else which.grammar.written(job.helper_goal)
+    fault = done.fault
+    end = {"agent": fault.agent, "code": str(fault.fault.code), "message": fault.fault.message} if fault else None
+    final = digest(done.env.world)
+    return Record(job.task.id, job.seed, job.helped, asked, actions, final, found.as_json(), end)
+
+
+def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, str]:
+    """What comes of doing again what was done: the outcome and the digest of the last world.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: an action is not one of the challenge's; REPLAY_DIFFERS: something is done after the
+            goal was reached, or after the last tick; every fault of the helper's goal.
+    """
+    which = challenge(task.challenge)
+    start = start_of(task, knowledge, None if record.helped else 1)
+    ticks, goals, progress = replayed(which, task, record, start)
+    return measured(which, start, ticks, goals, progress), digest(ticks[-1].world if ticks else start)
+
+
+def replayed(
+    which: Challenge, task: Task, record: Record, start: World
+) -> tuple[list[Tick], list[Goal | None], list[Progress]]:
+    """The ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
+    home = start.home
+    helper_goal = None if record.helper_goal is None else which.grammar.read(record.helper_goal)
+    goals = _goals(which, task, helper_goal, home, record.helped)
+    allowed = which.allowed(home.knowledge)
+    env = Env(which.rules, which.partial)
+    env.restore(start)
+    progress = [Progress.start(goals[0] or Goal(), start)]
+    for number, texts in enumerate(record.actions):
+        if progress[-1].satisfied or number >= which.ticks or len(texts) != len(start.agents):
+            raise HearthError.of(Code.REPLAY_DIFFERS, f"tick {number + 1} comes after the end, or has other agents")
+        steps = {n: read_instruction(text, n, home, allowed) for n, text in enumerate(texts) if text is not None}
+        done = env.step(steps)
+        tried = [step for n, step in done.instructions.items() if n not in done.failures]
+        progress.append(progress[-1].then(done.before, done.world, tried))
+    if not progress[-1].satisfied and len(env.ticks) < which.ticks and record.end is None:
+        raise HearthError.of(Code.REPLAY_DIFFERS, f"it ends after {len(env.ticks)} ticks without a reason")
+    return env.ticks, goals, progress
+
+
+def measured(
+    which: Challenge, start: World, ticks: Sequence[Tick], goals: Sequence[Goal | None], progress: Sequence[Progress]
+) -> Outcome:
+    """The metrics of an episode."""
+    columns = analysed(which, start, ticks, goals, progress)
+    return outcome(which, progress[-1].satisfied, len(ticks), columns)
+
+
+@lru_cache(maxsize=4)
+def start_of(task: Task, knowledge: Knowledge, agents: int | None) -> World:
+    """A task's start, kept for its next episode."""
+    return task.start(knowledge, agents)
+
+
+def _goals(which: Challenge, task: Task, helper_goal: Goal | None, home: Home, helped: bool) -> list[Any]:
+    goals: list[Goal | None] = [task.goal_in(home)]
+    if helped:
+        goals.append(None if helper_goal is None else which.grammar.in_home(helper_goal, home))
+    return goals
+
+
+def written(step: Step | None) -> str | None:
+    """An instruction as records have it: `Grab 41`."""
+    return None if step is None else " ".join([step.action, *(str(ref.node) for ref in step.objects)])
+
+
+def read_instruction(text: str, agent: int, home: Home, allowed: frozenset[str]) -> Step:
+    """The inverse of how records write instructions.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is not an instruction about nodes of the home.
+    """
+    action, *numbers = text.split(" ")
+    nodes = [int(number) if number.isascii() and number.isdigit() and len(number) < 10 else -1 for number in numbers]
+    if action not in allowed or any(node not in home.index for node in nodes):
+        raise HearthError(Diagnostic(Code.BAD_ARGUMENT, f"`{text[:60]}` is not an instruction of the challenge"))
+    return Step(action, tuple(ObjectRef(home.classes[home.index[node]], 0, node) for node in nodes), agent)

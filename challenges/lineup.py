@@ -1,0 +1,109 @@
+"""Who takes part in episodes: agents by name, or somebody's own, and what the helper is asked to do."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hearth.agents.agent_registry import HELPERS, MAIN
+from hearth.agents.protocol import Agent
+from hearth.challenges.definition import Challenge
+from hearth.challenges.guard import SECONDS, Guarded
+from hearth.challenges.play import Player
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+
+NOBODY = "none"
+"""The helper of who acts alone."""
+
+GOALS = ("true", "inferred", "random", "none")
+"""What a helper may be asked to do: the main agent's goal, what was inferred of it, another task's goal, nothing."""
+
+
+@dataclass(frozen=True)
+class Lineup:
+    """Who takes part.
+
+    Attributes:
+        main: the agent that is helped, by name.
+        helper: who helps, by name; `none`, or `FILE.py:CLASS` for an agent of one's own.
+        goal: what the helper is asked to do; as its row in the registry says where empty.
+        seconds: an agent may think about a tick as long as this.
+    """
+
+    main: str = "human_like"
+    helper: str = NOBODY
+    goal: str = ""
+    seconds: float = SECONDS
+
+    def checked(self) -> Lineup:
+        """The same, with the goal that the helper is asked to reach.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
+        """
+        known = HELPERS.get(self._helper)
+        if self.main not in MAIN:
+            raise _unknown("main agent", self.main, MAIN)
+        if self.goal and self.goal not in GOALS:
+            raise _unknown("goal", self.goal, GOALS)
+        if known is None and self.helper != NOBODY and ":" not in self.helper:
+            raise _unknown("helper", self.helper, (NOBODY, *HELPERS))
+        if ":" in self.helper:
+            load(self.helper)
+        goal = self.goal or (known.goal if known else "none" if self.helper == NOBODY else "true")
+        return Lineup(self.main, self._helper, goal, self.seconds)
+
+    @property
+    def _helper(self) -> str:
+        """The helper that is made for this goal, where there is one: `hp` with the true goal is `hp_true`."""
+        special = f"{self.helper}_{self.goal}"
+        return special if special in HELPERS else self.helper
+
+    def players(
+        self, which: Challenge, goal: Goal, helper_goal: Goal | None, knowledge: Knowledge, helped: bool
+    ) -> list[Player]:
+        """New agents for one episode; without a helper where `helped` is False."""
+        allowed = which.allowed(knowledge)
+        known = HELPERS.get(self.helper)
+        main = MAIN[known.main if helped and known and known.main else self.main]()
+        found = [Player(Guarded(main, 0, allowed, self.seconds), goal, _partial(main))]
+        if helped and self.helper != NOBODY:
+            agent: Agent = known.make(main) if known else load(self.helper)()
+            found.append(Player(Guarded(agent, 1, allowed, self.seconds), helper_goal, _partial(agent)))
+        return found
+
+
+def _partial(agent: Any) -> bool | None:
+    """An oracle of ours sees everything; nobody else's agent does."""
+    ours = type(agent).__module__.startswith("hearth.agents.")
+    return False if ours and agent.__dict__.get("habits") is not None and agent.habits.sees_all else None
+
+
+def _unknown(what: str, name: str, known: Any) -> HearthError:
+    return HearthError.of(Code.BAD_ARGUMENT, f"there is no {what} `{name[:60]}`", suggestion=", ".join(known))
+
+
+def load(place: str) -> Any:
+    """The class of an agent of one's own, as the command line names it: `FILE.py:CLASS`.
+
+    Raises:
+        HearthError: MISSING_FILE; BAD_ARGUMENT: the file has no such class, or does not run.
+    """
+    file, _, name = place.rpartition(":")
+    path = Path(file)
+    if not path.is_file():
+        raise HearthError.of(Code.MISSING_FILE, f"there is no file `{file}`", suggestion="FILE.py:CLASS")
+    spec = importlib.util.spec_from_file_location(f"agent_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"`{file}` is not Python", suggestion="FILE.py:CLASS")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+        return getattr(module, name)
+    except (Exception, SystemExit) as error:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"{place}: {type(error).__name__}: {error}") from error

@@ -1,0 +1,191 @@
+"""Result files: JSON lines. The first is what was run, each other an episode with all that was done in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+from hearth.challenges.episodes import Record
+from hearth.challenges.lineup import NOBODY, Lineup
+from hearth.challenges.metrics import Outcomes, by_task
+from hearth.challenges.task_files import Suite, read_suite, suite_data
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.input_files import read_input
+from hearth.version import VERSION
+
+FORMAT = "hearth-results-1"
+
+MOST_SEEDS = 1_000
+"""Episodes of a task, at most."""
+
+
+@dataclass(frozen=True)
+class Header:
+    """What was run.
+
+    Attributes:
+        suite: the tasks.
+        lineup: who took part; names only.
+        seeds: episodes of each task, numbered from 0.
+        version: of Hearth.
+    """
+
+    suite: Suite
+    lineup: Lineup
+    seeds: int
+    version: str = VERSION
+
+    @property
+    def helped(self) -> tuple[bool, ...]:
+        """The kinds of episodes: without a helper, then with one, if there is one."""
+        return (False,) if self.lineup.helper == NOBODY else (False, True)
+
+    @property
+    def keys(self) -> list[tuple[str, int, bool]]:
+        """Task, seed and kind of every episode, in the order of the file."""
+        return [(t.id, n, helped) for t in self.suite.tasks for n in range(self.seeds) for helped in self.helped]
+
+    def as_json(self) -> dict[str, Any]:
+        """As the first line has it."""
+        agents = {name: value for name, value in asdict(self.lineup).items() if name != "seconds"}
+        return {
+            "format": FORMAT,
+            "hearth": self.version,
+            "suite": suite_data(self.suite),
+            "agents": agents,
+            "seeds": self.seeds,
+        }
+
+
+@dataclass(frozen=True)
+class Results:
+    """What came of a run.
+
+    Attributes:
+        header: what was run.
+        records: its episodes.
+    """
+
+    header: Header
+    records: tuple[Record, ...]
+
+    def outcomes(self, helped: bool) -> Outcomes:
+        """The metrics of the episodes of one kind, by task."""
+        return by_task((each.task, each.metrics) for each in self.records if each.helped == helped)
+
+
+def line(header: Header, record: Record) -> bytes:
+    """An episode as a line, with a digest of itself and of what was run."""
+    import orjson
+
+    data = _episode(record)
+    return orjson.dumps({**data, "digest": _digest(header, data)}) + b"\n"
+
+
+def first_line(header: Header) -> bytes:
+    """The first line."""
+    import orjson
+
+    return orjson.dumps(header.as_json()) + b"\n"
+
+
+def _episode(record: Record) -> dict[str, Any]:
+    return {
+        "task": record.task,
+        "seed": record.seed,
+        "helped": record.helped,
+        "helper_goal": record.helper_goal,
+        "actions": record.actions,
+        "final": record.final,
+        "metrics": record.metrics,
+        "end": record.end,
+    }
+
+
+def _digest(header: Header, episode: Mapping[str, Any]) -> str:
+    import orjson
+
+    parts = [header.suite.digest, header.lineup.main, header.lineup.helper, header.lineup.goal, episode]
+    return blake2b(orjson.dumps(parts, option=orjson.OPT_SORT_KEYS), digest_size=16).hexdigest()
+
+
+def read(path: Path) -> Results:
+    """The results of a file; whether they are true, `verification` finds out.
+
+    Raises:
+        HearthError: MISSING_FILE, FILE_TOO_LARGE; BAD_JSON with the line; every fault of the tasks.
+    """
+    header, *lines = read_input(path).splitlines() or [b""]
+    found = read_header(header, str(path))
+    return Results(found, tuple(read_records(found, lines, str(path))))
+
+
+def read_header(data: bytes, file: str) -> Header:
+    """The first line; errors as of `read`."""
+    given = _mapping(data, file, 1)
+    agents, seeds = given.get("agents"), given.get("seeds")
+    if given.get("format") != FORMAT or not isinstance(agents, Mapping):
+        remedy = "`challenge run TASKS --out FILE` writes one"
+        raise HearthError.of(Code.BAD_JSON, f"not a file of results ({FORMAT})", file=file, suggestion=remedy)
+    names = [agents.get(name) for name in ("main", "helper", "goal")]
+    if not all(isinstance(name, str) and len(name) < 200 for name in names):
+        raise HearthError.of(Code.BAD_JSON, "`agents` does not name main, helper and goal", file=file)
+    if not isinstance(seeds, int) or isinstance(seeds, bool) or not 0 < seeds <= MOST_SEEDS:
+        raise HearthError.of(Code.BAD_JSON, f"`seeds` is not a number from 1 to {MOST_SEEDS:,}", file=file)
+    suite = read_suite(given.get("suite"), file)
+    return Header(suite, Lineup(str(names[0]), str(names[1]), str(names[2])), seeds, str(given.get("hearth"))[:40])
+
+
+def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[Record]:
+    """The episodes of the other lines; errors as of `read`, and DAMAGED_FILE where a line is not as it was written."""
+    for number, each in enumerate(lines, 2):
+        given = dict(_mapping(each, file, number))
+        written = given.pop("digest", None)
+        record = _record(given)
+        if record is None:
+            raise HearthError(Diagnostic(Code.BAD_JSON, "not an episode", file, number))
+        if written != _digest(header, _episode(record)):
+            message = "the episode is not as it was written: an action, a metric, a seed or the tasks were changed"
+            raise HearthError(Diagnostic(Code.DAMAGED_FILE, message, file, number))
+        yield record
+
+
+def _mapping(data: bytes, file: str, number: int) -> Mapping[str, Any]:
+    import orjson
+
+    try:
+        found = orjson.loads(data)
+    except orjson.JSONDecodeError as error:
+        raise HearthError(Diagnostic(Code.BAD_JSON, f"not JSON: {error}", file, number)) from error
+    if not isinstance(found, dict):
+        raise HearthError(Diagnostic(Code.BAD_JSON, "not a JSON object", file, number))
+    return found
+
+
+_FIELDS: dict[str, tuple[type, ...]] = {
+    "task": (str,),
+    "seed": (int,),
+    "helped": (bool,),
+    "helper_goal": (dict, type(None)),
+    "actions": (list,),
+    "final": (str,),
+    "metrics": (dict,),
+    "end": (dict, type(None)),
+}
+
+
+def _record(given: Mapping[str, Any]) -> Record | None:
+    if given.keys() != _FIELDS.keys() or not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
+        return None
+    actions = given["actions"]
+    if not all(
+        isinstance(tick, list) and all(each is None or isinstance(each, str) for each in tick) for tick in actions
+    ):
+        return None
+    if not all(isinstance(value, (int, float)) for value in given["metrics"].values()):
+        return None
+    return replace(Record(**given), actions=tuple(map(tuple, actions)))

@@ -1,0 +1,156 @@
+"""Runs of a suite over processes: resumable, with the same bytes for any number of workers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+from hearth.challenges.definition import challenge
+from hearth.challenges.episodes import Job, Known, Record, played, start_of
+from hearth.challenges.failure_analysis import Columns
+from hearth.challenges.lineup import Lineup
+from hearth.challenges.metrics import outcome
+from hearth.challenges.result_files import Header, Results, first_line, line, read, read_records
+from hearth.challenges.task_files import Suite
+from hearth.challenges.tasks import Task
+from hearth.challenges.watching import inferred
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.rng import rng
+from hearth.simulation.world.digest import digest
+from hearth.storage.files import TEMPORARY, commit
+from hearth.storage.parallel import Seen, begin, context, spread, unseen
+
+READER = "actions"
+"""How helpers with an inferred goal read the demonstration."""
+
+
+def run(
+    suite: Suite,
+    lineup: Lineup,
+    seeds: int,
+    out: Path,
+    known: Known,
+    workers: int = 1,
+    seen: Seen = unseen,
+    alone: Results | None = None,
+) -> Results:
+    """Play every task several times, without the helper and with it, and write all that was done.
+
+    What a stopped run had written is kept; the same call goes on from there.
+
+    Args:
+        suite: the tasks.
+        lineup: who takes part.
+        seeds: episodes of each task.
+        out: the file of results.
+        known: gives the knowledge.
+        workers: processes.
+        seen: called with the number of episodes done.
+        alone: results of the same main agent on the same tasks, whose episodes without a helper are taken.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
+    """
+    header = Header(suite, lineup.checked(), seeds)
+    if out.exists() and out.read_bytes().partition(b"\n")[0] + b"\n" == first_line(header):
+        return read(out)
+    partial = out.with_name(f".{out.name}.run{TEMPORARY}")
+    kept = _kept(header, partial)
+    jobs = _jobs(header, known, workers)[kept:]
+    same = alone is not None and (alone.header.suite, alone.header.lineup.main) == (suite, lineup.main)
+    taken = {(each.task, each.seed): each for each in alone.records if not each.helped} if same and alone else {}
+    with partial.open("ab") as file:
+        if not kept:
+            file.truncate(0)
+            file.write(first_line(header))
+        for done, record in enumerate(_with(taken, jobs, workers), kept + 1):
+            file.write(line(header, record))
+            file.flush()
+            seen(done, kept + len(jobs))
+    commit(partial, out)
+    return read(out)
+
+
+def _kept(header: Header, partial: Path) -> int:
+    """How many episodes of the same run are in a file that a stopped run left; what is half written is cut off."""
+    if not partial.exists():
+        return 0
+    lines = partial.read_bytes().splitlines(keepends=True)
+    if not lines or lines[0] != first_line(header):
+        return 0
+    keys, kept, length = header.keys, 0, len(lines[0])
+    for each in lines[1:]:
+        try:
+            (record,) = read_records(header, [each.rstrip(b"\n")], partial.name)
+        except HearthError:
+            break
+        if not each.endswith(b"\n") or (record.task, record.seed, record.helped) != keys[kept]:
+            break
+        kept, length = kept + 1, length + len(each)
+    with partial.open("r+b") as file:
+        file.truncate(length)
+    return kept
+
+
+def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
+    tasks = {task.id: task for task in header.suite.tasks}
+    guessed: dict[str, Goal] = {}
+    if header.lineup.goal == "inferred":
+        guessed = dict(zip(tasks, inferred(header.suite.tasks, READER, known, workers=workers), strict=True))
+    jobs = []
+    for key, seed, helped in header.keys:
+        goal = (guessed.get(key) or _helper_goal(header, tasks[key], seed)) if helped else None
+        jobs.append(Job(tasks[key], seed, header.lineup, helped, goal, known))
+    return jobs
+
+
+def _helper_goal(header: Header, task: Task, seed: int) -> Goal | None:
+    """What the helper is asked to do; a random goal is that of another task of the suite."""
+    kind = header.lineup.goal
+    if kind == "true":
+        return task.goal
+    if kind in ("none", "inferred"):
+        return None
+    others = [each.goal for each in header.suite.tasks if each.goal != task.goal]
+    if not others:
+        raise HearthError.of(Code.BAD_ARGUMENT, "a random goal is that of another task, and there is none")
+    return rng(task.seed, "random goal", seed).choice(others)
+
+
+def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], workers: int) -> Iterator[Record]:
+    """The episodes in the order of the jobs; those alone that are there already are not played again."""
+    found = [None if job.helped else taken.get((job.task.id, job.seed)) for job in jobs]
+    rest = _results([job for job, record in zip(jobs, found, strict=True) if record is None], workers)
+    return (record or next(rest) for record in found)
+
+
+def _results(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
+    """The episodes in the order of the jobs; one whose process dies is played alone, and ends with a code if it dies
+    again.
+    """
+    done = 0
+    while done < len(jobs):
+        try:
+            for record in spread(played, jobs[done:], workers):
+                yield record
+                done += 1
+        except BrokenProcessPool:
+            yield _alone(jobs[done])
+            done += 1
+
+
+def _alone(job: Job) -> Record:
+    try:
+        with ProcessPoolExecutor(1, context(), begin) as pool:
+            return pool.submit(played, job).result()
+    except BrokenProcessPool:
+        which, knowledge = challenge(job.task.challenge), job.known()
+        end = {"agent": 1, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
+        goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)
+        start = start_of(job.task, knowledge, None if job.helped else 1)
+        metrics = outcome(which, False, 0, Columns()).as_json()
+        return Record(job.task.id, job.seed, job.helped, goal, (), digest(start), metrics, end)

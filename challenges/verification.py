@@ -1,0 +1,96 @@
+"""Whether results are true: every episode is done again, and every metric computed again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+from hearth.challenges.definition import challenge
+from hearth.challenges.episodes import Job, Known, Record, again, played
+from hearth.challenges.result_files import Results
+from hearth.challenges.tasks import Task
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, spread, unseen
+
+
+@dataclass(frozen=True)
+class Check:
+    """The episodes of one task that are to be done again.
+
+    Attributes:
+        task: theirs.
+        records: what was done.
+        known: gives the knowledge.
+        jobs: to be played anew, so that the agents' choices are compared, too; empty otherwise.
+    """
+
+    task: Task
+    records: tuple[Record, ...]
+    known: Known
+    jobs: tuple[Job, ...] = ()
+
+
+def verify(
+    results: Results, file: str, known: Known, workers: int = 1, agents: bool = False, seen: Seen = unseen
+) -> list[Diagnostic]:
+    """The episodes that are not as recorded; empty where all are.
+
+    Args:
+        results: as read; reading has compared each line with its digest.
+        file: their name in faults.
+        known: gives the knowledge.
+        workers: processes.
+        agents: also let the agents play each episode anew, and compare what they do.
+        seen: called with the number of tasks done.
+    """
+    found = [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in _missing(results)]
+    if found:
+        return found
+    checks = list(_checks(results, known, agents))
+    for faults in spread(differences, checks, workers, seen):
+        found += [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in faults]
+    return found
+
+
+def _missing(results: Results) -> Iterator[str]:
+    here = [(each.task, each.seed, each.helped) for each in results.records]
+    if here != results.header.keys:
+        yield f"{len(here):,} episodes, not {len(results.header.keys):,}: one of each task, seed and kind, in order"
+
+
+def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
+    header = results.header
+    tasks = {task.id: task for task in header.suite.tasks}
+    grammar = challenge(header.suite.challenge).grammar
+    lineup = header.lineup.checked() if agents else header.lineup
+    for name, group in groupby(results.records, lambda each: each.task):
+        records, jobs = tuple(group), []
+        for each in records if agents else ():
+            goal = None if each.helper_goal is None else grammar.read(each.helper_goal)
+            jobs.append(Job(tasks[name], each.seed, lineup, each.helped, goal, known))
+        yield Check(tasks[name], records, known, tuple(jobs))
+
+
+def differences(check: Check) -> list[str]:
+    """What is different when the episodes of a task are done again."""
+    found = []
+    # Those without a helper first, then those with one: their starts differ.
+    for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):
+        where = f"{record.task}, seed {record.seed}, {'helped' if record.helped else 'alone'}"
+        try:
+            outcome, final = again(check.task, record, check.known())
+        except HearthError as error:
+            found.append(f"{where}: {error.diagnostics[0].message}")
+            continue
+        metrics = outcome.as_json()
+        wrong = [name for name in {**metrics, **record.metrics} if metrics.get(name) != record.metrics.get(name)]
+        if wrong:
+            name = wrong[0]
+            found.append(f"{where}: {name} is {metrics.get(name)}, and {record.metrics.get(name)} was recorded")
+        elif final != record.final:
+            found.append(f"{where}: the last world is another than was recorded")
+        elif check.jobs and played(check.jobs[number]) != record:
+            found.append(f"{where}: the agents do something else")
+    return found

@@ -1,0 +1,74 @@
+"""The Watch stage: goals inferred from the demonstrations of tasks (thesis 6.5.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from hearth.agents.demonstrations import READERS, Question
+from hearth.challenges.definition import challenge
+from hearth.challenges.demonstrations import Wish, demonstrate
+from hearth.challenges.episodes import Known
+from hearth.challenges.tasks import Task
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Literal, Name
+from hearth.schemas.rng import rng
+from hearth.simulation.world.home import Home
+from hearth.storage.parallel import Seen, spread, unseen
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A demonstration of which the goal is to be inferred.
+
+    Attributes:
+        wish: the demonstration.
+        reader: how it is read, one of `READERS`.
+    """
+
+    wish: Wish
+    reader: str
+
+
+def inferred(
+    tasks: Sequence[Task], reader: str, known: Known, rate: float = 1.0, workers: int = 1, seen: Seen = unseen
+) -> Iterator[Goal]:
+    """The inferred goals of tasks, in their order.
+
+    Args:
+        tasks: whose demonstrations are watched.
+        reader: how, one of `READERS`.
+        known: gives the knowledge.
+        rate: of habits (see `demonstrations.Wish`).
+        workers: processes.
+        seen: called with the number done.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there is no such reader.
+    """
+    if reader not in READERS:
+        raise HearthError.of(
+            Code.BAD_ARGUMENT, f"there is no way to read `{reader[:40]}`", suggestion=", ".join(READERS)
+        )
+    return spread(infer, [Watched(Wish(task, rate, known), reader) for task in tasks], workers, seen)
+
+
+def infer(watched: Watched) -> Goal:
+    """The goal that is inferred from a demonstration, in the words of the grammar."""
+    task = watched.wish.task
+    grammar = challenge(task.challenge).grammar
+    ticks = demonstrate(watched.wish).ticks(watched.wish.known())
+    places = _bound(task, ticks[0].before.home) if ticks else {}
+    question = Question(tuple(places), tuple(grammar.goals))
+    found = READERS[watched.reader](ticks, question, rng(task.seed, "watch", watched.reader))
+    counted = {places.get(literal, literal): number for literal, number in found}
+    return Goal(tuple((each, counted[each]) for each in grammar.predicates if each in counted))
+
+
+def _bound(task: Task, home: Home) -> dict[Literal[Name], Literal[Name]]:
+    """The predicates of the grammar, by those that name the home's furniture."""
+    grammar = challenge(task.challenge).grammar
+    every = Goal(tuple((each, 1) for each in grammar.predicates))
+    return {here: each for (here, _), (each, _) in zip(grammar.in_home(every, home), every, strict=True)}

@@ -1,0 +1,404 @@
+"""`challenge`: tasks in which agents help somebody, runs of agents on them, and how good they were."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.challenges.result_files import Results
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="Help somebody at home: tasks of Watch-And-Help, agents that play them, and their scores.",
+)
+
+
+@app.command()
+def tasks(
+    name: str,
+    split: str = "test-1",
+    *,
+    out: Path | None = None,
+    seed: int | None = None,
+    limit: int | None = None,
+    as_json: bool = False,
+) -> None:
+    """Write the tasks of a challenge: the published ones, or, with a seed, others of the same kind.
+
+    \b
+    Examples:
+      python cli.py challenge tasks wah --split test-1 --out test-1.json
+      python cli.py challenge tasks wah --split train --seed 7 --limit 20 --out mine.json
+    """
+    from hearth.challenges.published_tasks import PUBLISHED
+    from hearth.challenges.task_files import suite, write
+
+    found = suite(name, split, PUBLISHED if seed is None else seed, limit)
+    if out is not None:
+        write(out, found)
+    homes = sorted({task.home for task in found.tasks})
+    document = {
+        "challenge": name,
+        "split": split,
+        "tasks": len(found.tasks),
+        "goals": len({task.goal for task in found.tasks}),
+        "homes": ", ".join(homes),
+        "digest": found.digest,
+        "out": out,
+    }
+    if as_json:
+        output.emit(document)
+    else:
+        output.figures(document)
+
+
+@app.command("run")
+def run_tasks(
+    file: Path,
+    main: str = "human_like",
+    helper: str = "none",
+    goal: str = "",
+    seeds: int = 1,
+    *,
+    out: Path,
+    seconds: float = 30.0,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
+    """Let an agent do tasks alone and with a helper, and write all that they did.
+
+    A run that was stopped goes on where it was. Helpers: none, random, hp, hp_true, hp_timed, hp_random, oracle_b,
+    oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
+
+    \b
+    Examples:
+      python cli.py challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
+      python cli.py challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+    """
+    from hearth.challenges.lineup import Lineup
+    from hearth.challenges.suite_runs import run
+    from hearth.challenges.task_files import read
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    suite = read(file)
+    with bar("episodes") as seen:
+        found = run(suite, Lineup(main, helper, goal, seconds), seeds, out, default, workers, seen)
+    _print(found, as_json)
+
+
+@app.command()
+def score(results: Path, *, as_json: bool = False) -> None:
+    """Print the metrics of a run: means over tasks with standard errors.
+
+    \b
+    Example:
+      python cli.py challenge score hp.jsonl --json
+    """
+    from hearth.challenges.result_files import read
+
+    _print(read(results), as_json)
+
+
+@app.command()
+def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bool = False) -> None:
+    """Do all episodes of a run again, and compute every metric again; the status is 1 if anything differs.
+
+    \b
+    Example:
+      python cli.py challenge verify hp.jsonl
+    """
+    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import verify as differences
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    found = read(results)
+    with bar("tasks") as seen:
+        faults = differences(found, str(results), default, workers, agents, seen)
+    if as_json:
+        header = found.header
+        shown = {"episodes": len(found.records), "published": header.suite.published, "suite": header.suite.digest}
+        output.emit({**shown, "differences": [fault.message for fault in faults]})
+    else:
+        output.report(faults)
+        which = "the published tasks" if found.header.suite.published else "other tasks than the published ones"
+        print(f"{len(found.records):,} episodes of {which} done again: {len(faults)} differ")
+    output.status(len(faults), strict=True)
+
+
+@app.command()
+def build(
+    name: str,
+    results: list[Path] | None = None,
+    *,
+    out: Path,
+    limit: int | None = None,
+    rate: float = 1.0,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
+    """Publish all tasks of a challenge and their demonstrations, and the episodes of runs, as tables for `query`.
+
+    \b
+    Examples:
+      python cli.py challenge build wah --out data_out/wah
+      python cli.py challenge build wah hp.jsonl random.jsonl --out data_out/wah
+      python cli.py query data_out/wah "SELECT helper, avg(length) FROM episodes GROUP BY helper"
+    """
+    from hearth.challenges.challenge_tables import publish
+    from hearth.challenges.result_files import read
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    runs = [read(path) for path in results or ()]
+    with bar("demonstrations") as seen:
+        counts = publish(out, name, default, runs, limit, rate, workers, seen)
+    if as_json:
+        output.emit({"out": out, **counts})
+    else:
+        output.figures({"out": out, **counts})
+
+
+@app.command()
+def watch(file: Path, source: str = "actions", *, rate: float = 1.0, workers: int = 0, as_json: bool = False) -> None:
+    """Infer the goals of tasks from their demonstrations, and print precision and recall of predicates with counts.
+
+    \b
+    Examples:
+      python cli.py challenge watch test-1.json --from last-frame
+      python cli.py challenge watch test-1.json --rate 0   (clean demonstrations)
+    """
+    from hearth.agents.demonstrations import agreement
+    from hearth.challenges.metrics import mean
+    from hearth.challenges.task_files import read
+    from hearth.challenges.watching import inferred
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    suite = read(file)
+    with bar("demonstrations") as seen:
+        found = list(inferred(suite.tasks, source, default, rate, workers, seen))
+    each = [agreement(goal, task.goal) for goal, task in zip(found, suite.tasks, strict=True)]
+    precision, recall = mean([one.precision for one in each]), mean([one.recall for one in each])
+    exact = sum(dict(goal) == dict(task.goal) for goal, task in zip(found, suite.tasks, strict=True))
+    figures = {
+        "source": source,
+        "rate": rate,
+        "tasks": len(found),
+        "precision": precision.value,
+        "precision_se": precision.error,
+        "recall": recall.value,
+        "recall_se": recall.error,
+        "exact": exact / len(found),
+    }
+    if as_json:
+        output.emit(figures)
+    else:
+        output.figures(figures)
+
+
+@app.command()
+def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None:
+    """Print where things and agents are when tasks start, and draw it as the thesis's figures B-4 and B-5.
+
+    \b
+    Example:
+      python cli.py challenge stats test-1.json --out figures
+    """
+    from hearth.analysis.challenge_starts import starts
+    from hearth.analysis.distribution import heat_map
+    from hearth.challenges.task_files import read
+    from hearth.kb.loading.load import default
+    from hearth.storage.names import inside
+
+    found = starts(read(file), default())
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, counts, title in (
+            ("starts", found.everything, "Where all things are (figure B-4)"),
+            ("wanted", found.wanted, "Where wanted things are (figure B-5)"),
+        ):
+            some = {kind: each for kind, each in counts.items() if each.total()}
+            inside(out, f"{name}.svg").write_text(heat_map(some, title), encoding="utf-8")
+    if as_json:
+        output.emit(found._asdict())
+        return
+    for kind, places in found.everything.items():
+        shown = ", ".join(f"{place} {number / places.total():.0%}" for place, number in places.most_common(6))
+        mean = sum(number * tasks for number, tasks in found.numbers[kind].items()) / found.numbers[kind].total()
+        print(f"{kind:12} {mean:.2f} a task: {shown}")
+    rooms = ", ".join(f"{room} {number / found.agents.total():.0%}" for room, number in found.agents.most_common())
+    print(f"agents start in {rooms}")
+
+
+@app.command()
+def show(
+    results: Path,
+    task: str,
+    episode: int = 0,
+    *,
+    alone: bool = False,
+    out: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6.
+
+    \b
+    Example:
+      python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
+    """
+    from hearth.analysis.episode_drawing import narrated, ticks_of, trails
+    from hearth.challenges.result_files import read
+    from hearth.homes.drawing import write
+    from hearth.homes.library import load_layout
+    from hearth.kb.loading.load import default
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
+
+    found = read(results)
+    wanted = (task, episode, found.header.helped[-1] and not alone)
+    record = next((each for each in found.records if (each.task, each.seed, each.helped) == wanted), None)
+    if record is None:
+        raise HearthError.of(Code.UNKNOWN_ID, f"no episode {episode} of `{task}`", file=str(results))
+    known = default()
+    (one,) = (each for each in found.header.suite.tasks if each.id == task)
+    start, ticks = ticks_of(one, record, known)
+    if out is not None:
+        write(load_layout(one.home, known), out, trails(start, ticks))
+    rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
+    if as_json:
+        output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
+        return
+    print(f"{task} in {one.home}: {one.goal}\n")
+    output.records(rows)
+    reached = "reached" if record.metrics["success"] else "not reached"
+    print(f"\n{reached} after {record.metrics['ticks']} ticks")
+
+
+@app.command()
+def table(
+    name: str,
+    split: str = "test-1",
+    seeds: int = 5,
+    *,
+    out: Path,
+    limit: int | None = None,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
+    """Run all methods of the thesis's figure 6-5 on the same tasks, and print and draw them beside its text.
+
+    What the folder has already is not run again. Intervals are of 95 %; t, p and effect compare lengths with those of
+    the main agent alone, task by task.
+
+    \b
+    Example:
+      python cli.py challenge table wah --out data_out/challenges/table
+    """
+    from hearth.analysis.challenge_table import figure, methods, rows
+    from hearth.challenges.task_files import suite
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    with bar("episodes") as seen:
+        found = rows(list(methods(suite(name, split, limit=limit), seeds, out, default, workers, lambda _: seen)))
+    (out / "figure-6-5.svg").write_text(figure(found), encoding="utf-8")
+    if as_json:
+        output.emit(found)
+        return
+    shown = ("success", "speedup", "saving", "reward", "conflict_episodes")
+    cells = [
+        [
+            row["method"],
+            *(f"{row[each]:.2f} ± {row[f'{each}_ci']:.2f}" if each in row else "" for each in shown),
+            *(row.get(each) for each in ("t", "p", "effect", "thesis")),
+        ]
+        for row in found
+    ]
+    output.table(("method", *(each.replace("_", " ") for each in shown), "t", "p", "effect", "thesis"), cells)
+
+
+@app.command()
+def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> None:
+    """Rank runs by speedup, each done again and its metrics computed again; the status is 1 if one is false.
+
+    \b
+    Example:
+      python cli.py challenge board hp.jsonl mine.jsonl
+    """
+    from hearth.challenges.metrics import summary
+    from hearth.challenges.result_files import read
+    from hearth.challenges.verification import verify as differences
+    from hearth.kb.loading.load import default
+
+    rows: list[dict[str, Any]] = []
+    for path in results:
+        found = read(path)
+        header = found.header
+        figures = summary(found.outcomes(False), found.outcomes(True))
+        rows.append(
+            {
+                "file": path.name,
+                "suite": f"{header.suite.challenge} {header.suite.split}",
+                "published": header.suite.published,
+                "main": header.lineup.main,
+                "helper": header.lineup.helper,
+                "goal": header.lineup.goal,
+                "episodes": figures["episodes"],
+                "success": figures["success"],
+                "speedup": figures["speedup"],
+                "speedup_se": figures["speedup_se"],
+                "reward": figures["reward"],
+                "verified": not differences(found, str(path), default, workers),
+            }
+        )
+    rows.sort(key=lambda row: (not row["verified"], -row["speedup"], row["file"]))
+    if as_json:
+        output.emit(rows)
+    else:
+        output.records(rows)
+    output.status(sum(not row["verified"] for row in rows), strict=True)
+
+
+def _print(results: Results, as_json: bool) -> None:
+    """The summary of a run; one object for machines."""
+    from hearth.challenges.metrics import summary
+
+    header = results.header
+    helped = header.helped[-1]
+    ends: dict[str, int] = {}
+    for record in results.records:
+        if record.end:
+            ends[record.end["code"]] = ends.get(record.end["code"], 0) + 1
+    figures: dict[str, Any] = {
+        "challenge": header.suite.challenge,
+        "split": header.suite.split,
+        "suite": header.suite.digest,
+        "published": header.suite.published,
+        "main": header.lineup.main,
+        "helper": header.lineup.helper,
+        "goal": header.lineup.goal,
+        "seeds": header.seeds,
+        **summary(results.outcomes(False), results.outcomes(True) if helped else {}),
+        "ended_by_agents": ends,
+    }
+    if as_json:
+        output.emit(figures)
+        return
+    output.figures(
+        {name: figures[name] for name in ("challenge", "split", "main", "helper", "goal", "seeds", "episodes")}
+    )
+    measured = [name for name in figures if f"{name}_se" in figures]
+    print()
+    rows = [(name.replace("_", " "), figures[name], figures[f"{name}_se"]) for name in measured]
+    output.table(("metric", "mean over tasks", "standard error"), rows)
+    for code, number in ends.items():
+        print(f"{output.counted(number, 'episode')} ended with {code}")
