@@ -11,8 +11,8 @@ import pyarrow as pa
 
 from hearth.challenges import published_tasks, table_rows
 from hearth.challenges.definition import challenge
-from hearth.challenges.demonstrations import Demonstration, demonstrations
 from hearth.challenges.episodes import Known, Record
+from hearth.challenges.playing_demonstrations import Demonstration, demonstrations
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage import reading

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from hearth.agents.demonstrations import READERS, Question
 from hearth.challenges.definition import challenge
-from hearth.challenges.demonstrations import Wish, demonstrate
 from hearth.challenges.episodes import Known
+from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -41,7 +41,7 @@ def inferred(
         tasks: whose demonstrations are watched.
         reader: how, one of `READERS`.
         known: gives the knowledge.
-        rate: of habits (see `demonstrations.Wish`).
+        rate: of habits (see `playing_demonstrations.Wish`).
         workers: processes.
         seen: called with the number done.
 

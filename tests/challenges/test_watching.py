@@ -6,7 +6,7 @@ import pytest
 
 from hearth.agents.demonstrations import agreement
 from hearth.challenges.challenge_tables import TABLES, ChallengeData, publish
-from hearth.challenges.demonstrations import Wish, demonstrate
+from hearth.challenges.playing_demonstrations import Wish, demonstrate
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.watching import inferred
 from hearth.kb.loading.load import default
