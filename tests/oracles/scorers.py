@@ -31,7 +31,7 @@ class RandomScorer:
 
     def _score(self, asked: Asked, part: Part) -> Scores:
         home = asked.world.home
-        draw = np.random.default_rng([asked.state, len(asked.steps), len(part), hash(asked.chosen[1:]) % 1000])
+        draw = np.random.default_rng([asked.state, len(asked.steps), len(part), sum(n + 2 for n in asked.chosen[1:] if n is not None)])
         proposed = self._proposed(asked) if part is Part.STEP else ()
         count = {Part.ACTION: len(self.actions), Part.STEP: len(proposed)}.get(part, len(home))
         if part is self.order[0]:
@@ -74,5 +74,6 @@ class Knowing(RandomScorer):
             values[self.actions.index(step.action)] = 0.0
         else:
             place = part is Part.SECOND
-            values[nodes[place] if place < len(nodes) else len(home)] = 0.0
+            wanted = nodes[place] if place < len(nodes) else len(home)
+            values[min(wanted, len(values) - 1)] = 0.0  # another draft of the beam may be at another action
         return Scores(values)
