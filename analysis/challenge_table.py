@@ -1,4 +1,4 @@
-"""All methods of the thesis's figure 6-5 on the same tasks, beside what the thesis says of them."""
+"""All methods of the thesis's figures 6-5 and 7-3 on the same tasks, beside what the thesis says of them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from hearth.agents.agent_registry import HELPERS
+from hearth.agents.online_registry import ONLINE
 from hearth.challenges.episodes import Known
 from hearth.challenges.lineup import NOBODY, Lineup
 from hearth.challenges.metrics import of_tasks, paired, speedups, summary
@@ -21,6 +22,10 @@ from hearth.storage.parallel import Seen, unseen
 
 CONFIDENT = 1.96
 """Standard errors on either side of a mean, for an interval of 95 %."""
+
+
+TABLES: dict[str, dict[str, Any]] = packaged("hearth.analysis", "challenge_table.yaml")["tables"]
+"""By challenge: the split, the number of the thesis's figure, and the methods."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +60,9 @@ def methods(
     """
     folder.mkdir(parents=True, exist_ok=True)
     alone: Results | None = None
-    for row in packaged("hearth.analysis", "challenge_table.yaml")["methods"]:
+    for row in TABLES[suite.challenge]["methods"]:
         helper, found = row["helper"], None
-        if helper == NOBODY or helper in HELPERS:
+        if helper in (NOBODY, *HELPERS, *ONLINE):
             seen = watch(row["name"]) if watch else unseen
             out = inside(folder, f"{helper}.jsonl")
             found = run(suite, Lineup(helper=helper), seeds, out, known, workers, seen, alone)
@@ -76,7 +81,7 @@ def rows(found: Sequence[Method]) -> list[dict[str, Any]]:
     return table
 
 
-SHOWN = ("success", "speedup", "saving", "reward", "length", "conflict_episodes")
+SHOWN = ("success", "speedup", "saving", "reward", "length", "conflict_episodes", "needless_episodes")
 
 
 def _figures(results: Results) -> dict[str, Any]:
@@ -98,7 +103,7 @@ def versus(one: Results, other: Results) -> dict[str, Any]:
 
 
 def figure(found: Sequence[dict[str, Any]]) -> str:
-    """Figure 6-5 as SVG: a) success against speedup with 95 % intervals; b) cumulative reward."""
+    """Figure 6-5, or 7-3, as SVG: a) success against speedup with 95 % intervals; b) cumulative reward."""
     there = [row for row in found if "speedup" in row]
     low, high = min(0.0, *(row["speedup"] for row in there)) - 0.2, max(row["speedup"] for row in there) + 0.3
     left = min(0.6, *(row["success"] for row in there)) - 0.05

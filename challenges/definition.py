@@ -12,9 +12,11 @@ from hearth.challenges.goal_grammar import GoalSet, Grammar
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.yaml_extent import packaged
 from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.home import Home
 
 NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
@@ -83,6 +85,10 @@ class Challenge:
     def rules(self) -> Rules:
         """How actions are read."""
         return DEFAULT._replace(bodies=self.bodies)
+
+    def goals_in(self, home: Home) -> dict[Goal, float]:
+        """The goals of single sets that there may be in a home, with their probabilities."""
+        return {self.grammar.in_home(goal, home): share for goal, share in self.grammar.goals.items()}
 
     def allowed(self, knowledge: Knowledge) -> frozenset[str]:
         """The actions that agents may try."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.agents.agent_registry import HELPERS, MAIN
+from hearth.agents.online_registry import ONLINE
 from hearth.agents.protocol import Agent
 from hearth.challenges.definition import Challenge
 from hearth.challenges.guard import SECONDS, Guarded
@@ -51,11 +52,12 @@ class Lineup:
             raise _unknown("main agent", self.main, MAIN)
         if self.goal and self.goal not in GOALS:
             raise _unknown("goal", self.goal, GOALS)
-        if known is None and self.helper != NOBODY and ":" not in self.helper:
-            raise _unknown("helper", self.helper, (NOBODY, *HELPERS))
+        if self._helper not in (NOBODY, *HELPERS, *ONLINE) and ":" not in self.helper:
+            raise _unknown("helper", self.helper, (NOBODY, *HELPERS, *ONLINE))
         if ":" in self.helper:
             load(self.helper)
-        goal = self.goal or (known.goal if known else "none" if self.helper == NOBODY else "true")
+        untold = self.helper in (NOBODY, *ONLINE)
+        goal = self.goal or (known.goal if known else "none" if untold else "true")
         return Lineup(self.main, self._helper, goal, self.seconds)
 
     @property
@@ -73,9 +75,16 @@ class Lineup:
         main = MAIN[known.main if helped and known and known.main else self.main]()
         found = [Player(Guarded(main, 0, allowed, self.seconds), goal, _partial(main))]
         if helped and self.helper != NOBODY:
-            agent: Agent = known.make(main) if known else load(self.helper)()
+            agent: Agent = known.make(main) if known else self._own(which)
             found.append(Player(Guarded(agent, 1, allowed, self.seconds), helper_goal, _partial(agent)))
         return found
+
+    def _own(self, which: Challenge) -> Agent:
+        """A helper that is made without its partner: one that is not told the goal, or somebody's own."""
+        if self.helper in ONLINE:
+            return ONLINE[self.helper].make(which.goals_in)
+        own: Agent = load(self.helper)()
+        return own
 
 
 def _partial(agent: Any) -> bool | None:

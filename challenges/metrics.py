@@ -101,8 +101,12 @@ def savings(alone: Outcomes, helped: Outcomes) -> dict[str, float]:
     return {task: (before[task] - after[task]) / max(before[task], 1.0) for task in after}
 
 
+SHARES = {"conflict_episodes": "conflicts", "needless_episodes": "needless"}
+"""Shares of episodes in which something happened at least once, by the column that counts it."""
+
+
 def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
-    """All metrics: means over tasks (of means over their seeds), each with `_se`; `conflict_episodes` is a share.
+    """All metrics: means over tasks (of means over their seeds), each with `_se`, and the `SHARES`.
 
     Args:
         alone: of the main agent by itself.
@@ -115,8 +119,9 @@ def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
     columns["saving"] = savings(alone, shown)
     columns |= {name: of_tasks(shown, name) for name in ("reward", "length")}
     columns["length_alone"] = of_tasks(alone, "length")
-    conflicting = {t: [{"any": bool(each["conflicts"])} for each in some] for t, some in shown.items()}
-    columns["conflict_episodes"] = of_tasks(conflicting, "any")
+    for share, column in SHARES.items():
+        any_of = {task: [{share: bool(each[column])} for each in some] for task, some in shown.items()}
+        columns[share] = of_tasks(any_of, share)
     columns |= {name: of_tasks(shown, name) for name in NAMES}
     for name, values in columns.items():
         one = mean(list(values.values()))

@@ -16,7 +16,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
-    help="Help somebody at home: tasks of Watch-And-Help, agents that play them, and their scores.",
+    help="Help somebody at home: tasks of Watch-And-Help and Online Watch-And-Help, agents, and their scores.",
 )
 
 
@@ -286,7 +286,7 @@ def show(
 @app.command()
 def table(
     name: str,
-    split: str = "test-1",
+    split: str = "",
     seeds: int = 5,
     *,
     out: Path,
@@ -294,27 +294,29 @@ def table(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Run all methods of the thesis's figure 6-5 on the same tasks, and print and draw them beside its text.
+    """Run all methods of the thesis's figure 6-5 or 7-3 on the same tasks, and print and draw them beside its text.
 
     What the folder has already is not run again. Intervals are of 95 %; t, p and effect compare lengths with those of
     the main agent alone, task by task.
 
     \b
-    Example:
-      python cli.py challenge table wah --out data_out/challenges/table
+    Examples:
+      python cli.py challenge table wah --out data_out/challenges/wah
+      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah
     """
-    from hearth.analysis.challenge_table import figure, methods, rows
+    from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
+    chosen = suite(name, split or TABLES.get(name, {}).get("split", ""), limit=limit)
     with bar("episodes") as seen:
-        found = rows(list(methods(suite(name, split, limit=limit), seeds, out, default, workers, lambda _: seen)))
-    (out / "figure-6-5.svg").write_text(figure(found), encoding="utf-8")
+        found = rows(list(methods(chosen, seeds, out, default, workers, lambda _: seen)))
+    (out / f"figure-{TABLES[name]['figure']}.svg").write_text(figure(found), encoding="utf-8")
     if as_json:
         output.emit(found)
         return
-    shown = ("success", "speedup", "saving", "reward", "conflict_episodes")
+    shown = ("success", "speedup", "saving", "reward", "conflict_episodes", "needless_episodes")
     cells = [
         [
             row["method"],
