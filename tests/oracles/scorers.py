@@ -31,7 +31,8 @@ class RandomScorer:
 
     def _score(self, asked: Asked, part: Part) -> Scores:
         home = asked.world.home
-        draw = np.random.default_rng([asked.state, len(asked.steps), len(part), sum(n + 2 for n in asked.chosen[1:] if n is not None)])
+        nodes = sum(node + 2 for node in asked.chosen[1:] if node is not None)
+        draw = np.random.default_rng([asked.state, len(asked.steps), len(part), nodes])
         proposed = self._proposed(asked) if part is Part.STEP else ()
         count = {Part.ACTION: len(self.actions), Part.STEP: len(proposed)}.get(part, len(home))
         if part is self.order[0]:
