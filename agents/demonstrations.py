@@ -1,6 +1,6 @@
 """Demonstrations read as goals without learning: by what was put where, by the last frame, by chance (thesis 6.5).
 
-What reads them from states is a network, and another `Reader`.
+The network that reads them from states is in `models/watching/`.
 """
 
 from __future__ import annotations
@@ -90,7 +90,24 @@ def by_chance(ticks: Sequence[Tick], question: Question, chooser: Random) -> Goa
     return chooser.choice(question.goals) if question.goals else Goal()
 
 
-READERS: dict[str, Reader] = {"actions": by_actions, "last-frame": by_last_frame, "chance": by_chance}
+def by_states(ticks: Sequence[Tick], question: Question, chooser: Random, model: str = "goal-inference") -> Goal:
+    """What a network makes of the places in which things were seen; needs the extra `models`.
+
+    Args:
+        ticks, question, chooser: as for every reader.
+        model: a checkpoint's folder, or the name of one that comes with Hearth.
+    """
+    from hearth.models.watching.goal_inference import restored
+
+    return restored(model).infer(ticks, question.predicates, question.goals)
+
+
+READERS: dict[str, Reader] = {
+    "actions": by_actions,
+    "states": by_states,
+    "last-frame": by_last_frame,
+    "chance": by_chance,
+}
 """How demonstrations are read, by the names that `challenge watch` has for them."""
 
 

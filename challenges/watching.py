@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-from hearth.agents.demonstrations import READERS, Question
+from hearth.agents.demonstrations import READERS, Question, by_states
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Known
 from hearth.challenges.playing_demonstrations import Wish, demonstrate
@@ -26,14 +27,22 @@ class Watched:
     Attributes:
         wish: the demonstration.
         reader: how it is read, one of `READERS`.
+        model: the checkpoint that reads states, if not the one that comes with Hearth.
     """
 
     wish: Wish
     reader: str
+    model: str | None = None
 
 
 def inferred(
-    tasks: Sequence[Task], reader: str, known: Known, rate: float = 1.0, workers: int = 1, seen: Seen = unseen
+    tasks: Sequence[Task],
+    reader: str,
+    known: Known,
+    rate: float = 1.0,
+    workers: int = 1,
+    seen: Seen = unseen,
+    model: str | None = None,
 ) -> Iterator[Goal]:
     """The inferred goals of tasks, in their order.
 
@@ -44,15 +53,18 @@ def inferred(
         rate: of habits (see `playing_demonstrations.Wish`).
         workers: processes.
         seen: called with the number done.
+        model: the checkpoint that reads states, if not the one that comes with Hearth.
 
     Raises:
-        HearthError: BAD_ARGUMENT: there is no such reader.
+        HearthError: BAD_ARGUMENT: there is no such reader, or it has no checkpoint.
     """
     if reader not in READERS:
         raise HearthError.of(
             Code.BAD_ARGUMENT, f"there is no way to read `{reader[:40]}`", suggestion=", ".join(READERS)
         )
-    return spread(infer, [Watched(Wish(task, rate, known), reader) for task in tasks], workers, seen)
+    if model is not None and reader != "states":
+        raise HearthError.of(Code.BAD_ARGUMENT, "only states are read by a model", suggestion="--from states")
+    return spread(infer, [Watched(Wish(task, rate, known), reader, model) for task in tasks], workers, seen)
 
 
 def infer(watched: Watched) -> Goal:
@@ -60,14 +72,15 @@ def infer(watched: Watched) -> Goal:
     task = watched.wish.task
     grammar = challenge(task.challenge).grammar
     ticks = demonstrate(watched.wish).ticks(watched.wish.known())
-    places = _bound(task, ticks[0].before.home) if ticks else {}
+    places = bound(task, ticks[0].before.home) if ticks else {}
     question = Question(tuple(places), tuple(grammar.goals))
-    found = READERS[watched.reader](ticks, question, rng(task.seed, "watch", watched.reader))
+    reader = READERS[watched.reader] if watched.model is None else partial(by_states, model=watched.model)
+    found = reader(ticks, question, rng(task.seed, "watch", watched.reader))
     counted = {places.get(literal, literal): number for literal, number in found}
     return Goal(tuple((each, counted[each]) for each in grammar.predicates if each in counted))
 
 
-def _bound(task: Task, home: Home) -> dict[Literal[Name], Literal[Name]]:
+def bound(task: Task, home: Home) -> dict[Literal[Name], Literal[Name]]:
     """The predicates of the grammar, by those that name the home's furniture."""
     grammar = challenge(task.challenge).grammar
     every = Goal(tuple((each, 1) for each in grammar.predicates))

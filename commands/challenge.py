@@ -168,11 +168,20 @@ def build(
 
 
 @app.command()
-def watch(file: Path, source: str = "actions", *, rate: float = 1.0, workers: int = 0, as_json: bool = False) -> None:
+def watch(
+    file: Path,
+    source: str = "actions",
+    *,
+    model: str | None = None,
+    rate: float = 1.0,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
     """Infer the goals of tasks from their demonstrations, and print precision and recall of predicates with counts.
 
     \b
     Examples:
+      python cli.py challenge watch test-1.json --from states
       python cli.py challenge watch test-1.json --from last-frame
       python cli.py challenge watch test-1.json --rate 0   (clean demonstrations)
     """
@@ -185,7 +194,7 @@ def watch(file: Path, source: str = "actions", *, rate: float = 1.0, workers: in
 
     suite = read(file)
     with bar("demonstrations") as seen:
-        found = list(inferred(suite.tasks, source, default, rate, workers, seen))
+        found = list(inferred(suite.tasks, source, default, rate, workers, seen, model))
     each = [agreement(goal, task.goal) for goal, task in zip(found, suite.tasks, strict=True)]
     precision, recall = mean([one.precision for one in each]), mean([one.recall for one in each])
     exact = sum(dict(goal) == dict(task.goal) for goal, task in zip(found, suite.tasks, strict=True))
@@ -203,6 +212,42 @@ def watch(file: Path, source: str = "actions", *, rate: float = 1.0, workers: in
         output.emit(figures)
     else:
         output.figures(figures)
+
+
+@app.command()
+def learn(
+    name: str,
+    *,
+    out: Path,
+    limit: int | None = None,
+    rate: float = 1.0,
+    epochs: int = 12,
+    seed: int = 0,
+    workers: int = 0,
+    as_json: bool = False,
+) -> None:
+    """Train the network that infers goals from states on a challenge's demonstrations, and write a checkpoint.
+
+    \b
+    Example:
+      python cli.py challenge learn wah --out build/goal-inference
+      python cli.py challenge watch test-1.json --from states --model build/goal-inference
+    """
+    from hearth.challenges.learning_to_watch import learn as trained
+    from hearth.challenges.learning_to_watch import write
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+    from hearth.models.interface import Training
+
+    how = Training(seed=seed, epochs=epochs, patience=0)
+    with bar("demonstrations") as seen, bar("epochs") as passed:
+        found = trained(name, default, how, limit, rate, workers, seen, passed)
+    write(found, out)
+    facts = {"out": out, **{key: value for key, value in found.facts.items() if not isinstance(value, dict)}}
+    if as_json:
+        output.emit(facts)
+    else:
+        output.figures(facts)
 
 
 @app.command()
