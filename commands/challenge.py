@@ -353,11 +353,12 @@ def table(
     from hearth.challenges.task_files import suite
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
+    from hearth.storage.names import inside
 
     chosen = suite(name, split or TABLES.get(name, {}).get("split", ""), limit=limit)
     with bar("episodes") as seen:
         found = rows(list(methods(chosen, seeds, out, default, workers, lambda _: seen)))
-    (out / f"figure-{TABLES[name]['figure']}.svg").write_text(figure(found), encoding="utf-8")
+    inside(out, f"figure-{TABLES[name]['figure']}.svg").write_text(figure(found), encoding="utf-8")
     if as_json:
         output.emit(found)
         return

@@ -121,7 +121,8 @@ def test_a_library_of_no_extra_is_a_fault_of_ours():
 
 
 def test_a_missing_library_of_an_extra_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "fsspec", None)
+    for name in ("fsspec", "fsspec.core"):  # torch brings it
+        monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(HearthError, match=r"this needs fsspec, which.*pip install '\.\[remote\]'"):
         library("fsspec.core")
 
