@@ -41,9 +41,9 @@ class OnlineHelper:
         self.subgoal: Edge | None = None
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
-        """Begin an episode; a goal that it is told is not looked at (see `agents.protocol`)."""
+        """Begin an episode; a goal that it is given is the only one that there may be (see `agents.protocol`)."""
         world, home = observation.world, observation.world.home
-        self.space = GoalSpace.of(self._goals(home), home)
+        self.space = GoalSpace.of({goal: 1.0} if goal is not None else self._goals(home), home)
         self.chooser = rng(seed, "helper", observation.agent)
         partner = next(agent for n, agent in enumerate(world.agents) if n != observation.agent)
         self.me, self.partner = home.index[observation.me.node], partner.index

@@ -64,8 +64,9 @@ def methods(
         helper, found = row["helper"], None
         if helper in (NOBODY, *HELPERS, *ONLINE):
             seen = watch(row["name"]) if watch else unseen
-            out = inside(folder, f"{helper}.jsonl")
-            found = run(suite, Lineup(helper=helper), seeds, out, known, workers, seen, alone)
+            goal = row.get("goal", "")
+            out = inside(folder, f"{helper}{goal and '-'}{goal}.jsonl")
+            found = run(suite, Lineup(helper=helper, goal=goal), seeds, out, known, workers, seen, alone)
             alone = alone or found
         yield Method(row["name"], helper, row.get("thesis", ""), found)
 

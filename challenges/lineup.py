@@ -21,8 +21,10 @@ from hearth.schemas.goals import Goal
 NOBODY = "none"
 """The helper of who acts alone."""
 
-GOALS = ("true", "inferred", "random", "none")
-"""What a helper may be asked to do: the main agent's goal, what was inferred of it, another task's goal, nothing."""
+GOALS = ("true", "inferred", "inferred_states", "random", "none")
+"""What a helper may be asked to do: the main agent's goal, what counting or the network of models infers of it from a
+demonstration, another task's goal, nothing.
+"""
 
 
 @dataclass(frozen=True)

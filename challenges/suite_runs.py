@@ -24,8 +24,8 @@ from hearth.simulation.world.digest import digest
 from hearth.storage.files import TEMPORARY, commit
 from hearth.storage.parallel import Seen, begin, context, spread, unseen
 
-READER = "actions"
-"""How helpers with an inferred goal read the demonstration."""
+INFERRED = {"inferred": "actions", "inferred_states": "states"}
+"""How the demonstration is read, by what the helper is asked to do (see `agents.demonstrations`)."""
 
 
 def run(
@@ -99,8 +99,8 @@ def _kept(header: Header, partial: Path) -> int:
 def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
     tasks = {task.id: task for task in header.suite.tasks}
     guessed: dict[str, Goal] = {}
-    if header.lineup.goal == "inferred":
-        guessed = dict(zip(tasks, inferred(header.suite.tasks, READER, known, workers=workers), strict=True))
+    if (reader := INFERRED.get(header.lineup.goal)) is not None:
+        guessed = dict(zip(tasks, inferred(header.suite.tasks, reader, known, workers=workers), strict=True))
     jobs = []
     for key, seed, helped in header.keys:
         goal = (guessed.get(key) or _helper_goal(header, tasks[key], seed)) if helped else None
@@ -113,7 +113,7 @@ def _helper_goal(header: Header, task: Task, seed: int) -> Goal | None:
     kind = header.lineup.goal
     if kind == "true":
         return task.goal
-    if kind in ("none", "inferred"):
+    if kind == "none" or kind in INFERRED:
         return None
     others = [each.goal for each in header.suite.tasks if each.goal != task.goal]
     if not others:

@@ -228,6 +228,16 @@ def test_who_knows_the_goal_for_certain_moves_nothing_else_and_is_faster(world, 
     assert taken and set(taken) <= names
 
 
+def test_a_goal_that_is_given_is_the_only_one(world):
+    goals = goals_of(world)
+    goal = list(goals)[3]
+    env = Env(partial=False)
+    env.restore(world)
+    helper = ExpectedTime(lambda home: goals)
+    helper.reset(env.observe(1), goal, 0)
+    assert helper.space.goals == (goal,)
+
+
 @pytest.mark.parametrize("name", sorted(ONLINE))
 def test_no_helper_keeps_the_goal_from_being_reached(world, name):
     goals = goals_of(world)
