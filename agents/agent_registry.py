@@ -20,7 +20,7 @@ class Helper:
 
     Attributes:
         make: makes the helper of a main agent.
-        goal: which goal it is told: `true`, `inferred` (from the task's demonstration), `random` (that of another task,
+        goal: which it is given: `true`, `inferred` (from the task's demonstration), `random` (that of another task,
             which the runner gives), or `none`.
         main: name of the main agent that it is made for; '' for any.
         about: what it is, for tables.

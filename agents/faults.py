@@ -53,7 +53,7 @@ class Faults:
         """Check the rates.
 
         Raises:
-            HearthError: BAD_ARGUMENT: a rate is no probability, or the rationality is negative.
+            HearthError: BAD_ARGUMENT: a rate is not a probability, or the rationality is negative.
         """
         for field in fields(self):
             value = getattr(self, field.name)
@@ -131,7 +131,7 @@ class Faulty(HumanLike):
         return None
 
     def _instead(self, view: View, legal: Legal) -> Step | None:
-        """The next instruction of what is not for its goal, until that is done, in vain or out of view."""
+        """The next instruction of what is not for its goal, until that is done, has failed or is out of view."""
         errand = self._errand
         if errand is None:
             return None

@@ -15,7 +15,7 @@ from hearth.simulation.world.bits import indices
 
 
 class Partner(Protocol):
-    """Who is helped, as far as a helper that is told the true goal may know its plan (thesis B.2): what it does now."""
+    """Who is helped, as far as a helper with the true goal may know its plan (thesis B.2): what it does now."""
 
     @property
     def subgoal(self) -> Subgoal | None:

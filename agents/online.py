@@ -1,4 +1,4 @@
-"""Helping somebody whose goal one is not told (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
+"""Helping somebody whose goal is unknown (thesis chapter 7): watch, infer, choose a helping subgoal, act on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Helpers that are not told the goal, by name. To add one: a file, a row here, a test."""
+"""Helpers that are not given the goal, by name. To add one: a file, a row here, a test."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hearth.agents.protocol import Agent
 
 @dataclass(frozen=True, slots=True)
 class OnlineKind:
-    """A way to help without being told the goal.
+    """A way to help without being given the goal.
 
     Attributes:
         make: makes the helper of the goals that there may be.

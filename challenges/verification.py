@@ -64,6 +64,9 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
     header = results.header
     tasks = {task.id: task for task in header.suite.tasks}
     grammar = challenge(header.suite.challenge).grammar
+    if agents and ":" in header.lineup.helper:  # a file of results, perhaps a stranger's, names no code that is run
+        message = f"the helper `{header.lineup.helper[:60]}` is not one of ours, and is not run by what a file says"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
     lineup = header.lineup.checked() if agents else header.lineup
     for name, group in groupby(results.records, lambda each: each.task):
         records, jobs = tuple(group), []

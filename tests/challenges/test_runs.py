@@ -314,3 +314,15 @@ def test_the_helper_of_the_page_is_as_printed_and_helps(tmp_path):
     found = run(FEW, Lineup(helper=f"{root / 'my_helper.py'}:Helper"), 1, tmp_path / "mine.jsonl", default)
     assert all(record.metrics["success"] for record in found.records)
     assert verify(found, "mine.jsonl", default) == []
+
+
+def test_a_file_of_results_names_no_code_that_is_run(results, tmp_path):
+    """Results are of strangers: with --agents only agents of ours play again."""
+    ran = tmp_path / "ran"
+    (tmp_path / "evil.py").write_text(f"open({str(ran)!r}, 'w').close()")
+    _, found = results
+    lineup = replace(found.header.lineup, helper=f"{tmp_path / 'evil.py'}:Helper")
+    strange = replace(found, header=replace(found.header, lineup=lineup))
+    with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+        verify(strange, "strange.jsonl", default, agents=True)
+    assert not ran.exists()
