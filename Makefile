@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock wheel clean distclean help $(STAGES)
+.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -136,10 +136,10 @@ TORCHES := ^(torch|triton|nvidia-|cuda-)
 lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock and requirements-tools.lock
 	@rm -rf build/lock && mkdir -p build/lock
 	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
-	@build/lock/all/bin/python -m pip install -q -e '.[agents,pictures,test,tools]' setuptools
+	@build/lock/all/bin/python -m pip install -q -e '.[agents,pictures,web,test,tools]' setuptools
 	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | grep -Ev '$(TORCHES)' | sort \
 	  > build/lock/all.txt
-	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[agents,pictures,test]' setuptools
+	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[agents,pictures,web,test]' setuptools
 	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
 	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/base.txt
 	@{ sed '/^#/!d' requirements.lock; \
@@ -147,6 +147,9 @@ lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock 
 	   } > build/lock/requirements.lock
 	@{ sed '/^#/!d' requirements-tools.lock; comm -13 build/lock/base.txt build/lock/all.txt; } > requirements-tools.lock
 	@mv build/lock/requirements.lock requirements.lock && rm -rf build/lock
+
+web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
+	@npm ci --prefix web --loglevel error && $(PY) -m hearth.web.third_party_scripts && du -sh web/fetched
 
 wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist

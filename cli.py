@@ -81,6 +81,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Help somebody": {
         "challenge": Entry("challenge:app", "Watch-And-Help: tasks, runs of agents, scores that can be verified."),
     },
+    "Ask people": {
+        "serve": Entry("serve:serve", "The server where people annotate, play and judge, and the researcher's desk."),
+    },
     "Make pictures": {
         "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),
         "render-visible": Entry("render:visible", "Count the steps whose objects are visible, over many programs."),

@@ -60,7 +60,7 @@ install_packages() {
         with_uv --no-deps --no-build-isolation -e . || with_pip --no-deps --no-build-isolation -e .
     else
         say "The locked versions can't be installed; installing versions allowed by pyproject.toml instead."
-        with_uv -e '.[agents,pictures,test]' || with_pip -e '.[agents,pictures,test]'
+        with_uv -e '.[agents,pictures,web,test]' || with_pip -e '.[agents,pictures,web,test]'
     fi
 }
 

@@ -155,6 +155,18 @@ def browser() -> Finding:
     return Finding("browser", MISSING, "no Chromium", "reports are written but not tried; apt-get install chromium")
 
 
+def web() -> Finding:
+    """What pages of `serve` use: libraries, and the scripts that `make web` fetches."""
+    if lacking("web"):
+        return Finding("web", MISSING, f"without {', '.join(lacking('web'))}", f"no `serve`; {remedy('web')}")
+    from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
+
+    if names := missing():
+        cost = "; ".join(THIRD_PARTY[name].purpose for name in names)
+        return Finding("web", MISSING, f"without {', '.join(names)}", f"{cost}; {REMEDY}")
+    return Finding("web", OK, ", ".join(THIRD_PARTY))
+
+
 def fonts() -> Finding:
     """Fonts of the system; figures have their own."""
     folders = (Path("/usr/share/fonts"), Path("/usr/local/share/fonts"), Path.home() / ".local/share/fonts")
@@ -199,7 +211,7 @@ def uv() -> Finding:
 
 
 CHECKS: tuple[Callable[[], Finding], ...] = (
-    python, packages, rays, codecs, browser, fonts, disk, cores, real_data, uv,
+    python, packages, rays, codecs, browser, web, fonts, disk, cores, real_data, uv,
 )  # fmt: skip
 """All checks, in the order of the table."""
 

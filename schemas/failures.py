@@ -113,6 +113,10 @@ class Code(StrEnum):
     NOT_ALLOWED = "NOT_ALLOWED", 76
     DISCONNECTED = "DISCONNECTED", 77
     AGENT_FAILED = "AGENT_FAILED", 78
+    # People and their browsers
+    NO_SESSION = "NO_SESSION", 79
+    TOO_FAST = "TOO_FAST", 80
+    OUT_OF_ORDER = "OUT_OF_ORDER", 81
 
 
 @dataclass(frozen=True, slots=True)

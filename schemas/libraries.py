@@ -16,10 +16,11 @@ EXTRAS = {
     "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
     "plan": ("unified_planning",),
     "remote": ("fsspec",),
+    "web": ("sqlalchemy", "starlette", "uvicorn", "websockets"),
 }
 """The modules of each extra of pyproject.toml."""
 
-SET_UP = ("agents", "pictures")
+SET_UP = ("agents", "pictures", "web")
 """The extras that `make setup` installs."""
 
 

@@ -147,7 +147,7 @@ def test_the_setup_installs_what_pictures_and_environments_need():
     locked = (ROOT / "requirements.lock").read_text()
     assert all(f"{name}==" in locked for name in ("open3d-cpu", "opencv-python-headless", "numba", "matplotlib"))
     assert all(f"{name}==" in locked for name in ("gymnasium", "pettingzoo"))
-    assert ".[agents,pictures,test]" in (ROOT / "setup.sh").read_text()
+    assert ".[agents,pictures,web,test]" in (ROOT / "setup.sh").read_text()
 
 
 def test_no_text_installs_the_package_of_somebody_else():

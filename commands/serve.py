@@ -1,0 +1,70 @@
+"""`serve`: the server where people annotate, play and judge."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from hearth.commands import output
+from hearth.commands.inputs import read_knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
+
+
+def serve(
+    port: int = 8000,
+    out: Path = Path("collected"),
+    store: str = "",
+    study: Path | None = None,
+    public: str = "",
+    kb: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
+
+    Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
+    share. Prints the address and the link to the desk, whose token is also in DIR/desk-token. Ctrl-C stops it; what was
+    accepted is kept, also if the server is killed.
+
+    \b
+    Examples:
+      python cli.py serve
+      python cli.py serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
+    """
+    for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
+        library(module)
+    from hearth.web.application import application
+    from hearth.web.desk_access import desk_token
+    from hearth.web.serving import listening, run
+    from hearth.web.store import Store, default_url
+    from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
+
+    if study is not None and not study.is_file():
+        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(study))
+    where = listening(port)
+    address = f"http://127.0.0.1:{where.getsockname()[1]}"
+    token = desk_token(out)
+    app = application(Store(store or default_url(out)), read_knowledge(kb), out, token, study, _hosts(public))
+    for name in missing():
+        output.note(f"Without {name}, {THIRD_PARTY[name].purpose}: {REMEDY}.")
+    desk = f"{public or address}/desk/enter/{token}"
+    lines = f"Hearth answers at {address}\nThe researcher's desk: {desk}"
+    output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
+    sys.stdout.flush()
+    run(app, where)
+
+
+def _hosts(public: str) -> tuple[str, ...]:
+    """The name in a public address.
+
+    Raises:
+        HearthError: BAD_ARGUMENT.
+    """
+    if not public:
+        return ()
+    name = urlsplit(public).hostname
+    if not name or not public.startswith("https://"):
+        raise HearthError.of(Code.BAD_ARGUMENT, f"`{public[:100]}` is not an address", suggestion="https://NAME")
+    return (name,)

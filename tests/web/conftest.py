@@ -1,0 +1,8 @@
+"""The fixtures of `people.py`, for every test of the server, where the extra `web` is installed."""
+
+from hearth.schemas.libraries import lacking
+
+if lacking("web"):
+    collect_ignore_glob = ["test_*.py"]
+else:
+    from web.people import browser, person, server, serving  # noqa: F401

@@ -1,0 +1,122 @@
+"""Fixtures of the tests of the server: a server in this process, people at it, a browser, a server of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from hearth.web.application import application
+from hearth.web.limits import Rate
+from hearth.web.store import Store, default_url
+
+ROOT = Path(__file__).resolve().parents[2]
+DESK = "the-desk-token-of-these-tests"
+BASE = "http://127.0.0.1"
+CHROMIUM = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update",
+            "--disable-sync")  # fmt: skip
+
+
+class Server:
+    """A server in this process; `client()` is a browser of somebody without a session, `person()` with one."""
+
+    def __init__(self, out: Path, knowledge, url: str = "", **options) -> None:
+        self.out, self.store = out, Store(url or default_url(out))
+        options = {"rate": Rate(10_000, 10_000), **options}
+        self.app = application(self.store, knowledge, out, DESK, **options)
+
+    def client(self, **options) -> TestClient:
+        return TestClient(self.app, base_url=BASE, follow_redirects=False, **options)
+
+    def person(self) -> TestClient:
+        client = self.client()
+        assert client.post("/begin").status_code == 303
+        return client
+
+    def researcher(self) -> TestClient:
+        return self.client(headers={"authorization": f"Bearer {DESK}"})
+
+
+@pytest.fixture
+def server(tmp_path, knowledge):
+    made = Server(tmp_path / "served", knowledge)
+    yield made
+    made.store.close()
+
+
+@pytest.fixture
+def person(server):
+    return server.person()
+
+
+class Serving:
+    """`python cli.py serve` in a process of its own; `address` and `desk` are what it printed."""
+
+    def __init__(self, out: Path, *options: str) -> None:
+        self.out = out
+        command = [sys.executable, str(ROOT / "cli.py"), "serve", "--port", "0", "--json", "--out", str(out), *options]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=dict(os.environ))
+        text, line = "", None
+        while line != "}\n":
+            line = self.process.stdout.readline()
+            assert line, "the server ended"
+            text += line
+        found = json.loads(text)
+        self.address, self.desk = found["address"], found["desk"]
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+
+
+@pytest.fixture
+def serving(tmp_path):
+    """Starts servers in processes of their own; all are killed at the end."""
+    started: list[Serving] = []
+
+    def start(*options: str, out: Path | None = None) -> Serving:
+        started.append(Serving(out or tmp_path / "served", *options))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.kill()
+
+
+@pytest.fixture
+def browser():
+    """A Chromium; each page's console is to be watched with `watched`."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("no Chromium here: apt-get install chromium")
+    with playwright.sync_playwright() as running:
+        started = running.chromium.launch(executable_path=path, args=list(CHROMIUM))
+        yield started
+        started.close()
+
+
+AXE = ROOT / "web/node_modules/axe-core/axe.min.js"
+
+
+def watched(page, faults: list[str]):
+    """The page, with everything that its console says of errors collected in `faults`."""
+    page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    return page
+
+
+def accessibility(page) -> list[str]:
+    """Findings of axe-core that are serious or critical, as `rule: element`; skipped where it is not fetched."""
+    if not AXE.is_file():
+        pytest.skip("no axe-core: make web")
+    page.evaluate(AXE.read_text())  # by the debugger, which the policy does not concern
+    found = page.evaluate("async () => (await axe.run()).violations")
+    serious = [each for each in found if each["impact"] in ("serious", "critical")]
+    return [f"{each['id']}: {node['html'][:200]}" for each in serious for node in each["nodes"]]

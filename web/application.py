@@ -1,0 +1,180 @@
+"""The server as one ASGI application: rooms, start page, desk, files, and what a request must pass."""
+
+from __future__ import annotations
+
+import hmac
+from collections.abc import Callable, Collection, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl
+
+import jinja2
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.web import desk_access, front, sessions
+from hearth.web.limits import Rate
+from hearth.web.link import Link, nobody
+from hearth.web.room import Address, Room, Who
+from hearth.web.room_registry import ROOMS
+from hearth.web.security import Security
+from hearth.web.store import Store
+from hearth.web.third_party_scripts import FETCHED
+from hearth.web.visit import Visit, Web, json_answer, render
+from hearth.web.web_errors import WebError
+
+HERE = Path(__file__).resolve().parent
+
+
+def application(
+    store: Store,
+    known: Knowledge,
+    out: Path,
+    desk: str,
+    study: Path | None = None,
+    hosts: Collection[str] = (),
+    rooms: Sequence[Room] = ROOMS,
+    rate: Rate | None = None,
+) -> ASGIApp:
+    """The server.
+
+    Args:
+        store: the database.
+        known: the knowledge that programs are checked against.
+        out: the server's folder.
+        desk: the desk's token.
+        study: the file of the study.
+        hosts: names of a public address by which people come, over https.
+        rooms: what it consists of.
+        rate: the limit of each person; the usual one if None.
+    """
+    templates = _templates(rooms)
+    web = Web(store, known, out, templates, sessions.digest(desk), study, secure=bool(hosts))
+    limits = rate or Rate(each_second=40, burst=200)
+    routes: list[BaseRoute] = [_route(web, address, limits) for address in front.ADDRESSES]
+    for room in rooms:
+        for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
+            routes += [_route(web, address, limits, prefix) for address in addresses]
+    routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
+    routes.append(Mount("/fetched", StaticFiles(directory=FETCHED, check_dir=False)))
+    handlers: dict[Any, Any] = {
+        kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, Exception)
+    }
+    return Security(Starlette(routes=routes, exception_handlers=handlers), hosts)
+
+
+def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.globals["rooms"] = [room for room in rooms if room.listed]
+    made.globals["desks"] = [room for room in rooms if room.desk]
+    return made
+
+
+def _for_desk(addresses: Sequence[Address]) -> list[Address]:
+    return [Address(each.method, each.path, each.handler, Who.RESEARCHER, each.most) for each in addresses]
+
+
+def _route(web: Web, address: Address, rate: Rate, prefix: str = "") -> BaseRoute:
+    if address.method == "SOCKET":
+        return WebSocketRoute(prefix + address.path, partial(_connect, web, address))
+    return Route(prefix + address.path, _endpoint(web, address, rate), methods=[address.method])
+
+
+def _endpoint(web: Web, address: Address, rate: Rate) -> Callable[[Request], Any]:
+    async def endpoint(request: Request) -> Response:
+        sender = request.cookies.get(sessions.COOKIE) or (request.client.host if request.client else "")
+        rate.check(sender[:100], request.url.path)
+        body = await _body(request, address.most)
+        return await run_in_threadpool(_answer, web, address, request, body)
+
+    return endpoint
+
+
+def _answer(web: Web, address: Address, request: Request, body: bytes) -> Response:
+    """Run a handler, in a thread.
+
+    Raises:
+        WebError: NO_SESSION or NOT_ALLOWED, if whoever asks may not; what the handler raises.
+    """
+    session = sessions.find(web.store, token_of(request))
+    if address.who is Who.PERSON and session is None:
+        raise nobody()
+    if address.who is Who.RESEARCHER and not _is_researcher(web, request):
+        raise WebError(Code.NOT_ALLOWED, "desk", "the desk's token", "none, or another")
+    is_form = request.headers.get("content-type", "").startswith("application/x-www-form-urlencoded")
+    fields = dict(request.query_params)
+    if is_form:
+        fields = dict(parse_qsl(body.decode("utf-8", "replace"), keep_blank_values=True, max_num_fields=2_000))
+    return address.handler(Visit(web, request, session, body, fields))  # type: ignore[no-any-return]
+
+
+def token_of(asked: HTTPConnection) -> str:
+    """The token of a session that came with a request: a cookie, or `Authorization: Bearer TOKEN` of programs."""
+    kind, _, given = asked.headers.get("authorization", "").partition(" ")
+    return given if kind.lower() == "bearer" else asked.cookies.get(sessions.COOKIE, "")
+
+
+def _is_researcher(web: Web, request: Request) -> bool:
+    kind, _, given = request.headers.get("authorization", "").partition(" ")
+    token = given if kind.lower() == "bearer" else request.cookies.get(desk_access.COOKIE, "")
+    return hmac.compare_digest(sessions.digest(token), web.desk)
+
+
+async def _body(request: Request, most: int) -> bytes:
+    parts, size = [], 0
+    async for part in request.stream():
+        size += len(part)
+        if size > most:
+            raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
+        parts.append(part)
+    return b"".join(parts)
+
+
+async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
+    session = await run_in_threadpool(sessions.find, web.store, token_of(socket))
+    await socket.accept()
+    if session is None:
+        await socket.send_json({"type": "error", **nobody().as_json()})
+        await socket.close(4401)
+        return
+    await address.handler(Link(web, session, socket))
+
+
+def _fault_of(error: Exception) -> WebError:
+    if isinstance(error, WebError):
+        return error
+    if isinstance(error, HTTPException):
+        code = Code.UNKNOWN_ID if error.status_code == 404 else Code.BAD_ARGUMENT
+        return WebError(code, "address", "an address of this server, and a method it has", error.detail)
+    if isinstance(error, HearthError):
+        fault = error.diagnostics[0]
+        return WebError(fault.code, fault.place(), fault.suggestion, fault.message)
+    return WebError(Code.INTERNAL_ERROR, "server", "an answer", "an error in Hearth, not in your request")
+
+
+async def _refused(web: Web, asked: Request, error: Exception) -> Response:
+    """The answer to a request that is refused: a page for browsers, else JSON."""
+    fault = _fault_of(error)
+    status = error.status_code if isinstance(error, HTTPException) else fault.status
+    if "text/html" not in asked.headers.get("accept", ""):
+        return json_answer(fault.as_json(), status)
+    begins = fault.code is Code.NO_SESSION
+    page = render(web, "fault.html", None, fault=fault, begins=begins, back=asked.url.path if begins else "/")
+    return HTMLResponse(page, status)

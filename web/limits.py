@@ -1,0 +1,52 @@
+"""How much and how fast one sender may ask."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+
+from hearth.schemas.failures import Code
+from hearth.web.web_errors import WebError
+
+MOST_BODY = 256 * 1024
+"""Bytes of a request's body, unless its address says otherwise."""
+
+MOST_MESSAGE = 64 * 1024
+"""Bytes of a message over a socket."""
+
+MOST_SENDERS = 10_000
+"""Senders that are remembered; the one that was silent longest is forgotten first."""
+
+
+class Rate:
+    """At most `burst` requests at once and `each_second` in the long run, of each sender.
+
+    Args:
+        each_second: requests a second.
+        burst: requests at once after a pause.
+        now: the clock, in seconds.
+    """
+
+    def __init__(self, each_second: float, burst: float, now: Callable[[], float] = time.monotonic) -> None:
+        self.each_second, self.burst, self._now = each_second, burst, now
+        self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def allows(self, sender: str) -> bool:
+        """Count a request of a sender; whether it is within the limits."""
+        now = self._now()
+        left, since = self._left.pop(sender, (self.burst, now))
+        left = min(self.burst, left + (now - since) * self.each_second)
+        self._left[sender] = (max(0.0, left - 1), now)
+        if len(self._left) > MOST_SENDERS:
+            self._left.popitem(last=False)
+        return left >= 1
+
+    def check(self, sender: str, place: str = "") -> None:
+        """Count a request of a sender.
+
+        Raises:
+            WebError: TOO_FAST.
+        """
+        if not self.allows(sender):
+            raise WebError(Code.TOO_FAST, place, f"at most {self.each_second:g} a second", "more")

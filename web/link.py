@@ -1,0 +1,59 @@
+"""A person's socket: messages in are checked, faults are answered, and the room sees what is in order alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import orjson
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from hearth.schemas.failures import Code
+from hearth.web.messages import Inbox
+from hearth.web.sessions import Session
+from hearth.web.visit import Web
+from hearth.web.web_errors import WebError
+
+
+class Link:
+    """A socket of a session.
+
+    Attributes:
+        web: what all handlers share.
+        session: whose it is.
+        socket: for the address's parts, and for closing.
+    """
+
+    def __init__(self, web: Web, session: Session, socket: WebSocket) -> None:
+        self.web, self.session, self.socket = web, session, socket
+        self._inbox = Inbox()
+
+    async def receive(self) -> dict[str, Any] | None:
+        """The next message that is in order; each that is not gets a fault as its answer. None once it is closed."""
+        while True:
+            try:
+                came = await self.socket.receive()
+            except (WebSocketDisconnect, RuntimeError):
+                return None
+            if came["type"] == "websocket.disconnect":
+                return None
+            raw = came.get("text")
+            try:
+                return self._inbox.take(raw if raw is not None else came.get("bytes") or b"")
+            except WebError as fault:
+                await self.refuse(fault)
+
+    async def send(self, message: dict[str, Any]) -> None:
+        """Send a message; nothing happens if the other side has gone."""
+        try:
+            await self.socket.send_text(orjson.dumps(message).decode())
+        except (WebSocketDisconnect, RuntimeError):
+            return
+
+    async def refuse(self, fault: WebError) -> None:
+        """Send a fault: `{"type": "error", "error": {...}, "next": the number of the next message}`."""
+        await self.send({"type": "error", **fault.as_json(), "next": self._inbox.last + 1})
+
+
+def nobody() -> WebError:
+    """The refusal of whoever has no session."""
+    return WebError(Code.NO_SESSION, "session", "the token of a session", "none, or an unknown one")

@@ -1,0 +1,83 @@
+"""A room of the server: its addresses and its line on the start page; how a room is declared.
+
+    ROOM = Room("annotate", "Annotate", "Write down an activity, step by step.",
+                addresses=(get("/", tasks), post("/{task}", submit), socket("/live", live)),
+                desk=(get("/", overview),))
+
+puts `tasks` at `/annotate/` for persons and `overview` at `/desk/annotate/` for researchers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from hearth.web.limits import MOST_BODY
+from hearth.web.visit import Handler
+
+
+class Who(Enum):
+    """Who may ask for an address."""
+
+    ANYONE = "anyone"
+    PERSON = "a person with a session"
+    RESEARCHER = "who has the desk's token"
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """One address of a room.
+
+    Attributes:
+        method: `GET` (HEAD too), `POST`, or `SOCKET`.
+        path: within the room, as Starlette writes it: `/{task}/review`.
+        handler: a function of a `Visit`; of a socket, a coroutine function of a `Link`.
+        who: may ask; addresses of a room's desk are the researcher's anyway.
+        most: bytes of a body.
+    """
+
+    method: str
+    path: str
+    handler: Callable[..., Any]
+    who: Who = Who.PERSON
+    most: int = MOST_BODY
+
+
+def get(path: str, handler: Handler, who: Who = Who.PERSON) -> Address:
+    """An address that is read."""
+    return Address("GET", path, handler, who)
+
+
+def post(path: str, handler: Handler, who: Who = Who.PERSON, most: int = MOST_BODY) -> Address:
+    """An address that changes something."""
+    return Address("POST", path, handler, who, most)
+
+
+def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
+    """The address of a socket; its handler gets a `Link` of `web/link.py`."""
+    return Address("SOCKET", path, handler)
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """A room.
+
+    Attributes:
+        name: the first part of its addresses, and the folder of its templates and static files.
+        title: as the navigation has it.
+        line: what one does there, for the start page.
+        addresses: what people may ask for.
+        desk: what researchers may ask for, under `/desk/NAME`.
+        needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
+        listed: whether the start page and the navigation list it.
+    """
+
+    name: str
+    title: str
+    line: str
+    addresses: tuple[Address, ...]
+    desk: tuple[Address, ...] = ()
+    needs: tuple[str, ...] = ()
+    listed: bool = True

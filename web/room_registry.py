@@ -1,0 +1,8 @@
+"""The rooms, in the order of the navigation. To add one: a folder with a `ROOM`, its row here (web/README.md)."""
+
+from __future__ import annotations
+
+from hearth.web.room import Room
+
+ROOMS: tuple[Room, ...] = ()
+"""Every room. Its tables are made because its modules, which declare them in METADATA, are imported here."""

@@ -1,0 +1,85 @@
+"""What holds for every answer and every request, before any room sees it: headers, hosts, origins."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from hearth.schemas.failures import Code
+from hearth.web.visit import json_answer
+from hearth.web.web_errors import WebError
+
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "media-src 'self' blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; form-action 'self'; "
+    "base-uri 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+}
+"""Of every answer: nothing runs or loads that did not come from this server, and nothing inline."""
+
+OWN = ("127.0.0.1", "localhost", "[::1]")
+"""Names by which a browser of this machine asks."""
+
+
+class Security:
+    """Adds the headers to every answer; refuses requests for other hosts and from pages of other servers.
+
+    Args:
+        app: what answers otherwise.
+        hosts: names, besides this machine's own, by which people may ask (a public address).
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Collection[str] = ()) -> None:
+        self.app = app
+        self._hosts = {*OWN, *hosts}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request or a connection."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        fault = self._fault(scope)
+        if fault is None:
+            await self.app(scope, receive, _with_headers(send))
+        elif scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 4403, "reason": str(fault.code)})
+        else:
+            await json_answer(fault.as_json(), fault.status)(scope, receive, _with_headers(send))
+
+    def _fault(self, scope: Scope) -> WebError | None:
+        """A page of another server may not use this server's cookies, under whatever name it asks for it."""
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if _name(f"//{host}") not in self._hosts:
+            return WebError(Code.NOT_ALLOWED, "Host", "this server's name", host[:100])
+        origin = headers.get("origin")
+        changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
+        if changes and origin is not None and urlsplit(origin).netloc != host:
+            return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", origin[:100])
+        return None
+
+
+def _name(address: str) -> str:
+    """The host of an address, without its port."""
+    netloc = urlsplit(address).netloc
+    return netloc.rpartition(":")[0] if netloc.rpartition(":")[2].isdecimal() and ":" in netloc else netloc
+
+
+def _with_headers(send: Send) -> Send:
+    async def sent(message: Message) -> None:
+        if message["type"] in ("http.response.start", "websocket.accept"):
+            headers = MutableHeaders(scope=message)
+            for name, value in HEADERS.items():
+                headers[name] = value
+            headers.setdefault("Cache-Control", "no-store")
+        await send(message)
+
+    return sent

@@ -1,0 +1,75 @@
+"""Sessions: each person's own, found by an unguessable token of which the store has a digest alone."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import time
+from typing import NamedTuple
+
+import sqlalchemy as sql
+
+from hearth.schemas.failures import Code
+from hearth.web.store import Store
+from hearth.web.web_errors import WebError
+from hearth.web.web_tables import SESSIONS
+
+COOKIE = "hearth"
+"""The cookie with the token, which scripts can't read."""
+
+
+class Session(NamedTuple):
+    """A person at work.
+
+    Attributes:
+        id: names the session in the store and to researchers.
+        token: the secret that came with the request.
+    """
+
+    id: str
+    token: str
+
+
+def digest(token: str) -> str:
+    """What the store keeps of a token."""
+    return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def start(store: Store) -> Session:
+    """A new session, stored."""
+    made = Session(secrets.token_hex(8), secrets.token_urlsafe(32))
+    row = {"id": made.id, "token": digest(made.token), "created": time.time()}
+    store.write(lambda connection: connection.execute(sql.insert(SESSIONS).values(row)))
+    return made
+
+
+def find(store: Store, token: str) -> Session | None:
+    """The session of a token, or None."""
+    if not token or len(token) > 100:
+        return None
+    query = sql.select(SESSIONS.c.id).where(SESSIONS.c.token == digest(token))
+    found = store.read(lambda connection: connection.execute(query).scalar())
+    return Session(found, token) if found else None
+
+
+def forget(store: Store, session: str) -> None:
+    """Delete a session and, with it, all rows of all rooms that belong to it."""
+    query = sql.delete(SESSIONS).where(SESSIONS.c.id == session)
+    store.write(lambda connection: connection.execute(query))
+
+
+def take_tab(store: Store, session: str, tab: str) -> None:
+    """Make a tab the only one of a session that may act; an older tab is refused from then on."""
+    query = sql.update(SESSIONS).where(SESSIONS.c.id == session).values(tab=tab)
+    store.write(lambda connection: connection.execute(query))
+
+
+def check_tab(connection: sql.Connection, session: str, tab: str) -> None:
+    """Refuse a tab that is not the one that may act; called within the transaction of what it does.
+
+    Raises:
+        WebError: LOCKED.
+    """
+    found = connection.execute(sql.select(SESSIONS.c.tab).where(SESSIONS.c.id == session)).scalar()
+    if found != tab:
+        raise WebError(Code.LOCKED, "tab", "the tab of this session that was opened last", "an older tab")
