@@ -59,7 +59,7 @@ def render(
         ((24, 32, 3), 'uint16')
     """
     wanted = check_modalities(list(modalities), quality)
-    return pictures_of(shoot(scene, camera, class_ids, after), wanted, quality)
+    return pictures_of(shoot(scene, camera, class_ids, after, by_rays=quality == "fine"), wanted, quality)
 
 
 def check_modalities(wanted: list[str], quality: str) -> list[str]:

@@ -287,7 +287,7 @@ def snapshots(
                 last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
                 shot, known = replace(last_frames[choice].shot, after=later.scene), {"rgb": last_frames[choice].picture}
             else:
-                shot, known = shoot(keyframe.scene, camera, after=later.scene), {}
+                shot, known = shoot(keyframe.scene, camera, after=later.scene, by_rays=True), {}
             pictures = known | pictures_of(shot, [name for name in drawn if name not in known], quality)
             if "graph" in wanted:
                 pictures["graph"] = to_release(keyframe.places.graph)

@@ -18,9 +18,8 @@ from hearth.rendering.arrays import Bytes
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.modalities import pictures_of as others
 from hearth.rendering.rays import shading
-from hearth.rendering.rays.casting import Hits
 from hearth.rendering.rays.shading import Exposure, Setting
-from hearth.rendering.rays.shot import Shot, camera_rays, cast_at, everywhere, overlay, prepare, setting_of
+from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, hits_on_static, overlay, prepare, setting_of
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.triangles import Geometry
@@ -48,8 +47,7 @@ class StaticLayer:
         alone = replace(scene, things=())
         geometry = alone.geometry if camera.cut is None else alone.opened
         rays, skipped = camera_rays(camera, (0.5, 0.5))
-        hits = Hits.none(len(rays))
-        cast_at(geometry, rays, everywhere(len(rays)), hits)
+        hits = hits_on_static(geometry, camera, rays)
         shot = Shot(alone, camera, geometry, rays, skipped, hits, {})
         setting, rgb = setting_of(shot), np.empty((len(rays), 3), np.uint8)
         exposures = shading.whole(shading.chunks(everywhere(len(rays))), rays, hits, geometry, setting, rgb)

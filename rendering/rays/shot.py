@@ -12,6 +12,7 @@ from hearth.rendering.arrays import Floats, Image
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.rays import shading
 from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays.first_hits import drawable, moving_hits, static_hits
 from hearth.rendering.rays.kernels import taken
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.rays.threads import each
@@ -32,6 +33,7 @@ class Shot:
         class_ids: class -> number.
         after: the next scene, if known, for optical flow.
         behind: first hits on static things, reused by the next shot.
+        by_rays: whether first hits are cast, as for fine pictures; else they are rasterised.
     """
 
     scene: Scene
@@ -43,6 +45,7 @@ class Shot:
     class_ids: Mapping[str, int]
     after: Scene | None = None
     behind: Hits | None = None
+    by_rays: bool = False
 
     @cached_property
     def owner(self) -> NDArray[np.int32]:
@@ -60,31 +63,42 @@ class Shot:
         return values.reshape(self.camera.height, self.camera.width, *values.shape[1:])
 
 
-def shoot(scene: Scene, camera: Camera, class_ids: Mapping[str, int] | None = None, after: Scene | None = None) -> Shot:
-    """Cast a camera's rays."""
+def shoot(
+    scene: Scene,
+    camera: Camera,
+    class_ids: Mapping[str, int] | None = None,
+    after: Scene | None = None,
+    *,
+    by_rays: bool = False,
+) -> Shot:
+    """What each of a camera's rays hits first; see `Shot`."""
     rays, skipped = camera_rays(camera)
     geometry = scene.geometry if camera.cut is None else scene.opened
-    hits = Hits.none(len(rays))
-    cast_at(geometry, rays, everywhere(len(rays)), hits)
-    behind = hits.copy() if after else None
-    overlay(geometry, camera, rays, hits)
-    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {}, after, behind)
+    by_rays = by_rays or not drawable(camera)
+    hits = behind = hits_on_static(geometry, camera, rays, by_rays=by_rays)
+    if len(geometry.moving.mesh):
+        hits = behind.copy()
+        overlay(geometry, camera, rays, hits, by_rays=by_rays)
+    return Shot(scene, camera, geometry, rays, skipped, hits, class_ids or {}, after, behind, by_rays)
 
 
 def shoot_after(scene: Scene, shot: Shot) -> Shot:
-    """The shot of a later scene by the same camera; rays are cast again only at moving things."""
+    """The shot of a later scene by the same camera; only moving things are looked for again."""
     camera = shot.camera
     geometry = scene.geometry if camera.cut is None else scene.opened
     if shot.behind is None or geometry.static is not shot.geometry.static:
-        return shoot(scene, camera)
-    prepare(geometry)
+        return shoot(scene, camera, by_rays=shot.by_rays)
     hits = shot.behind.copy()
-    overlay(geometry, camera, shot.rays, hits)
+    overlay(geometry, camera, shot.rays, hits, by_rays=shot.by_rays)
     return replace(shot, scene=scene, geometry=geometry, hits=hits, after=None)
 
 
-def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: Hits) -> None:
-    """Fill in the hits of some pixels' rays on static things."""
+def hits_on_static(geometry: Geometry, camera: Camera, rays: Floats, *, by_rays: bool = False) -> Hits:
+    """The first hits of a camera's rays on static things."""
+    hits = Hits.none(len(rays))
+    if not by_rays and drawable(camera):
+        static_hits(geometry.static, camera, rays, hits)
+        return hits
     prepare(geometry)
 
     def work(chunk: NDArray[np.int32]) -> None:
@@ -92,7 +106,8 @@ def cast_at(geometry: Geometry, rays: Floats, pixels: NDArray[np.int32], hits: H
         for values, found in zip(hits, geometry.static.caster.cast(rays[part]), strict=True):
             values[part] = found
 
-    each(work, shading.chunks(pixels))
+    each(work, shading.chunks(everywhere(len(rays))))
+    return hits
 
 
 def prepare(geometry: Geometry) -> None:
@@ -101,11 +116,16 @@ def prepare(geometry: Geometry) -> None:
         _ = part.caster, part.shadows, part.rows
 
 
-def overlay(geometry: Geometry, camera: Camera, rays: Floats, hits: Hits) -> NDArray[np.int32]:
-    """Cast at moving things the rays that can hit them; returns the pixels that show one."""
+def overlay(
+    geometry: Geometry, camera: Camera, rays: Floats, hits: Hits, *, by_rays: bool = False
+) -> NDArray[np.int32]:
+    """Replace hits on static things by nearer hits on moving things; returns the pixels that show one."""
     moving = geometry.moving
     if not len(moving.mesh):
         return everywhere(0)
+    if not by_rays and drawable(camera):
+        return moving_hits(moving, camera, rays, geometry.first, hits)
+    prepare(geometry)
     covered = np.zeros(camera.height * camera.width, np.bool_)
     for box in moving.boxes:
         left, top, right, bottom = camera.extent(box)

@@ -73,11 +73,35 @@ class Part:
         return rows
 
     @cached_property
+    def ends(self) -> Numbers:
+        """(things,) the triangle after each thing's last."""
+        return np.append(self.starts[1:], len(self.mesh)).astype(np.int64)
+
+    @cached_property
+    def extents(self) -> Floats:
+        """(things, 6) low and high corners of each thing's box; of a thing without triangles, a box of no size."""
+        bounds = [placed(thing).bounds() if len(placed(thing)) else NOWHERE for thing in self.things]
+        return np.array([(*low, *high) for low, high in bounds], np.float64).reshape(-1, 6)
+
+    @cached_property
+    def building(self) -> Numbers:
+        """Indices of the things that belong to the building, which hide others."""
+        return np.flatnonzero([thing.structural for thing in self.things])
+
+    @cached_property
+    def furnishing(self) -> Numbers:
+        """Indices of all other things."""
+        return np.flatnonzero([not thing.structural for thing in self.things])
+
+    @cached_property
     def boxes(self) -> Floats:
         """(K, 6) low and high corners of a few small boxes that contain all triangles."""
         bounds = [placed(thing).bounds() for thing in self.things if len(placed(thing))]
         merged = _merged([(low - MARGIN, high + MARGIN) for low, high in bounds])
         return np.array([(*low, *high) for low, high in merged], np.float32).reshape(-1, 6)
+
+
+NOWHERE = (np.zeros(3, np.float32), np.zeros(3, np.float32))
 
 
 def _merged(boxes: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
