@@ -75,10 +75,10 @@ class Lineup:
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
         main = MAIN[known.main if helped and known and known.main else self.main]()
-        found = [Player(Guarded(main, 0, allowed, self.seconds), goal, _partial(main))]
+        found = [Player(Guarded(main, 0, allowed, self.seconds), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
             agent: Agent = known.make(main) if known else self._own(which)
-            found.append(Player(Guarded(agent, 1, allowed, self.seconds), helper_goal, _partial(agent)))
+            found.append(Player(Guarded(agent, 1, allowed, self.seconds), helper_goal, partial_of(agent)))
         return found
 
     def _own(self, which: Challenge) -> Agent:
@@ -89,8 +89,8 @@ class Lineup:
         return own
 
 
-def _partial(agent: Any) -> bool | None:
-    """An oracle of ours sees everything; nobody else's agent does."""
+def partial_of(agent: Any) -> bool | None:
+    """Whether an agent sees only what is around it, for `Player`: an oracle of ours sees all, nobody else's does."""
     ours = type(agent).__module__.startswith("hearth.agents.")
     return False if ours and agent.__dict__.get("habits") is not None and agent.habits.sees_all else None
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hearth.agents.protocol import Agent, Resigned
 from hearth.challenges.guard import AgentError
 from hearth.schemas.goals import Goal
+from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
-from hearth.simulation.env import Env
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.env import Env, Tick
 from hearth.simulation.goals import Progress
+from hearth.simulation.observation.views import View
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
@@ -58,6 +61,62 @@ class Played:
         return len(self.env.ticks)
 
 
+class Playing:
+    """An episode under way: what each player sees, one tick after the other, and whether it is over.
+
+    Attributes:
+        env: with its ticks.
+        progress: of the goal in the real world, at the start and after each tick.
+
+    Args:
+        start: a world in which character n belongs to player n.
+        goal: what ends the episode.
+        actions: what may be tried; everything where None.
+        partial: for each player, whether it sees only what is around it.
+        limit: ticks after which it ends.
+        rules: of actions.
+    """
+
+    def __init__(
+        self,
+        start: World,
+        goal: Goal,
+        partial: Sequence[bool],
+        *,
+        actions: Iterable[str] | None = None,
+        limit: int = MOST_TICKS,
+        rules: Rules = DEFAULT,
+    ) -> None:
+        self.env = Env(rules)
+        self.env.restore(start)
+        self.progress = [Progress.start(goal, start)]
+        self.limit = limit
+        self._partial = tuple(partial)
+        self._allowed = None if actions is None else frozenset(actions)
+
+    @property
+    def over(self) -> bool:
+        """Whether the goal is reached or the time is over."""
+        return self.progress[-1].satisfied or len(self.env.ticks) >= self.limit
+
+    def view(self, number: int) -> View:
+        """What a player sees now."""
+        self.env.partial = self._partial[number]
+        return self.env.observe(number)
+
+    def legal(self, number: int) -> Legal:
+        """What a player may do now."""
+        self.env.partial = self._partial[number]
+        return self.env.legal(number, actions=self._allowed)
+
+    def step(self, chosen: Mapping[int, Step | None]) -> Tick:
+        """Let each player do one instruction (see `Env.step`)."""
+        done = self.env.step(chosen)
+        tried = [step for number, step in done.instructions.items() if number not in done.failures]
+        self.progress.append(self.progress[-1].then(done.before, done.world, tried))
+        return done
+
+
 def play(
     start: World,
     goal: Goal,
@@ -81,24 +140,19 @@ def play(
         limit: ticks after which it ends.
         rules: of actions.
     """
-    env = Env(rules, partial)
-    env.restore(start)
-    progress = [Progress.start(goal, start)]
-    allowed = None if actions is None else frozenset(actions)
+    seen = [partial if player.partial is None else player.partial for player in players]
+    playing = Playing(start, goal, seen, actions=actions, limit=limit, rules=rules)
+    fault = None
     try:
         for number, player in enumerate(players):
-            env.partial = partial if player.partial is None else player.partial
-            player.agent.reset(env.observe(number), player.goal, derive(seed, "agent", number))
-        while len(env.ticks) < limit and not progress[-1].satisfied:
-            chosen = {}
-            for number, player in enumerate(players):
-                env.partial = partial if player.partial is None else player.partial
-                chosen[number] = player.agent.act(env.observe(number), env.legal(number, actions=allowed))
-            done = env.step(chosen)
-            tried = [step for number, step in done.instructions.items() if number not in done.failures]
-            progress.append(progress[-1].then(done.before, done.world, tried))
-    except AgentError as fault:
-        return Played(env, tuple(progress), fault)
+            player.agent.reset(playing.view(number), player.goal, derive(seed, "agent", number))
+        while not playing.over:
+            turns = enumerate(players)
+            playing.step(
+                {number: player.agent.act(playing.view(number), playing.legal(number)) for number, player in turns}
+            )
+    except AgentError as found:
+        fault = found
     except Resigned:
         pass
-    return Played(env, tuple(progress))
+    return Played(playing.env, tuple(playing.progress), fault)

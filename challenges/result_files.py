@@ -32,12 +32,14 @@ class Header:
         lineup: who took part; names only.
         seeds: episodes of each task, numbered from 0.
         version: of Hearth.
+        episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
     """
 
     suite: Suite
     lineup: Lineup
     seeds: int
     version: str = VERSION
+    episodes: tuple[tuple[str, int, bool], ...] | None = None
 
     @property
     def helped(self) -> tuple[bool, ...]:
@@ -47,6 +49,8 @@ class Header:
     @property
     def keys(self) -> list[tuple[str, int, bool]]:
         """Task, seed and kind of every episode, in the order of the file."""
+        if self.episodes is not None:
+            return list(self.episodes)
         return [(t.id, n, helped) for t in self.suite.tasks for n in range(self.seeds) for helped in self.helped]
 
     def as_json(self) -> dict[str, Any]:
@@ -58,6 +62,7 @@ class Header:
             "suite": suite_data(self.suite),
             "agents": agents,
             "seeds": self.seeds,
+            **({} if self.episodes is None else {"episodes": self.episodes}),
         }
 
 
@@ -137,7 +142,22 @@ def read_header(data: bytes, file: str) -> Header:
     if not isinstance(seeds, int) or isinstance(seeds, bool) or not 0 < seeds <= MOST_SEEDS:
         raise HearthError.of(Code.BAD_JSON, f"`seeds` is not a number from 1 to {MOST_SEEDS:,}", file=file)
     suite = read_suite(given.get("suite"), file)
-    return Header(suite, Lineup(str(names[0]), str(names[1]), str(names[2])), seeds, str(given.get("hearth"))[:40])
+    lineup, version = Lineup(str(names[0]), str(names[1]), str(names[2])), str(given.get("hearth"))[:40]
+    return Header(suite, lineup, seeds, version, _some_episodes(given.get("episodes"), suite, seeds, file))
+
+
+def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tuple[str, int, bool], ...] | None:
+    """The episodes that a file names because it does not have all; None where it has."""
+    if given is None:
+        return None
+    tasks = {task.id for task in suite.tasks}
+    found = [tuple(each) for each in given if isinstance(each, list)] if isinstance(given, list) else []
+    right = [key for key in found if [type(part) for part in key] == [str, int, bool]]
+    if not right or right != list(dict.fromkeys(right)) or len(right) != len(given):
+        raise HearthError.of(Code.BAD_JSON, "`episodes` is not a list of different [task, seed, helped]", file=file)
+    if any(task not in tasks or not 0 <= seed < seeds for task, seed, _ in right):
+        raise HearthError.of(Code.BAD_JSON, "`episodes` names a task or a seed that there is not", file=file)
+    return tuple((task, seed, helped) for task, seed, helped in right)
 
 
 def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[Record]:
