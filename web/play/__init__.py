@@ -1,0 +1,66 @@
+"""Room 2, Play: a person in a home, alone or with a helper; the server side of games and their pages.
+
+Studies use `start_trial`, the address of `trial_address`, and `recorded_episode`.
+"""
+
+from __future__ import annotations
+
+import sqlalchemy as sql
+
+from hearth.challenges.episodes import Record
+from hearth.kb.knowledge import Knowledge
+from hearth.web.play import game_store, play_pages
+from hearth.web.play.live_games import games
+from hearth.web.play.play_socket import live
+from hearth.web.play.trials import Trial
+from hearth.web.room import Room, get, post, socket
+from hearth.web.store import Store
+
+ROOM = Room(
+    "play",
+    "Play",
+    "Do things in a home, alone or with a helper.",
+    addresses=(
+        get("/", play_pages.start_page),
+        post("/new", play_pages.new),
+        get("/game/{game}", play_pages.game_page),
+        get("/game/{game}/episode.jsonl", play_pages.record),
+        socket("/game/{game}/live", live),
+        get("/join/{code}", play_pages.join_page),
+        post("/join/{code}", play_pages.join),
+    ),
+    desk=(get("", play_pages.desk_page), get("/results.jsonl", play_pages.desk_results)),
+    needs=("three",),
+)
+"""The room."""
+
+
+def start_trial(connection: sql.Connection, session: str, trial: Trial, go_on: str = "/play/") -> str:
+    """Begin a trial for a session, within a transaction of `Store.write`.
+
+    Args:
+        connection: of the transaction.
+        session: whose trial it is; it has the first character.
+        trial: as `hearth.web.play.trials.trial` makes it of a task, a helper, an interface, a seed, and what is seen.
+        go_on: address of ours to which the page leads once it is over.
+
+    Returns:
+        The game's id.
+    """
+    return game_store.begin(connection, session, trial, go_on)
+
+
+def trial_address(game: str) -> str:
+    """Where the person plays it."""
+    return f"/play/game/{game}"
+
+
+def recorded_episode(store: Store, knowledge: Knowledge, game: str) -> Record | None:
+    """What was done in a trial, as result files have it; None while it goes on.
+
+    `hearth.web.play.game_results.results` makes files of several.
+    """
+    found = games(store, knowledge).open(game)
+    with found.lock:
+        played = found.sync()
+        return played.record() if played.over else None

@@ -1,0 +1,214 @@
+"""What a person's page is told of a game: at first all that it sees, then what is different after each tick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from hearth.challenges.observations import last_json
+from hearth.homes.geometry import footprint
+from hearth.schemas.graph import Node
+from hearth.schemas.literals import AGENT, HOLDS
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
+from hearth.simulation.actions.legal import Legal
+from hearth.simulation.observation import reach
+from hearth.simulation.observation.as_seen import as_seen
+from hearth.simulation.observation.views import View
+from hearth.simulation.world import rows
+from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
+from hearth.web.play.games import Game
+from hearth.web.play.remembered import Counted
+
+USES = ("GRABBABLE", "CAN_OPEN", "HAS_SWITCH", "SURFACES", "CONTAINERS", "SITTABLE", "LIEABLE")
+"""Properties of things that pages show; what has none of them, such as a wall, nobody can do anything with."""
+
+PLAN = ("Walls", "Doors", "Windows")
+"""Categories that floor plans show of a whole home, which everybody knows."""
+
+Objects = dict[int, list[Any]]
+"""Node id -> room, relation, holder, states, whether it is close; what changes of a thing."""
+
+
+def thing_group(node: Node) -> str:
+    """The panel of a thing: rooms and doors, furniture, things that one can hold, or people; floors are in none."""
+    if node.category == "Floor":
+        return "floor"
+    if node.category in (ROOM_CATEGORY, "Doors"):
+        return "rooms"
+    if node.category == CHARACTER_CATEGORY:
+        return "people"
+    return "things" if "GRABBABLE" in node.properties else "furniture"
+
+
+class Telling:
+    """What one page knows of a game, so that it is told only what is new.
+
+    Args:
+        game: the game.
+        number: the character of the person.
+    """
+
+    def __init__(self, game: Game, number: int) -> None:
+        self.game, self.number = game, number
+        self._known: Objects = {}
+        self._named: set[int] = set()
+
+    def begin(self) -> dict[str, Any]:
+        """Everything: the trial, the floor plan, what is seen and was seen."""
+        game = self.game
+        trial = game.trial
+        self._known, self._named = {}, set()
+        seen = game.seen[self.number]
+        return {
+            "type": "begin",
+            "me": self.number,
+            "characters": len(game.start.agents),
+            "helper": trial.helper,
+            "interface": trial.interface,
+            "limit": game.playing.limit,
+            "partial": trial.partial,
+            "plan": floor_plan(game.start.home),
+            "trails": {str(who): [[at, *_point(pose)] for at, pose in way] for who, way in seen.trails.items()},
+            **self.now(),
+        }
+
+    def now(self) -> dict[str, Any]:
+        """The tick: what changed for this page, what it may do, how far the goal is."""
+        game = self.game
+        view, legal = game.view(self.number), game.legal(self.number)
+        objects = seen_objects(view)
+        changed = {str(node): row for node, row in objects.items() if self._known.get(node) != row}
+        gone = [node for node in self._known if node not in objects]
+        new = [node for node in objects if node not in self._named]
+        self._known = objects
+        self._named.update(new)
+        return {
+            "tick": game.tick,
+            "goal": [_wanted(each, view.world.home) for each in game.seen[self.number].counts],
+            "things": {str(node): _thing(view.world.home, node) for node in new},
+            "changed": changed,
+            "gone": gone,
+            "legal": legal_json(legal),
+            "agents": [_character(pose, view) for pose in (view.me, *view.others)],
+            "over": game.over,
+            "success": game.playing.progress[-1].satisfied,
+            "end": None if game.end is None else game.end["code"],
+        }
+
+    def tick(self) -> dict[str, Any]:
+        """The same as a message of its own."""
+        return {"type": "tick", **self.now()}
+
+
+def seen_objects(view: View) -> Objects:
+    """Things that can be used and that a person sees: their room, what they are on or in, states, and whether close."""
+    home, world = view.world.home, as_seen(view.world, view.mask)
+    usable = home.rooms | home.characters
+    for name in USES:
+        usable |= home.properties[name]
+    agent = world.agents[view.agent]
+    close = reach.close_to(world, agent)
+    held = {i: other for other in world.agents for i in rows.held_indices(other)}
+    found: Objects = {}
+    for i in indices(usable & view.mask & ~agent.bit):
+        relation, holder = _where(view, i, held)
+        states = [name for number, name in enumerate(STATES) if world.states[number] >> i & 1]
+        room = i if home.rooms >> i & 1 else rows.room_of(world, i)
+        if home.characters >> i & 1:
+            room = rows.agent_room(world, rows.character(world, i))
+        found[home.ids[i]] = [home.ids[room] if room >= 0 else 0, relation, holder, states, close >> i & 1]
+    return found
+
+
+def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
+    """What a thing is held by, in, or on, as far as it is seen; '' and 0 where there is no such thing."""
+    world, home = view.world, view.world.home
+    if i in held:
+        return "held", home.ids[held[i].index]
+    if home.characters >> i & 1:
+        return "", 0
+    inside = rows.inside(world, i) & ~home.rooms & view.mask
+    if inside:
+        return "in", home.ids[lowest(inside)]
+    on = rows.on(world, i) & ~home.rooms & view.mask
+    return ("on", home.ids[lowest(on)]) if on else ("", 0)
+
+
+def _thing(home: Home, node_id: int) -> list[Any]:
+    """What never changes of a thing: class, panel, footprint on the plan."""
+    node = home.node(home.index[node_id])
+    return [node.class_name, thing_group(node), _rect(node)]
+
+
+def _rect(node: Node) -> list[float] | None:
+    if node.box is None:
+        return None
+    rect = footprint(node.box)
+    return [round(value, 2) for value in (rect.x0, rect.z0, rect.x1, rect.z1)]
+
+
+def floor_plan(home: Home) -> list[list[Any]]:
+    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id."""
+    kinds = {ROOM_CATEGORY: "room", "Walls": "wall", "Doors": "door", "Windows": "window"}
+    nodes = [home.node(i) for i in range(len(home.ids)) if not home.absent >> i & 1]
+    order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
+    return [[kinds[node.category], node.class_name, _rect(node), node.id] for node in order]
+
+
+def legal_json(legal: Legal) -> dict[str, list[list[int]]]:
+    """The instructions that can be done: action -> the ids that each of its places may have."""
+    return {name: [list(legal.objects(name, n)) for n in range(len(masks))] for name, masks in legal.masks.items()}
+
+
+def _character(pose: Any, view: View) -> dict[str, Any]:
+    where = None if pose.place is None else _point(pose.place)
+    return {
+        "agent": pose.agent,
+        "node": pose.node,
+        "place": where,
+        "room": pose.room or 0,
+        "posture": pose.posture,
+        "holding": list(pose.holding),
+        "last": None if pose.last is None else last_json(pose.last, view),
+    }
+
+
+def _point(pose: Pose) -> list[float]:
+    return [round(pose.x, 3), round(pose.z, 3), round(pose.yaw, 1)]
+
+
+def _wanted(counted: Counted, home: Home) -> dict[str, Any]:
+    each = counted.seen
+    count = min(counted.count, each.wanted)
+    return {"text": goal_words(each.literal, home), "classes": list(_classes(each.literal, home)),
+            "count": count, "wanted": each.wanted}  # fmt: skip
+
+
+def _classes(literal: Any, home: Home) -> Iterator[str]:
+    """The classes of the home's things that a literal is about, so that pages can mark them."""
+    for term in literal.terms:
+        if isinstance(term, int):
+            yield home.classes[home.index[term]]
+        elif term.partition(":")[0] != AGENT:
+            yield from sorted({home.classes[i] for i in indices(home.instances(term))})
+
+
+def goal_words(literal: Any, home: Home) -> str:
+    """A literal of a goal for people: `Put plate on dining table`."""
+    names = [_name(term, home) for term in literal.terms]
+    if literal.name == HOLDS:
+        return f"Hold {names[1]}"
+    if str(literal.terms[0]).partition(":")[0] == AGENT:
+        return f"Sit on {names[1]}"
+    return f"Put {names[0]} {'in' if literal.name == 'INSIDE' else 'on'} {names[1]}"
+
+
+def _name(term: Any, home: Home) -> str:
+    if isinstance(term, int):
+        name = home.classes[home.index[term]]
+    else:
+        found = home.instances(term) if term.partition(":")[0] != AGENT else 0
+        name = home.classes[lowest(found)] if found else term
+    return name.replace("_", " ")

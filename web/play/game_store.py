@@ -1,0 +1,183 @@
+"""Games in the store: begun, joined, decided in, ended. Any process can go on with a game, for all of it is here."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import orjson
+import sqlalchemy as sql
+
+from hearth.schemas.failures import Code
+from hearth.web.play.game_tables import DECISIONS, GAMES, SEATS
+from hearth.web.play.trials import PERSON, Trial, read_trial
+from hearth.web.sessions import check_tab
+from hearth.web.store import Store
+from hearth.web.web_errors import WebError
+
+
+class Stored(NamedTuple):
+    """A game as the store has it.
+
+    Attributes:
+        id: names it.
+        trial: what is played.
+        created: seconds since 1970.
+        code: the secret by which a second person joins.
+        go_on: address to go on to after its end.
+        end: why it ended early; None if it did not.
+        result: `success` and `ticks`; None until it is over.
+    """
+
+    id: str
+    trial: Trial
+    created: float
+    code: str
+    go_on: str
+    end: dict[str, Any] | None
+    result: dict[str, Any] | None
+
+
+class Decided(NamedTuple):
+    """A decision as the store has it."""
+
+    agent: int
+    act: str | None
+    at: float
+
+
+def begin(connection: sql.Connection, session: str, trial: Trial, go_on: str = "/play/") -> str:
+    """Begin a game of a session, within a transaction; its id."""
+    game = secrets.token_urlsafe(16)
+    connection.execute(
+        sql.insert(GAMES).values(
+            id=game,
+            session=session,
+            created=time.time(),
+            task=trial.task.id,
+            trial=orjson.dumps(trial.as_json()).decode(),
+            code=secrets.token_urlsafe(16),
+            go_on=go_on,
+        )
+    )
+    connection.execute(sql.insert(SEATS).values(game=game, agent=0, session=session))
+    return game
+
+
+def join(connection: sql.Connection, session: str, code: str) -> str:
+    """Take the second seat of the game with a code; its id. Who has a seat of it keeps that.
+
+    Raises:
+        WebError: UNKNOWN_ID: there is no such game for two; LOCKED: somebody else has the seat.
+    """
+    found = connection.execute(sql.select(GAMES.c.id, GAMES.c.trial).where(GAMES.c.code == code)).first()
+    if found is None or read_trial(orjson.loads(found.trial)).helper != PERSON:
+        raise WebError(Code.UNKNOWN_ID, "code", "the code of a game for two", "another")
+    rows = connection.execute(sql.select(SEATS.c.agent, SEATS.c.session).where(SEATS.c.game == found.id))
+    seats = {row.session: row.agent for row in rows}
+    if session not in seats:
+        if len(seats) > 1:
+            raise WebError(Code.LOCKED, "code", "a free seat", "somebody else has it")
+        connection.execute(sql.insert(SEATS).values(game=found.id, agent=1, session=session))
+    return str(found.id)
+
+
+def seat(connection: sql.Connection, game: str, session: str) -> int:
+    """The character that a session plays in a game.
+
+    Raises:
+        WebError: UNKNOWN_ID: none; whether there is such a game is not said.
+    """
+    query = sql.select(SEATS.c.agent).where(SEATS.c.game == game, SEATS.c.session == session)
+    found = connection.execute(query).scalar()
+    if found is None:
+        raise WebError(Code.UNKNOWN_ID, "game", "a game of this session", "another")
+    return int(found)
+
+
+def stored(connection: sql.Connection, game: str) -> Stored:
+    """A game; who may see it, `seat` has checked."""
+    return _stored(connection.execute(sql.select(GAMES).where(GAMES.c.id == game)).one())
+
+
+def games_of(connection: sql.Connection, session: str) -> list[Stored]:
+    """The games in which a session has a seat, the newest first."""
+    query = sql.select(GAMES).join(SEATS, SEATS.c.game == GAMES.c.id).where(SEATS.c.session == session)
+    return [_stored(row) for row in connection.execute(query.order_by(GAMES.c.created.desc()))]
+
+
+def played_before(connection: sql.Connection, task: str) -> int:
+    """How many games of a task there are."""
+    query = sql.select(sql.func.count()).select_from(GAMES).where(GAMES.c.task == task)
+    return int(connection.execute(query).scalar_one())
+
+
+def all_games(connection: sql.Connection) -> list[Stored]:
+    """Every game, the oldest first; for researchers."""
+    return [_stored(row) for row in connection.execute(sql.select(GAMES).order_by(GAMES.c.created, GAMES.c.id))]
+
+
+def _stored(row: Any) -> Stored:
+    end, result = (None if each is None else orjson.loads(each) for each in (row.end, row.result))
+    return Stored(row.id, read_trial(orjson.loads(row.trial)), row.created, row.code, row.go_on, end, result)
+
+
+def decisions(connection: sql.Connection, game: str, since: int = 0) -> dict[int, list[Decided]]:
+    """The decisions of the ticks from `since` on, by tick and character."""
+    query = sql.select(DECISIONS).where(DECISIONS.c.game == game, DECISIONS.c.tick >= since)
+    found: dict[int, list[Decided]] = {}
+    for row in connection.execute(query.order_by(DECISIONS.c.tick, DECISIONS.c.agent)):
+        found.setdefault(row.tick, []).append(Decided(row.agent, row.act, row.at))
+    return found
+
+
+class Turn(NamedTuple):
+    """A tick of a game in which somebody decides."""
+
+    game: str
+    tick: int
+    characters: int
+
+
+def decide(connection: sql.Connection, turn: Turn, acts: Mapping[int, str | None]) -> None:
+    """Accept decisions of a tick, if it is that tick's turn and nobody else has decided for these characters.
+
+    Raises:
+        WebError: OUT_OF_ORDER.
+    """
+    known = decisions(connection, turn.game, max(0, turn.tick - 1))
+    complete = turn.tick == 0 or len(known.get(turn.tick - 1, ())) == turn.characters
+    taken = any(each.agent in acts for each in known.get(turn.tick, ()))
+    if not complete or taken or any(tick > turn.tick for tick in known):
+        raise WebError(Code.OUT_OF_ORDER, "tick", "the tick that is to be decided now", str(turn.tick))
+    now = time.time()
+    rows = [{"game": turn.game, "tick": turn.tick, "agent": n, "act": act, "at": now} for n, act in acts.items()]
+    connection.execute(sql.insert(DECISIONS), rows)
+
+
+def end(connection: sql.Connection, game: str, why: Mapping[str, Any]) -> None:
+    """Write why a game ended early; the first reason stays."""
+    query = sql.update(GAMES).where(GAMES.c.id == game, GAMES.c.end.is_(None))
+    connection.execute(query.values(end=orjson.dumps(why).decode()))
+
+
+def over(connection: sql.Connection, game: str, success: bool, ticks: int) -> None:
+    """Write that a game is over."""
+    result = orjson.dumps({"success": success, "ticks": ticks}).decode()
+    connection.execute(sql.update(GAMES).where(GAMES.c.id == game).values(result=result))
+
+
+def accept(store: Store, session: str, tab: str, turn: Turn, acts: Mapping[int, str | None]) -> None:
+    """Accept decisions of a session's tab in one transaction: once this returns, no kill loses them.
+
+    Raises:
+        WebError: LOCKED: another tab has this session; OUT_OF_ORDER: it is not that tick's turn.
+    """
+
+    def work(connection: sql.Connection) -> None:
+        check_tab(connection, session, tab)
+        decide(connection, turn, acts)
+
+    store.write(work)

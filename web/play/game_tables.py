@@ -1,0 +1,47 @@
+"""The store's tables of games: trials, who plays which character, and every decision that was accepted."""
+
+from __future__ import annotations
+
+import sqlalchemy as sql
+
+from hearth.web.web_tables import METADATA, owner
+
+GAMES = sql.Table(
+    "play_games",
+    METADATA,
+    sql.Column("id", sql.Text, primary_key=True, comment="random and unguessable; part of its address"),
+    owner(),
+    sql.Column("created", sql.Float, nullable=False, comment="seconds since 1970, UTC"),
+    sql.Column("task", sql.Text, nullable=False, index=True, comment="id of its task"),
+    sql.Column("trial", sql.Text, nullable=False, comment="JSON, see web/play/trials.py"),
+    sql.Column("code", sql.Text, nullable=False, unique=True, comment="the secret by which a second person joins"),
+    sql.Column("go_on", sql.Text, nullable=False, comment="address of ours to go on to after its end"),
+    sql.Column("end", sql.Text, comment="JSON: why it ended before its goal and time, if it did"),
+    sql.Column("result", sql.Text, comment="JSON: success and ticks, once it is over"),
+)
+"""A trial that was begun."""
+
+
+def _game() -> sql.Column[str]:
+    return sql.Column("game", sql.Text, sql.ForeignKey("play_games.id", ondelete="CASCADE"), primary_key=True)
+
+
+SEATS = sql.Table(
+    "play_seats",
+    METADATA,
+    _game(),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    owner(),
+)
+"""Who plays which character."""
+
+DECISIONS = sql.Table(
+    "play_decisions",
+    METADATA,
+    _game(),
+    sql.Column("tick", sql.Integer, primary_key=True, comment="from 0"),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    sql.Column("act", sql.Text, comment="as in records, `Grab 41`; null for who waits"),
+    sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when it was accepted"),
+)
+"""What each character tried in each tick. A tick is done once every character has a row of it; a row never changes."""

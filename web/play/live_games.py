@@ -1,0 +1,209 @@
+"""Games that this process knows: each is done again from the store, and kept while somebody plays it here."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections import OrderedDict
+from weakref import WeakKeyDictionary
+
+from hearth.challenges.channels import Listener
+from hearth.challenges.guard import AgentError
+from hearth.challenges.wire import WireAgent
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.web.play import game_store
+from hearth.web.play.game_store import Decided, Stored, Turn
+from hearth.web.play.games import HELPER, Game
+from hearth.web.play.trials import PROGRAM
+from hearth.web.store import Store
+from hearth.web.web_errors import WebError
+
+MOST_GAMES = 300
+"""Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
+
+PATIENCE = 15.0
+"""Seconds after which the other of two people waits in a tick, if one has decided and the other has not."""
+
+PROGRAM_WITHIN = 10.0
+"""Seconds that a helper's program may think about a tick."""
+
+
+class LiveGame:
+    """A game in this process.
+
+    Attributes:
+        stored: as it was begun.
+        game: as far as this process knows it.
+        lock: held by whoever works with `game`.
+        port: where the helper's program is waited for; 0 if it is not.
+    """
+
+    def __init__(self, store: Store, stored: Stored, knowledge: Knowledge) -> None:
+        self.store, self.stored = store, stored
+        self.game = Game(stored.trial, knowledge)
+        self.lock = threading.RLock()
+        self.waiting_since = 0.0
+        self.decided: tuple[int, ...] = ()
+        self._listener: Listener | None = None
+        self._program: WireAgent | None = None
+
+    @property
+    def port(self) -> int:
+        """Where the helper's program is waited for; 0 if it is not."""
+        return self._listener.port if self._listener is not None else 0
+
+    @property
+    def characters(self) -> int:
+        """How many there are."""
+        return len(self.game.start.agents)
+
+    def sync(self) -> Game:
+        """The game with every tick that the store has. Hold the lock."""
+        game = self.game
+        found, row = self.store.read(
+            lambda connection: (
+                game_store.decisions(connection, self.stored.id, game.tick),
+                game_store.stored(connection, self.stored.id),
+            )
+        )
+        while len(rows := found.get(game.tick, [])) == self.characters:
+            game.advance(tuple(each.act for each in rows))
+        self._now(found.get(game.tick, []))
+        if row.end is not None:
+            game.end = row.end
+        return game
+
+    def _now(self, rows: list[Decided]) -> None:
+        """Who has decided in the tick that is under way, and since when."""
+        self.decided = tuple(each.agent for each in rows)
+        self.waiting_since = min((each.at for each in rows), default=0.0)
+
+    def decide(self, session: str, tab: str, number: int, tick: int, text: str | None) -> None:
+        """Take a person's decision; once this returns, no kill loses it.
+
+        Raises:
+            WebError: OUT_OF_ORDER, LOCKED; NOT_ALLOWED: the game is over.
+            HearthError: it can't be done now, as far as the person sees; the game is as before.
+        """
+        with self.lock:
+            game = self.sync()
+            if game.over:
+                raise WebError(Code.NOT_ALLOWED, "act", "a game that is not over", "its end")
+            if tick != game.tick or number in self.decided:
+                raise WebError(Code.OUT_OF_ORDER, "tick", str(game.tick), str(tick))
+            acts: dict[int, str | None] = {number: game.read(number, text)}
+            try:
+                if game.trial.helped and len(game.trial.people) == 1:
+                    acts[HELPER] = game.helper_decides()
+            except AgentError as error:
+                self._stop(HELPER, error.fault.code, error.fault.message)
+                return
+            turn = Turn(self.stored.id, tick, self.characters)
+            game_store.accept(self.store, session, tab, turn, acts)
+            self._after()
+
+    def _after(self) -> None:
+        """Do what is complete, and write the result once it is over."""
+        game = self.sync()
+        if game.over:
+            success, ticks = game.playing.progress[-1].satisfied, game.tick
+            self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks))
+            self.close()
+
+    def leave(self, number: int) -> None:
+        """End the game before its goal and time."""
+        with self.lock:
+            if not self.sync().over:
+                self._stop(number, Code.DISCONNECTED, "the person ended it")
+
+    def _stop(self, number: int, code: Code, message: str) -> None:
+        why = {"agent": number, "code": str(code), "message": message[:300]}
+        self.store.write(lambda connection: game_store.end(connection, self.stored.id, why))
+        self._after()
+
+    def hurry(self) -> None:
+        """Let whoever keeps the other waiting for too long wait in this tick."""
+        with self.lock:
+            if not self.decided or self.game.over or time.time() - self.waiting_since < PATIENCE:
+                return
+            turn = Turn(self.stored.id, self.game.tick, self.characters)
+            late: dict[int, str | None] = {n: None for n in self.game.trial.people if n not in self.decided}
+            with contextlib.suppress(WebError):
+                self.store.write(lambda connection: game_store.decide(connection, turn, late))
+            self._after()
+
+    def listen(self) -> int:
+        """Wait for the helper's program on a port of this machine (docs/examples/agents.md); the port."""
+        with self.lock:
+            if self.game.trial.helper != PROGRAM or self.game.over:
+                return 0
+            if self._listener is None:
+                self._listener = Listener()
+                threading.Thread(target=self._accept, args=(self._listener,), daemon=True).start()
+            return self._listener.port
+
+    def _accept(self, listener: Listener) -> None:
+        """Take the programs that connect, one after the other; the last that came is the helper."""
+        while self._listener is listener:
+            with contextlib.suppress(HearthError, OSError):
+                channel = listener.accept(1.0)
+                with self.lock:
+                    self._let_go()
+                    self._program = WireAgent(channel, PROGRAM_WITHIN, limit=self.game.playing.limit)
+                    self.sync().use(self._program)
+
+    def close(self) -> None:
+        """Let go of the helper's program."""
+        with self.lock:
+            listener, self._listener = self._listener, None
+            if listener is not None:
+                listener.close()
+            self._let_go()
+
+    def _let_go(self) -> None:
+        if self._program is not None:
+            self._program.end(self.game.playing.progress[-1].satisfied, self.game.tick)
+            self._program.channel.close()
+            self._program = None
+
+
+class Games:
+    """The games of a store that this process keeps."""
+
+    def __init__(self, store: Store, knowledge: Knowledge) -> None:
+        self._store, self._knowledge = store, knowledge
+        self._kept: OrderedDict[str, LiveGame] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def find(self, game: str, session: str) -> tuple[LiveGame, int]:
+        """A game of a session, and the character that it plays.
+
+        Raises:
+            WebError: UNKNOWN_ID: it has none of that id.
+        """
+        number = self._store.read(lambda connection: game_store.seat(connection, game, session))
+        return self.open(game), number
+
+    def open(self, game: str) -> LiveGame:
+        """A game, for who may see it."""
+        with self._lock:
+            if game not in self._kept:
+                stored = self._store.read(lambda connection: game_store.stored(connection, game))
+                self._kept[game] = LiveGame(self._store, stored, self._knowledge)
+            self._kept.move_to_end(game)
+            forgotten = [self._kept.popitem(last=False)[1] for _ in range(len(self._kept) - MOST_GAMES)]
+            found = self._kept[game]
+        for each in forgotten:
+            each.close()
+        return found
+
+
+_GAMES: WeakKeyDictionary[Store, Games] = WeakKeyDictionary()
+
+
+def games(store: Store, knowledge: Knowledge) -> Games:
+    """The games of a store that this process keeps."""
+    return _GAMES.setdefault(store, Games(store, knowledge))

@@ -1,0 +1,157 @@
+"""The pages of Play: what may be played, a game, joining one, and the recorded episode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from starlette.responses import Response
+
+from hearth.challenges.definition import NAMES, challenge
+from hearth.challenges.result_files import MOST_SEEDS
+from hearth.schemas.failures import Code
+from hearth.web.play import game_store
+from hearth.web.play.game_messages import goal_words
+from hearth.web.play.game_results import as_bytes, results
+from hearth.web.play.game_store import Stored
+from hearth.web.play.games import Game
+from hearth.web.play.live_games import games
+from hearth.web.play.trials import INTERFACES, Trial, helpers, published, trial
+from hearth.web.third_party_scripts import missing
+from hearth.web.visit import Visit
+from hearth.web.web_errors import WebError
+
+SHOWN = {"symbolic": "Buttons and a floor plan", "visual": "First person, in 3D", "stream": "First person, pictures"}
+"""The interfaces, for people."""
+
+KINDS_SHOWN = {True: "only what is around me", False: "everything"}
+"""What a person sees, for people."""
+
+FIRST_TASKS = 20
+"""Tasks of each challenge that the page offers; studies choose others."""
+
+
+def start_page(visit: Visit) -> Response:
+    """What may be played, and the person's games."""
+    mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
+    return visit.page(
+        "play/start.html",
+        challenges=[(name, challenge(name).title, list(_offered(name))) for name in NAMES],
+        helpers=helpers(),
+        interfaces=SHOWN,
+        lacking=missing(),
+        games=[_line(each) for each in mine[:30]],
+    )
+
+
+def _offered(name: str) -> Iterator[tuple[int, str]]:
+    which = challenge(name)
+    split = "test-1" if "test-1" in which.splits else "test"
+    for number in range(FIRST_TASKS):
+        task = published(name, split, number)
+        titles = ", ".join(which.grammar.sets[each].title for each in task.sets)
+        yield number, f"{number + 1}. {titles}, in {task.home}"
+
+
+def _line(each: Stored) -> dict[str, Any]:
+    task = each.trial.task
+    titles = ", ".join(each.trial.challenge.grammar.sets[name].title for name in task.sets)
+    over = each.result is not None
+    state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
+    return {"id": each.id, "title": f"{titles}, in {task.home}", "helper": each.trial.helper, "state": state}
+
+
+def new(visit: Visit) -> Response:
+    """Begin a game as the form says."""
+    name, number = visit.field("challenge", 20), visit.field("task", 6)
+    if name not in NAMES or not number.isdecimal():
+        raise WebError(Code.BAD_ARGUMENT, "task", "a challenge and the number of a task", f"{name} {number}"[:60])
+    split = "test-1" if "test-1" in challenge(name).splits else "test"
+    partial = {"": None, "partial": True, "full": False}.get(visit.field("sees", 20))
+    task = published(name, split, int(number))
+    interface = visit.field("interface", 20) or INTERFACES[0]
+    chosen = trial(
+        task, visit.web.known, visit.field("helper", 40) or "none", interface, _episode(visit, task.id), partial
+    )
+    return visit.go(f"/play/game/{begin(visit, chosen)}")
+
+
+def _episode(visit: Visit, task: str) -> int:
+    """The number of the next episode of a task in this store."""
+    return visit.web.store.read(lambda connection: game_store.played_before(connection, task)) % MOST_SEEDS
+
+
+def begin(visit: Visit, chosen: Trial) -> str:
+    """Begin a game of the session that asks; its id."""
+    return visit.web.store.write(lambda connection: game_store.begin(connection, visit.person, chosen))
+
+
+def game_page(visit: Visit) -> Response:
+    """The page of a game, by its interface."""
+    live, number = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
+    game = live.game
+    home = game.start.home
+    goal = [f"{goal_words(literal, home)}: {count}" for literal, count in game.goals[0] or ()]
+    return visit.page(
+        "play/game.html",
+        game=live.stored.id,
+        interface=game.trial.interface,
+        title=", ".join(game.trial.challenge.grammar.sets[name].title for name in game.trial.task.sets),
+        home=game.trial.task.home,
+        goal=goal if number == 0 else [],
+        two=len(game.trial.people) > 1,
+    )
+
+
+def join_page(visit: Visit) -> Response:
+    """Ask whether one wants to join."""
+    return visit.page("play/join.html", code=visit.part("code"))
+
+
+def join(visit: Visit) -> Response:
+    """Take the second seat of a game."""
+    code = visit.part("code")
+    game = visit.web.store.write(lambda connection: game_store.join(connection, visit.person, code))
+    return visit.go(f"/play/game/{game}")
+
+
+def record(visit: Visit) -> Response:
+    """The episode as a file of results, for `challenge verify`, `score`, `film` and `build`."""
+    live, _ = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
+    with live.lock:
+        (found,) = results([live.sync()]).values()
+    return _file(as_bytes(found), f"{live.game.trial.task.id}.jsonl")
+
+
+def _file(data: bytes, name: str) -> Response:
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return Response(data, media_type="application/x-ndjson", headers=headers)
+
+
+def desk_page(visit: Visit) -> Response:
+    """The games of everybody, for researchers."""
+    every = visit.web.store.read(game_store.all_games)
+    kinds: dict[tuple[str, str, str, str], list[Stored]] = {}
+    for each in every:
+        task = each.trial.task
+        kinds.setdefault((task.challenge, task.split, each.trial.helper, each.trial.goal), []).append(each)
+    rows = [(kind, len(some), sum(each.result is not None for each in some)) for kind, some in kinds.items()]
+    return visit.page("play/desk.html", rows=rows)
+
+
+def desk_results(visit: Visit) -> Response:
+    """The games of a kind that are over, as a file of results."""
+    asked = tuple(visit.field(name, 60) for name in ("challenge", "split", "helper", "goal"))
+    every = visit.web.store.read(game_store.all_games)
+    found = results(_done(visit, [each for each in every if each.result is not None]))
+    if asked not in found:
+        raise WebError(Code.UNKNOWN_ID, "kind", "a kind of which games are over", " ".join(asked)[:80])
+    return _file(as_bytes(found[asked]), f"{'-'.join(asked)}.jsonl")
+
+
+def _done(visit: Visit, some: list[Stored]) -> Iterator[Game]:
+    known = games(visit.web.store, visit.web.known)
+    for each in some:
+        live = known.open(each.id)
+        with live.lock:
+            yield live.sync()

@@ -1,0 +1,148 @@
+"""The socket of a game's page: `hello` and `act` in, the game out (docs/examples/playing.md has all messages)."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from typing import Any
+
+from starlette.concurrency import run_in_threadpool as in_thread
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.web import sessions
+from hearth.web.link import Link
+from hearth.web.messages import int_field, text_field
+from hearth.web.play.game_messages import Telling
+from hearth.web.play.live_games import LiveGame, games
+from hearth.web.play.trials import PERSON, PROGRAM
+from hearth.web.web_errors import WebError
+
+LOOKS_EVERY = {PERSON: 0.3}
+"""Seconds between looks at the store for what others decided, by helper; another server may have taken it."""
+
+USUALLY = 2.0
+
+LONGEST_ACT = 500
+"""Characters of an instruction."""
+
+
+class Page:
+    """A page that plays a game.
+
+    Args:
+        link: its socket.
+        live: the game.
+        number: the character that its person plays.
+    """
+
+    def __init__(self, link: Link, live: LiveGame, number: int) -> None:
+        self.link, self.live, self.number = link, live, number
+        self.telling = Telling(live.game, number)
+        self.tab = ""
+        self._told: tuple[Any, ...] = ()
+        self._sending = asyncio.Lock()
+
+    async def take(self, message: dict[str, Any]) -> None:
+        """Do what a message asks for.
+
+        Raises:
+            WebError: it is refused; nothing changed then.
+            HearthError: the same, by the engine.
+        """
+        kind = message["type"]
+        if kind == "hello":
+            self.tab = text_field(message, "tab", 60)
+            if message.get("again") is not True:  # a page that comes back does not take the session from a newer one
+                await in_thread(sessions.take_tab, self.link.web.store, self.link.session.id, self.tab)
+            await self.link.send(await in_thread(self._begin))
+        elif kind == "act":
+            await in_thread(self._act, int_field(message, "tick", 0, 100_000), _act_of(message))
+            await self.tell()
+        elif kind == "finish":
+            await in_thread(self._finish)
+            await self.tell()
+        else:
+            raise WebError(Code.BAD_ARGUMENT, "type", "hello, act or finish", kind[:40])
+
+    def _begin(self) -> dict[str, Any]:
+        with self.live.lock:
+            self.telling.game = self.live.sync()
+            port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
+            self._told = self._state()
+            return {**self.telling.begin(), "port": port, "code": self._code(), **self._waiting()}
+
+    def _code(self) -> str:
+        """What the first of two people gives the second."""
+        return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
+
+    def _act(self, tick: int, text: str | None) -> None:
+        self.live.decide(self.link.session.id, self.tab, self.number, tick, text)
+
+    def _finish(self) -> None:
+        self.live.leave(self.number)
+
+    def _state(self) -> tuple[Any, ...]:
+        game = self.live.game
+        return game.tick, game.over, self.live.decided
+
+    def _waiting(self) -> dict[str, Any]:
+        return {"decided": list(self.live.decided), "go_on": self.live.stored.go_on}
+
+    def _news(self) -> dict[str, Any] | None:
+        """What the page does not know yet; None if it knows everything."""
+        with self.live.lock:
+            self.live.sync()
+            self.live.hurry()
+            if self._state() == self._told:
+                return None
+            self._told = self._state()
+            return {**self.telling.tick(), **self._waiting()}
+
+    async def tell(self) -> None:
+        """Send what is new."""
+        async with self._sending:
+            if self.tab and (news := await in_thread(self._news)) is not None:
+                await self.link.send(news)
+
+    async def watch(self) -> None:
+        """Tell what others decided, until cancelled."""
+        while True:
+            await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
+            await self.tell()
+
+
+def _act_of(message: dict[str, Any]) -> str | None:
+    return None if message.get("act", "") is None else text_field(message, "act", LONGEST_ACT)
+
+
+async def live(link: Link) -> None:
+    """Serve a page until it goes."""
+    web = link.web
+    try:
+        found = games(web.store, web.known).find
+        game, number = await in_thread(found, str(link.socket.path_params["game"]), link.session.id)
+    except WebError as fault:
+        await link.refuse(fault)
+        await link.socket.close(4404)
+        return
+    page = Page(link, game, number)
+    watching = asyncio.create_task(page.watch())
+    try:
+        while (message := await link.receive()) is not None:
+            try:
+                await page.take(message)
+            except WebError as fault:
+                await link.refuse(fault)
+            except HearthError as error:
+                await link.refuse(refusal(error))
+    finally:
+        watching.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await watching
+
+
+def refusal(error: HearthError) -> WebError:
+    """Why the engine refuses a decision, as an answer."""
+    fault = error.diagnostics[0]
+    return WebError(fault.code, "act", fault.suggestion or "one of the legal instructions", fault.message)

@@ -1,0 +1,182 @@
+"""A trial: a task that a person does, alone or with a helper, by one of the interfaces. It is stored as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hearth.agents.agent_registry import HELPERS
+from hearth.agents.online_registry import ONLINE
+from hearth.challenges.definition import Challenge, challenge
+from hearth.challenges.lineup import GOALS, NOBODY
+from hearth.challenges.published_tasks import tasks
+from hearth.challenges.suite_runs import INFERRED
+from hearth.challenges.task_files import Suite, read_suite, suite_data
+from hearth.challenges.tasks import Task
+from hearth.challenges.watching import inferred
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.rng import derive, rng
+
+PERSON, PROGRAM = "person", "program"
+"""Helpers that are no agents of ours: a second person, and a program over the agent protocol."""
+
+OTHERS = (NOBODY, PERSON, PROGRAM)
+"""Helpers for which the server makes no agent."""
+
+INTERFACES = ("symbolic", "visual", "stream")
+"""Buttons and a floor plan; first person in 3D by the browser; pictures of our renderer."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A task that a person does.
+
+    Attributes:
+        task: what is to be done.
+        helper: `none`, `person`, `program`, or an agent by name (see `helpers`).
+        goal: what the helper is asked to do, one of `challenges.lineup.GOALS`.
+        helper_goal: the same in the words of the grammar; None if nothing.
+        interface: one of `INTERFACES`.
+        seed: number of the episode among those of its task.
+        partial: whether the person sees only what is around it.
+    """
+
+    task: Task
+    helper: str = NOBODY
+    goal: str = "none"
+    helper_goal: Goal | None = None
+    interface: str = INTERFACES[0]
+    seed: int = 0
+    partial: bool = True
+
+    @property
+    def challenge(self) -> Challenge:
+        """Whose task it is."""
+        return challenge(self.task.challenge)
+
+    @property
+    def helped(self) -> bool:
+        """Whether there is a second character."""
+        return self.helper != NOBODY
+
+    @property
+    def people(self) -> tuple[int, ...]:
+        """The characters that people decide for."""
+        return (0, 1) if self.helper == PERSON else (0,)
+
+    @property
+    def episode_seed(self) -> int:
+        """Of all that is random in it, as of episodes of agents (see `challenges.episodes.played`)."""
+        return derive(self.task.seed, "episode", self.seed)
+
+    def as_json(self) -> dict[str, Any]:
+        """As the store has it; `read_trial` reads it."""
+        grammar = self.challenge.grammar
+        alone = Suite(self.task.challenge, self.task.split, 0, (self.task,))
+        return {
+            "tasks": suite_data(alone),
+            "helper": self.helper,
+            "goal": self.goal,
+            "helper_goal": None if self.helper_goal is None else grammar.written(self.helper_goal),
+            "interface": self.interface,
+            "seed": self.seed,
+            "partial": self.partial,
+        }
+
+
+def helpers() -> dict[str, str]:
+    """The helpers that a person may have, with what they are. One that needs a main agent of ours is not among them."""
+    ours = {name: each.about for name, each in HELPERS.items() if not each.main}
+    online = {name: each.about for name, each in ONLINE.items()}
+    others = {NOBODY: "nobody", PERSON: "another person", PROGRAM: "a program over the agent protocol"}
+    return {**others, **ours, **online}
+
+
+def published(name: str, split: str, number: int) -> Task:
+    """A published task by its place in its split, from 0.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there is no such challenge, split or number.
+    """
+    found = tasks(name, split, limit=max(number + 1, 1))
+    if not 0 <= number < len(found):
+        message = f"there is no task {number} of {name} {split}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"0 to {len(found) - 1}")
+    return found[number]
+
+
+def trial(
+    task: Task,
+    knowledge: Knowledge,
+    helper: str = NOBODY,
+    interface: str = INTERFACES[0],
+    seed: int = 0,
+    partial: bool | None = None,
+    goal: str = "",
+) -> Trial:
+    """A trial, checked, with what its helper is asked to do.
+
+    Args:
+        task: what is to be done.
+        knowledge: with which its homes are read.
+        helper: one of `helpers`.
+        interface: one of `INTERFACES`.
+        seed: number of the episode among those of its task.
+        partial: whether the person sees only what is around it; as the challenge has it where None.
+        goal: what the helper is asked to do; as its row in the registry says where empty.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface.
+
+    Examples:
+        >>> from hearth.web.play.trials import published, trial
+        >>> trial(published("wah", "test-1", 0), known, "hp_true", seed=3).goal
+        'true'
+    """
+    _check("helper", helper, helpers())
+    _check("interface", interface, INTERFACES)
+    usual = {PERSON: "true", PROGRAM: "true"} | {name: each.goal for name, each in HELPERS.items()}
+    kind = goal or usual.get(helper, "none")
+    _check("goal", kind, GOALS)
+    seen = challenge(task.challenge).partial if partial is None else partial
+    return Trial(task, helper, kind, _asked(task, kind, seed, knowledge), interface, seed, seen)
+
+
+def _check(what: str, given: str, known: Any) -> None:
+    if given not in known:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no {what} `{given[:60]}`", suggestion=", ".join(known))
+
+
+def _asked(task: Task, kind: str, seed: int, knowledge: Knowledge) -> Goal | None:
+    """What a helper is asked to do; a random goal is another that the task's sets could have had."""
+    if kind == "true":
+        return task.goal
+    if kind in INFERRED:
+        return next(inferred([task], INFERRED[kind], lambda: knowledge))
+    if kind == "random":
+        chooser = rng(task.seed, "random goal of a trial", seed)
+        grammar = challenge(task.challenge).grammar
+        return next(goal for _ in range(100) if (goal := grammar.sample(chooser)[0]) != task.goal)
+    return None
+
+
+def read_trial(given: Mapping[str, Any]) -> Trial:
+    """A trial as the store has it.
+
+    Raises:
+        HearthError: BAD_JSON, DAMAGED_FILE, BAD_ARGUMENT: it is not as it was written.
+    """
+    (task,) = read_suite(given.get("tasks"), "trial").tasks
+    fields = {name: given.get(name) for name in ("helper", "goal", "interface", "seed", "partial")}
+    kinds = {"helper": str, "goal": str, "interface": str, "seed": int, "partial": bool}
+    if wrong := [name for name, kind in kinds.items() if not isinstance(fields[name], kind)]:
+        raise HearthError.of(Code.BAD_JSON, f"`{wrong[0]}` of a trial is {str(fields[wrong[0]])[:60]}")
+    for name, known in (("helper", helpers()), ("interface", INTERFACES), ("goal", GOALS)):
+        _check(name, str(fields[name]), known)
+    asked = given.get("helper_goal")
+    goal = None if asked is None else challenge(task.challenge).grammar.read(asked)
+    return Trial(task, helper_goal=goal, **fields)  # type: ignore[arg-type]

@@ -1,0 +1,209 @@
+// The page of a game: takes the server's messages, shows them, sends what the person decides.
+import { Connection } from "./connection.js";
+import { FloorPlan } from "./floor_plan.js";
+import { Menu } from "./menu.js";
+import { ObjectPanels } from "./object_panels.js";
+import { State } from "./state.js";
+import { name, retold, spoken, written } from "./words.js";
+
+const root = document.getElementById("game");
+const state = new State();
+const said = document.getElementById("said");
+const banner = document.getElementById("banner");
+let busy = false; // a decision is on its way
+let walking = null; // the thing that one goes all the way to
+let view = null; // first person
+
+const choose = (id, from) => state.things.has(id) && state.things.get(id).seen && menu.open(id, state, from);
+const menu = new Menu(decide, walk);
+const plan = new FloorPlan(document.getElementById("plan"), choose);
+const panels = root.dataset.interface === "symbolic" ? new ObjectPanels(choose) : null;
+
+function decide(action, ids = []) {
+  walking = null;
+  return send(action, ids);
+}
+
+function send(action, ids = []) {
+  if (busy || state.over || state.tick < 0) return false;
+  const act = action ? written(action, ids, state.things) : null;
+  busy = connection.send({ type: "act", tick: state.tick, act });
+  if (busy) said.textContent = action ? `${spoken(action, ids, state.things)} …` : "Waiting a tick …";
+  return busy;
+}
+
+function walk(id) {
+  walking = id;
+  send("Walktowards", [id]);
+}
+
+function goOn() {
+  if (walking === null) return;
+  const thing = state.things.get(walking);
+  const stuck = state.mine?.last?.failure;
+  if (state.over || stuck || arrived(thing) || !state.can("Walktowards", [walking])) walking = null;
+  else send("Walktowards", [walking]);
+}
+
+// One has arrived at a room once one is in it, at a thing once one stands before it and no longer moves.
+function arrived(thing) {
+  if (thing.group === "rooms" && state.mine.room === thing.id) return true;
+  const way = state.trails.get(state.me);
+  const [last, before] = [way.at(-1), way.at(-2)];
+  const still = before && Math.hypot(last[1] - before[1], last[2] - before[2]) < 0.01;
+  return thing.close && Boolean(still);
+}
+
+function receive(message) {
+  if (message.type === "picture") return view?.picture(message.data);
+  busy = false;
+  state.take(message);
+  if (message.type === "begin") begin(message);
+  plan.update(state);
+  panels?.update(state);
+  menu.update(state);
+  show();
+  view?.update(state, message);
+  goOn();
+}
+
+function begin(message) {
+  plan.begin(state);
+  panels?.begin();
+  banner.hidden = true;
+  if (root.dataset.interface !== "symbolic" && view === null) {
+    view = {}; // until it has loaded
+    const file = root.dataset.interface === "visual" ? "./first_person.js" : "./pictures.js";
+    import(file).then(({ FirstPerson }) => {
+      view = new FirstPerson(root.dataset.game, document.getElementById("view"), { choose, send: (m) => connection.send(m) });
+      view.update(state, message);
+    }).catch((fault) => tell("", `The home can't be shown: ${fault.message}`));
+  } else view?.update?.(state, message);
+}
+
+function tell(kind, text, ...more) {
+  banner.hidden = false;
+  banner.className = kind || "note";
+  banner.replaceChildren(text, ...more);
+}
+
+function show() {
+  const left = state.limit - state.tick;
+  root.dataset.tick = state.tick;
+  document.getElementById("clock").textContent = `Tick ${state.tick} of ${state.limit}; ${left} left. Helper: ${state.helper}.`;
+  showGoal();
+  showHands();
+  for (const button of document.querySelectorAll("[data-move]")) {
+    const move = button.dataset.move;
+    button.disabled = state.over || (move !== "" && !state.can(move));
+    if (move === "StandUp") button.hidden = !state.can(move);
+  }
+  document.getElementById("finish").disabled = state.over;
+  said.textContent = lastActions();
+  if (state.over) showEnd();
+  else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine.`);
+  else if (state.code && state.agents.length) showCode();
+}
+
+function showGoal() {
+  if (!state.goal.length) return;
+  document.getElementById("goal").replaceChildren(...state.goal.map((each) => {
+    const line = document.createElement("li");
+    line.className = each.count >= each.wanted ? "met" : "";
+    const bar = document.createElement("progress");
+    Object.assign(bar, { max: each.wanted, value: each.count });
+    bar.setAttribute("aria-label", each.text);
+    const count = document.createElement("span");
+    count.className = "count";
+    count.textContent = `${each.count}/${each.wanted}`;
+    line.append(`${each.text}: `, count, " ", bar);
+    return line;
+  }));
+}
+
+function showHands() {
+  const lines = state.agents.map((agent) => {
+    const line = document.createElement("li");
+    const who = agent.agent === state.me ? "You" : "The other";
+    const posture = agent.posture === "standing" ? "" : ` (${agent.posture})`;
+    line.className = agent.agent === state.me ? "me" : "other";
+    line.append(`${who}${posture}: `);
+    for (const id of agent.holding) line.append(agent.agent === state.me ? heldButton(id) : `${name(state.things, id)} `);
+    if (!agent.holding.length) line.append("empty");
+    return line;
+  });
+  document.getElementById("hands").replaceChildren(...lines);
+}
+
+function heldButton(id) {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", className: "thing close", textContent: name(state.things, id) });
+  button.addEventListener("click", () => choose(id));
+  return button;
+}
+
+function lastActions() {
+  if (state.tick === 0) return "Choose a thing to see what you can do with it.";
+  const lines = state.agents.filter((agent) => agent.last).map((agent) => {
+    const who = agent.agent === state.me ? "You" : "The other";
+    const failure = agent.last.failure ? `: that failed (${agent.last.failure.message})` : "";
+    return `${who}: ${retold(agent.last.instruction)}${failure}.`;
+  });
+  if (state.decided.length && !state.over) lines.push(state.decided.includes(state.me) ? "Waiting for the other …" : "The other has decided.");
+  return lines.join(" ");
+}
+
+function showEnd() {
+  const text = state.success ? `Done: the goal is reached after ${state.tick} ticks. ` : `This is over after ${state.tick} ticks. `;
+  tell(state.success ? "good" : "note", text, link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · ", link(state.go_on, "Go on"));
+}
+
+function showCode() {
+  const address = `${location.origin}/play/join/${state.code}`;
+  tell("note", "Two people play this. The other joins by this link: ", link(address, address));
+}
+
+function link(address, text) {
+  const made = document.createElement("a");
+  Object.assign(made, { href: address, textContent: text });
+  return made;
+}
+
+function trouble(fault) {
+  busy = false;
+  walking = null;
+  if (fault.code === "LOCKED") {
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", textContent: "Go on here" });
+    button.addEventListener("click", () => connection.takeOver());
+    tell("note", "This session is open in another tab. ", button);
+  } else said.textContent = fault.place === "act" ? `That can't be done: ${fault.actual}` : `${fault.code}: ${fault.actual}`;
+}
+
+const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
+
+document.addEventListener("keydown", (event) => {
+  const typing = event.target.closest("input, select, textarea, #view");
+  if (typing || event.ctrlKey || event.altKey || event.metaKey) return;
+  if (event.key === ".") decide("");
+  else if (event.key in KEYS && state.can(KEYS[event.key])) decide(KEYS[event.key]);
+  else return;
+  event.preventDefault();
+});
+for (const button of document.querySelectorAll("[data-move]")) {
+  button.addEventListener("click", () => decide(button.dataset.move));
+}
+document.getElementById("save").addEventListener("click", save);
+document.getElementById("finish").addEventListener("click", finish);
+
+export function save() {
+  said.textContent = "Everything up to here is saved.";
+}
+
+export function finish() {
+  connection.send({ type: "finish" });
+}
+
+export { decide, state };
+
+const connection = new Connection(root.dataset.game, receive, trouble);

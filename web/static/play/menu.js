@@ -1,0 +1,65 @@
+// What one can do with a thing: a panel with a button for each legal instruction about it.
+import { name, spoken } from "./words.js";
+
+export class Menu {
+  constructor(act, walk) {
+    this.panel = document.getElementById("menu");
+    this.title = document.getElementById("menu-title");
+    this.actions = document.getElementById("menu-actions");
+    this.act = act;
+    this.walk = walk;
+    this.id = null;
+    this.from = null;
+    document.getElementById("menu-close").addEventListener("click", () => this.close());
+    this.panel.addEventListener("keydown", (event) => event.key === "Escape" && this.close());
+  }
+
+  open(id, state, from = document.activeElement) {
+    this.id = id;
+    this.from = from;
+    this.panel.hidden = false;
+    this.fill(state);
+    (this.actions.querySelector("button") ?? document.getElementById("menu-close")).focus();
+  }
+
+  close() {
+    if (this.panel.hidden) return;
+    this.panel.hidden = true;
+    this.id = null;
+    if (this.from?.isConnected && !this.from.disabled) this.from.focus();
+    else document.getElementById("main").focus();
+  }
+
+  fill(state) {
+    const thing = state.things.get(this.id);
+    const states = (thing.states ?? []).map((each) => each.toLowerCase().replaceAll("_", " ")).join(", ");
+    this.title.textContent = `${name(state.things, this.id)}${states ? ` (${states})` : ""}`;
+    const options = state.over ? [] : state.about(this.id);
+    const buttons = options.map(([action, ids]) => this.button(spoken(action, ids, state.things), () => this.act(action, ids)));
+    if (state.can("Walktowards", [this.id])) {
+      buttons.unshift(this.button("Go all the way", () => this.walk(this.id)));
+      const step = buttons.findIndex((button) => button.textContent.startsWith("Walk to"));
+      buttons[step].textContent = "One step towards it";
+    }
+    const nothing = document.createElement("p");
+    nothing.textContent = "Nothing can be done with it from here.";
+    this.actions.replaceChildren(...(buttons.length ? buttons : [nothing]));
+  }
+
+  button(text, done) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = text;
+    button.addEventListener("click", () => {
+      this.close();
+      done();
+    });
+    return button;
+  }
+
+  update(state) {
+    if (this.panel.hidden) return;
+    if (!state.things.get(this.id)?.seen) this.close();
+    else this.fill(state);
+  }
+}

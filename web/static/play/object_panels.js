@@ -1,0 +1,87 @@
+// All things as buttons (panels B, C, D): enabled when something can be done with them, green when close.
+import { name } from "./words.js";
+
+const PANELS = ["rooms", "furniture", "things"];
+
+export class ObjectPanels {
+  constructor(choose) {
+    this.choose = choose;
+    this.buttons = new Map();
+    this.find = document.getElementById("find");
+    this.which = document.getElementById("which");
+    for (const field of [this.find, this.which]) field.addEventListener("input", () => this.state && this.update(this.state));
+  }
+
+  begin() {
+    this.buttons.clear();
+    this.shown = "";
+    for (const panel of PANELS) document.getElementById(panel).replaceChildren();
+  }
+
+  button(thing, state) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "thing";
+    button.append(name(state.things, thing.id), document.createElement("small"));
+    button.addEventListener("click", () => this.choose(thing.id));
+    this.buttons.set(thing.id, button);
+    return button;
+  }
+
+  update(state) {
+    this.state = state;
+    const text = this.find.value.trim().toLowerCase();
+    const chosen = [...state.things.values()].filter((thing) => thing.seen && this.wants(thing, state, text));
+    for (const thing of chosen) this.dress(this.buttons.get(thing.id) ?? this.button(thing, state), thing, state);
+    const order = chosen.map((thing) => `${thing.id}:${thing.room}`).join();
+    if (order !== this.shown) this.arrange(chosen, state);
+    this.shown = order;
+  }
+
+  wants(thing, state, text) {
+    if (this.which.value === "close" && !thing.close) return false;
+    if (this.which.value === "goal" && !state.wanted.has(thing.className)) return false;
+    return !text || `${name(state.things, thing.id)} ${thing.id}`.includes(text);
+  }
+
+  dress(button, thing, state) {
+    button.disabled = state.over || !state.usable.has(thing.id);
+    button.classList.toggle("close", thing.close);
+    button.classList.toggle("wanted", state.wanted.has(thing.className));
+    const where = thing.holder ? `${thing.relation === "held" ? "held by" : thing.relation} ${this.holder(thing, state)}` : "";
+    const told = [String(thing.id), where, thing.close ? "close" : ""].filter(Boolean).join(" · ");
+    if (button.lastChild.textContent !== told) button.lastChild.textContent = told;
+  }
+
+  holder(thing, state) {
+    return state.mine?.node === thing.holder ? "you" : name(state.things, thing.holder);
+  }
+
+  // Buttons stay the same elements, so that the focus stays where it is.
+  arrange(chosen, state) {
+    const focused = document.activeElement;
+    for (const panel of PANELS) {
+      const groups = new Map();
+      const some = chosen.filter((thing) => (thing.group === "people" ? "rooms" : thing.group) === panel);
+      for (const thing of some.sort((a, b) => a.className.localeCompare(b.className) || a.id - b.id)) {
+        const room = panel === "rooms" ? 0 : thing.room;
+        if (!groups.has(room)) groups.set(room, []);
+        groups.get(room).push(this.buttons.get(thing.id));
+      }
+      const here = state.mine?.room ?? 0;
+      const rooms = [...groups.keys()].sort((a, b) => (b === here) - (a === here) || a - b);
+      const lists = rooms.flatMap((room) => this.group(room, groups.get(room), state));
+      document.getElementById(panel).replaceChildren(...lists);
+    }
+    if (focused?.isConnected && focused !== document.activeElement) focused.focus();
+  }
+
+  group(room, buttons, state) {
+    const list = document.createElement("ul");
+    for (const button of buttons) list.appendChild(document.createElement("li")).appendChild(button);
+    if (!room) return [list];
+    const head = document.createElement("h3");
+    head.textContent = name(state.things, room);
+    return [head, list];
+  }
+}

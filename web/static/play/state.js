@@ -1,0 +1,61 @@
+// What the page knows of a game: the server's messages put together.
+export class State {
+  constructor() {
+    this.things = new Map();
+    this.trails = new Map();
+    this.legal = {};
+    this.agents = [];
+    this.goal = [];
+    this.tick = -1;
+  }
+
+  take(message) {
+    if (message.type === "begin") {
+      Object.assign(this, { me: message.me, plan: message.plan, limit: message.limit, helper: message.helper });
+      Object.assign(this, { partial: message.partial, code: message.code, port: message.port, characters: message.characters });
+      this.things.clear();
+      this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));
+    }
+    for (const [id, [className, group, box]] of Object.entries(message.things)) {
+      this.things.set(Number(id), { id: Number(id), className, group, box, seen: false });
+    }
+    for (const [id, [room, relation, holder, states, close]] of Object.entries(message.changed)) {
+      Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });
+    }
+    for (const id of message.gone) this.things.get(id).seen = false;
+    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "decided", "go_on"]) this[key] = message[key];
+    if (message.type === "tick") this.follow();
+    this.usable = new Set(Object.values(this.legal).flat(2));
+    this.wanted = new Set(this.goal.flatMap((each) => each.classes));
+  }
+
+  follow() {
+    for (const agent of this.agents) {
+      if (!agent.place) continue;
+      if (!this.trails.has(agent.agent)) this.trails.set(agent.agent, []);
+      const way = this.trails.get(agent.agent);
+      if (way.at(-1)?.[0] !== this.tick) way.push([this.tick, ...agent.place]);
+    }
+  }
+
+  get mine() {
+    return this.agents.find((agent) => agent.agent === this.me);
+  }
+
+  // The instructions that name a thing, as [action, ids].
+  about(id) {
+    const found = [];
+    for (const [action, places] of Object.entries(this.legal)) {
+      if (places.length === 1 && places[0].includes(id)) found.push([action, [id]]);
+      if (places.length !== 2) continue;
+      if (places[0].includes(id)) for (const other of places[1]) if (other !== id) found.push([action, [id, other]]);
+      if (places[1].includes(id)) for (const other of places[0]) if (other !== id) found.push([action, [other, id]]);
+    }
+    return found;
+  }
+
+  can(action, ids = []) {
+    const places = this.legal[action];
+    return Boolean(places) && places.length === ids.length && ids.every((id, n) => places[n].includes(id));
+  }
+}

@@ -1,0 +1,30 @@
+// Words for actions and things.
+const VERBS = {
+  Walktowards: "Walk to", Walk: "Walk to", Grab: "Take", Open: "Open", Close: "Close", SwitchOn: "Switch on", SwitchOff: "Switch off",
+  Sit: "Sit down on", StandUp: "Stand up", Turnleft: "Turn left", Turnright: "Turn right", Walkforward: "Walk forward",
+};
+const PUTS = { PutBack: "on", PutIn: "in" };
+
+const CALLED = { character: "the other person", maindoor: "front door" };
+
+export function name(things, id) {
+  const found = things.get(id)?.className ?? "wall";
+  return CALLED[found] ?? found.replaceAll("_", " ");
+}
+
+export function spoken(action, ids, things) {
+  if (action in PUTS) return `Put ${name(things, ids[0])} ${PUTS[action]} ${name(things, ids[1])}`;
+  return [VERBS[action] ?? action, ...ids.map((id) => name(things, id))].join(" ");
+}
+
+export const written = (action, ids, things) =>
+  [`[${action}]`, ...ids.map((id) => `<${things.get(id).className}> (1.${id})`)].join(" ");
+
+const READ = /<([^>]+)> \((?:\d+\.)?(\d+)\)/g;
+
+export function retold(instruction) {
+  const action = /\[(\w+)\]/.exec(instruction)?.[1] ?? "";
+  const names = [...instruction.matchAll(READ)].map((found) => found[1].replaceAll("_", " "));
+  if (action in PUTS) return `put ${names[0]} ${PUTS[action]} ${names[1]}`;
+  return [(VERBS[action] ?? action).toLowerCase(), ...names].join(" ");
+}
