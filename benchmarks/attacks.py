@@ -15,12 +15,14 @@ import tempfile
 import time
 import zipfile
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Path(__file__).resolve().parents[1]]
 
+from attack import Attack, Ground  # noqa: E402
+from attacks_on_challenges import clients, results, task_files  # noqa: E402
+from attacks_on_models import checkpoints  # noqa: E402
 from hostile import rename, replace_texts  # noqa: E402
 
 from hearth.datasets.dataset import Dataset  # noqa: E402
@@ -31,23 +33,6 @@ INPUT = ROOT / "tests/golden/pipelines/input"
 SECRET = "the-secret-of-the-guard"
 SLOWEST = 20.0
 """Seconds that an attack may take."""
-
-
-class Ground(NamedTuple):
-    """Where an attack takes place: a folder of its own, the folder that must stay as it is, and a dataset."""
-
-    folder: Path
-    guard: Path
-    dataset: Path
-
-
-@dataclass(frozen=True, slots=True)
-class Attack:
-    """One attack. Its call may raise HearthError; what it returns must not hold the guard's secret."""
-
-    group: str
-    name: str
-    call: Callable[[Ground], Any]
 
 
 QUERIES = (
@@ -341,7 +326,10 @@ def terminals() -> Iterator[Attack]:
             yield Attack("terminal", f"{words[0]} {text!a}", lambda ground, w=words, t=text: printed(w, t, ground))
 
 
-GROUPS = (queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals)
+GROUPS = (
+    queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, task_files, results,
+    clients,
+)  # fmt: skip
 
 
 def state(folder: Path) -> dict[str, bytes]:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
-from hearth.storage.files import file_digest, read_json, value_digest, write_bytes, write_json
+from hearth.storage.files import file_digest, value_digest, write_bytes, write_json
+from hearth.storage.input_files import read_input
 from hearth.version import ACTION_SET, VERSION
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ FORMAT = 1
 NAME = "model.json"
 WEIGHTS = "weights.safetensors"
 CARD = "README.md"
+
+LARGEST_WEIGHTS = 2_000_000_000
+"""Bytes of weights that are read."""
 
 LICENCE = "MIT"
 """Of checkpoints trained on our own corpora, which are ours; `trained.data_licence` has that of the data."""
@@ -80,10 +84,10 @@ def load(folder: Path) -> Checkpoint:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; UNSUPPORTED_FILE, if it is of another
             format; DAMAGED_FILE, if a part of it differs from what was written.
     """
-    document = read_json(folder / NAME)
     remedy = "name the folder that `model train` gave with --out, or a name of `model list`"
     if not (folder / NAME).exists():
         raise HearthError.of(Code.MISSING_FILE, "no checkpoint here", file=str(folder), suggestion=remedy)
+    document = _document(folder / NAME)
     if not isinstance(document, dict) or not isinstance(document.get("format"), int):
         raise _damaged(folder / NAME, "it is not the JSON of a checkpoint")
     if document["format"] != FORMAT:
@@ -97,6 +101,15 @@ def load(folder: Path) -> Checkpoint:
     return Checkpoint(document["model"], weights=_weights(folder / WEIGHTS, document.get("weights")), **parts)  # type: ignore[arg-type]
 
 
+def _document(path: Path) -> Any:
+    import orjson
+
+    try:
+        return orjson.loads(read_input(path))
+    except orjson.JSONDecodeError:
+        return None
+
+
 def _weights(path: Path, digest: Any) -> dict[str, np.ndarray]:
     safetensors = library("safetensors.numpy")
     if not path.is_file():
@@ -104,7 +117,9 @@ def _weights(path: Path, digest: Any) -> dict[str, np.ndarray]:
     if file_digest(path) != digest:
         raise _damaged(path, "its bytes are not what was written")
     try:
-        return dict(safetensors.load(path.read_bytes()))
+        return dict(safetensors.load(read_input(path, LARGEST_WEIGHTS)))
+    except HearthError:
+        raise
     except Exception as error:  # of the library's own types, which differ by version
         raise _damaged(path, "it can't be read as safetensors") from error
 

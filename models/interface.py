@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,6 +13,12 @@ if TYPE_CHECKING:
     from hearth.simulation.world.world import World
 
 Steps = tuple[Step, ...]
+
+LARGEST_SETTING = 10_000_000
+"""The largest number that a checkpoint's settings may have."""
+
+MOST = {"layers": 64, "rounds": 64, "heads": 1024, "longest": 10_000}
+"""The largest numbers of settings that count what is done in turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +70,25 @@ class Settings:
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
-        """The settings with these values; lists become tuples.
+        """The settings with these values, which may be a stranger's; lists become tuples.
 
         Raises:
             TypeError: a value is unknown or missing.
+            ValueError: a value is not of the kind of the default, or too large to build a network with.
         """
+        defaults = {each.name: each.default for each in fields(cls)}  # type: ignore[arg-type]
+        for name, value in values.items():
+            if not _like(value, defaults.get(name)):
+                raise ValueError(f"the setting `{name}` is {str(value)[:40]}")
+            if type(value) in (int, float) and not 0 <= value <= MOST.get(name, LARGEST_SETTING):
+                raise ValueError(f"the setting `{name}` is {value:g}, not 0 to {MOST.get(name, LARGEST_SETTING):,}")
         return cls(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
+
+
+def _like(value: Any, default: Any) -> bool:
+    """Whether a value is of the kind of a default; without a default, or with None, all JSON values are."""
+    if not isinstance(default, int | float | str):
+        return True
+    if isinstance(default, float):
+        return type(value) in (int, float)
+    return type(value) is type(default)

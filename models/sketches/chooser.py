@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import islice
 from random import Random
 from typing import Any
@@ -18,6 +19,7 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import Corpus, Example
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
+from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.planner import bound_to_nearest, complete_steps
 from hearth.models.sketches.choices import Choice, Packed, joined, packed
@@ -121,11 +123,9 @@ class Chooser(Settings):
         habits = Habits(frozenset(content["optional"]), tuple(content["style"]), tools)
         rankers = {}
         for name, sizes in content["sizes"].items():
-            rankers[name] = settings.ranker(words, sizes)
-            weights = {key: torch.as_tensor(value) for key, value in checkpoint.weights.items()}
-            own = {key.removeprefix(f"{name}."): value for key, value in weights.items() if key.startswith(f"{name}.")}
-            rankers[name].load_state_dict(own)
-            rankers[name].eval()
+            named = checkpoint.weights.items()
+            own = {key.removeprefix(f"{name}."): value for key, value in named if key.startswith(f"{name}.")}
+            rankers[name] = filled(partial(settings.ranker, words, sizes), own)
         return TrainedChooser(settings, words, habits, rankers, {})
 
 

@@ -14,6 +14,7 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import Corpus, Example
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
+from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
 from hearth.models.sketches.graph_network import GraphNetwork, Memory, loss_of
@@ -86,9 +87,7 @@ class GraphModel(Settings):
         """The model of a checkpoint."""
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         words = Words(content["classes"], content["actions"])
-        network = settings.network(words, content["written"])
-        network.load_state_dict({name: torch.as_tensor(value) for name, value in checkpoint.weights.items()})
-        network.eval()
+        network = filled(lambda: settings.network(words, content["written"]), checkpoint.weights)
         return TrainedGraphModel(settings, words, tuple(content["written"]), network, {})
 
 

@@ -54,7 +54,8 @@ class Memory:
         """The memory of `document`.
 
         Raises:
-            ValueError: a step cannot be read.
+            KeyError: a part is missing.
+            TypeError, ValueError: a part is of another kind, or there is not one text for each program.
         """
         steps = []
         for line in document["steps"]:
@@ -63,7 +64,10 @@ class Memory:
                 raise ValueError(str(parsed))
             steps.append(parsed[0])
         programs = tuple(tuple(steps[number] for number in program) for program in document["programs"])
-        return cls(tuple(document["texts"]), programs)
+        texts = tuple(document["texts"])
+        if not texts or len(texts) != len(programs) or not all(isinstance(text, str) for text in texts):
+            raise ValueError(f"{len(texts)} texts of {len(programs)} programs")
+        return cls(texts, programs)
 
 
 def text_of(title: str, description: str) -> str:
@@ -121,7 +125,9 @@ class Nearest(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedNearest:
         """The model of a checkpoint."""
-        return TrainedNearest(cls.of(checkpoint.settings), Memory.read(checkpoint.content["memory"]))
+        found = TrainedNearest(cls.of(checkpoint.settings), Memory.read(checkpoint.content["memory"]))
+        found.similarity  # noqa: B018  (texts without a word are refused now, not when it is asked)
+        return found
 
 
 @dataclass(frozen=True)

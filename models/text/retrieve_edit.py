@@ -50,8 +50,12 @@ class RetrieveEdit(Settings):
     def restored(cls, checkpoint: Checkpoint) -> TrainedRetrieveEdit:
         """The model of a checkpoint."""
         content = checkpoint.content
-        vocabulary = StepVocabulary.read(content["vocabulary"])
-        return TrainedRetrieveEdit(cls.of(checkpoint.settings), Memory.read(content["memory"]), vocabulary)
+        vocabulary, memory = StepVocabulary.read(content["vocabulary"]), Memory.read(content["memory"])
+        if unknown := [step for steps in memory.programs for step in steps if vocabulary.numbers(step) is None]:
+            raise ValueError(f"the vocabulary lacks {unknown[0].action}, or what it is done to")
+        found = TrainedRetrieveEdit(cls.of(checkpoint.settings), memory, vocabulary)
+        found.similarity  # noqa: B018  (texts without a word are refused now, not when it is asked)
+        return found
 
 
 @dataclass(frozen=True)

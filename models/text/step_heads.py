@@ -179,9 +179,9 @@ class ClosedHead(nn.Module):
         self.scale = nn.Parameter(torch.zeros(()))
         nn.init.normal_(self.project.weight, std=0.01)
         nn.init.zeros_(self.project.bias)
-        steps = torch.tensor([(END, 0, 0), *listed])  # (I + 1, 3)
-        self.register_buffer("steps", steps, persistent=False)
-        self.places = {tuple(row): number for number, row in enumerate(steps.tolist())}
+        steps = [(END, 0, 0), *listed]
+        self.register_buffer("steps", torch.tensor(steps), persistent=False)  # (I + 1, 3)
+        self.places = {row: number for number, row in enumerate(steps)}
 
     def every(self, context: Context) -> torch.Tensor:
         """(N, I + 1) logarithms of the probabilities of the end and of each step of the list."""

@@ -71,10 +71,31 @@ class StepVocabulary:
 
     @classmethod
     def read(cls, document: Mapping[str, Any]) -> StepVocabulary:
-        """The vocabulary of `document`."""
+        """The vocabulary of `document`, which may be a stranger's.
+
+        Raises:
+            KeyError: a part is missing.
+            TypeError, ValueError: a part is of another kind, or does not fit the others.
+        """
         takes = tuple(tuple(tuple(found) for found in places) for places in document["takes"])
         lists = {name: tuple(document[name]) for name in ("words", "actions", "arity", "classes")}
-        return cls(**lists, takes=takes, spelt=document["spelt"])
+        found = cls(**lists, takes=takes, spelt=dict(document["spelt"]))
+        if wrong := [name for name, fits in found._fits().items() if not fits]:
+            raise ValueError(f"the vocabulary's {wrong[0]} does not fit the rest of it")
+        return found
+
+    def _fits(self) -> dict[str, bool]:
+        """Whether each part is what the others need it to be."""
+        last = len(self.classes)
+        return {
+            "words": _names(self.words),
+            "actions": _names(self.actions),
+            "classes": _names(self.classes),
+            "arity": len(self.arity) == len(self.actions) and all(type(n) is int and 0 <= n <= 2 for n in self.arity),
+            "takes": [len(places) for places in self.takes] == list(self.arity)
+            and all(type(n) is int and 0 < n <= last for places in self.takes for found in places for n in found),
+            "spelt": all(isinstance(word, str) for word in self.spelt) and {*self.spelt.values()} <= {*self.classes},
+        }
 
     def document(self) -> dict[str, Any]:
         """The vocabulary as JSON."""
@@ -116,3 +137,8 @@ class StepVocabulary:
     def class_numbers(self) -> dict[str, int]:
         """Class -> its number."""
         return {name: number for number, name in enumerate(self.classes, 1)}
+
+
+def _names(given: Sequence[Any]) -> bool:
+    """Whether these are different texts."""
+    return all(isinstance(name, str) for name in given) and len({*given}) == len(given)

@@ -12,6 +12,7 @@ import torch
 
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.devices import device
+from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.text.seq2seq import Seq2SeqBody
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
@@ -106,9 +107,8 @@ class TextModel(Settings):
         settings = cls.of(checkpoint.settings)
         vocabulary = StepVocabulary.read(checkpoint.content["vocabulary"])
         closed = tuple((int(a), int(b), int(c)) for a, b, c in checkpoint.content["closed"])
-        writer = settings.network(vocabulary, closed, None)
-        writer.load_state_dict({name: torch.tensor(array) for name, array in checkpoint.weights.items()})
-        return TrainedTextModel(settings, vocabulary, closed, writer.to(device()).eval(), dict(checkpoint.trained))
+        writer = filled(lambda: settings.network(vocabulary, closed, None), checkpoint.weights).to(device())
+        return TrainedTextModel(settings, vocabulary, closed, writer, dict(checkpoint.trained))
 
 
 @dataclass(frozen=True)

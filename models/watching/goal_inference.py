@@ -104,14 +104,12 @@ class GoalInference(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGoalInference:
         """The trained network of a checkpoint."""
-        import torch
+        from hearth.models.filled import filled
 
         settings = cls.of(checkpoint.settings)
         content = checkpoint.content
         layout = Layout(content["kinds"], content["places"], tuple((a, b) for a, b in content["cells"]))
-        network = settings.network(layout)
-        network.load_state_dict({name: torch.as_tensor(value.copy()) for name, value in checkpoint.weights.items()})
-        network.eval()
+        network = filled(lambda: settings.network(layout), checkpoint.weights)
         return TrainedGoalInference(settings, tuple(content["predicates"]), network, layout, dict(checkpoint.trained))
 
 

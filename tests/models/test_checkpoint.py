@@ -6,9 +6,13 @@ import json
 
 import numpy as np
 import pytest
+import torch
 
 from hearth.models.checkpoint import CARD, NAME, WEIGHTS, Checkpoint, load, save
+from hearth.models.filled import filled
 from hearth.models.model_registry import restore
+from hearth.models.text.step_vocabulary import StepVocabulary
+from hearth.models.text.text_models import TextModel
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -92,3 +96,39 @@ def test_changed_content_is_detected(folder):
 def test_content_that_does_not_fit_the_model(folder):
     """It is what was written, but the model needs a memory."""
     assert code(folder) == Code.DAMAGED_FILE
+
+
+def test_settings_larger_than_the_weights_cost_nothing(monkeypatch):
+    """A network is compared with its weights before there is memory for it."""
+    made = []
+
+    def network(size):
+        made.append(torch.empty(0).device.type)
+        return torch.nn.Linear(size, size)
+
+    weights = {name: value.numpy() for name, value in torch.nn.Linear(2, 2).state_dict().items()}
+    assert not filled(lambda: network(2), weights).training
+    with pytest.raises(ValueError, match="weight"):
+        filled(lambda: network(1_000_000), weights)
+    assert made == ["meta", "cpu", "meta"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("layers", 10**9), ("hidden", "many"), ("hidden", True), ("dropout", float("nan")), ("odd", 1)]
+)
+def test_settings_that_no_model_has(name, value):
+    """Settings of strangers are refused before anything is built with them."""
+    with pytest.raises((TypeError, ValueError)):
+        TextModel.of({name: value})
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("arity", []), ("takes", [[[99]]]), ("classes", ["cup", "cup"]), ("spelt", {"mug": "bowl"}), ("words", [1])],
+)
+def test_a_vocabulary_whose_parts_do_not_fit(name, value):
+    """What would fail when the model is asked fails when it is read."""
+    known = {"words": ["a"], "actions": ["Grab"], "arity": [1], "classes": ["cup"], "takes": [[[1]]], "spelt": {}}
+    assert StepVocabulary.read(known).document()
+    with pytest.raises(ValueError, match=f"{name} does not fit"):
+        StepVocabulary.read({**known, name: value})

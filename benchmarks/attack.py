@@ -1,0 +1,25 @@
+"""What an attack is, and where it takes place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+
+class Ground(NamedTuple):
+    """Where an attack takes place: a folder of its own, the folder that must stay as it is, and a dataset."""
+
+    folder: Path
+    guard: Path
+    dataset: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Attack:
+    """One attack. Its call may raise HearthError; what it returns must not hold the guard's secret."""
+
+    group: str
+    name: str
+    call: Callable[[Ground], Any]

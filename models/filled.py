@@ -1,0 +1,36 @@
+"""A network with the weights of a checkpoint, which may be a stranger's: nothing is allocated that does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+import numpy as np
+import torch
+
+Network = TypeVar("Network", bound=torch.nn.Module)
+
+
+def filled(make: Callable[[], Network], weights: Mapping[str, np.ndarray]) -> Network:
+    """The network that is made, with these weights, for prediction.
+
+    It is first made without memory: settings that ask for a network larger than its weights cost nothing.
+
+    Raises:
+        ValueError: its weights have other names or shapes.
+    """
+    with torch.device("meta"):
+        wanted = {name: _shape(value) for name, value in make().state_dict().items()}
+    given = {name: _shape(value) for name, value in weights.items()}
+    if wanted != given:
+        differ = sorted({name for name, _ in wanted.items() ^ given.items()})
+        raise ValueError(f"weights differ from those of the network in {', '.join(differ[:3])}")
+    network = make()
+    network.load_state_dict({name: torch.tensor(value) for name, value in weights.items()})
+    network.eval()
+    return network
+
+
+def _shape(array: np.ndarray | torch.Tensor) -> tuple[int, ...]:
+    """Of an array; of a single number that of a list of one, which is how it is stored."""
+    return tuple(array.shape) or (1,)
