@@ -197,28 +197,15 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
 
 def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execution, list[TickVisibility]]]:
     """Executable programs drawn by the seed, each in the next of our homes, with the visibility of its objects."""
-    from hearth.analysis.coverage import Script, scripts
-    from hearth.grounding.trial import attempt
-    from hearth.homes import library
+    from itertools import islice
+
+    from hearth.analysis.filmed_pairs import pairs
     from hearth.rendering.cameras.visibility import tick_visibilities
     from hearth.rendering.film.snapshots import trajectory_of
-    from hearth.schemas.failures import Failure
-    from hearth.schemas.rng import rng
-    from hearth.simulation.world.home import Home
 
-    known, names = inputs.read_knowledge(None), library.names()
-    read = [script.program for script in scripts(inputs.paths(sources), known) if isinstance(script, Script)]
-    rng(seed, "visible", "").shuffle(read)
-    for number, program in enumerate(read):
-        name = names[number % len(names)]
-        graph = library.load_graph(name, known)
-        trial = attempt(program, Home.from_graph(graph, name, known), seed)
-        if isinstance(trial, Failure) or not trial.execution.executable:
-            continue
-        yield trial.execution, list(tick_visibilities(trajectory_of(trial.execution, graph, known, seed=seed), graph))
-        count -= 1
-        if not count:
-            return
+    known = inputs.read_knowledge(None)
+    for execution, _, graph in islice(pairs(inputs.paths(sources), known, seed), count):
+        yield execution, list(tick_visibilities(trajectory_of(execution, graph, known, seed=seed), graph))
 
 
 def _execution(program: Program, home: str, homes: Path | None, seed: int, known: Knowledge) -> Execution:

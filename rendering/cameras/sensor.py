@@ -14,7 +14,7 @@ from hearth.rendering.people.acting import Actor, initial_actors, posed
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
-from hearth.rendering.scene.swept import free_floor
+from hearth.rendering.scene.swept import Floors
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.simulation.env import Env
 from hearth.simulation.world.world import World
@@ -53,7 +53,7 @@ class CameraSensor:
         check_geometry(home)
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
         self.prepared = prepared_scene(home, knowledge, seed=seed, hour=hour)
-        self.floor = free_floor(self.prepared)
+        self.floors = Floors(self.prepared)
         self.places = Places.start(home, self.prepared.knowledge)
         self.actors: tuple[Actor, ...] = ()
         self._scene: Scene | None = None
@@ -83,14 +83,13 @@ class CameraSensor:
             self._begin(env)
         for tick in env.ticks[self._ticks :]:
             steps = tuple(step for number, step in tick.instructions.items() if number not in tick.failures)
-            self.actors, self.places = advanced(
-                self.actors, self.places, tick.world.graph(), self.floor, steps, tick.world
-            )
+            floor = self.floors.at(self.places.nodes())
+            self.actors, self.places = advanced(self.actors, self.places, tick.world.graph(), floor, steps, tick.world)
             self._ticks, self._world, self._scene = self._ticks + 1, tick.world, None
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
         self.places = Places.start(self.home, self.prepared.knowledge).settled(graph)
-        actors = initial_actors(graph, self.floor, self.places, self.seed)
+        actors = initial_actors(graph, self.floors.at(self.places.nodes()), self.places, self.seed)
         self.actors = standing((posed(actor, graph, self.places, None) for actor in actors), env.world)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

@@ -20,7 +20,7 @@ from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import PreparedScene, prepared_scene
 from hearth.rendering.scene.scene import Scene
 from hearth.rendering.scene.standing_places import FreeFloor
-from hearth.rendering.scene.swept import free_floor
+from hearth.rendering.scene.swept import Floors
 from hearth.rendering.scene.triangles import StaticThings
 from hearth.rendering.scene.variation import PLAIN, Variation, scattered
 from hearth.schemas.diagnostics import HearthError
@@ -45,6 +45,7 @@ class Keyframe:
         scene: the scene.
         actors: the characters.
         places: positions of all things.
+        floor: where one can stand and walk.
     """
 
     tick: int
@@ -52,6 +53,7 @@ class Keyframe:
     scene: Scene
     actors: tuple[Actor, ...]
     places: Places
+    floor: FreeFloor
 
     @property
     def acting(self) -> Actor:
@@ -174,20 +176,22 @@ def _keyframes(
     execution: Execution, home: EnvironmentGraph, prepared: PreparedScene, variation: Variation
 ) -> Iterator[Keyframe]:
     """The keyframes of an execution, each scene with all of its things."""
-    floor = free_floor(prepared)
+    floors = Floors(prepared)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
     places = Places.start(home, prepared.knowledge)
     actors: tuple[Actor, ...] = ()
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
             places = places.settled(graph)
+            floor = floors.at(places.nodes())
             actors = initial_actors(graph, floor, places, variation.seed)
             actors = _wandered(actors, floor, variation) if variation.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
             actors = standing(actors, execution.worlds[0])
         else:
             actors, places = advanced(actors, places, graph, floor, steps, execution.worlds[tick])
-        yield Keyframe(tick, steps, scene_at(prepared, places, actors), actors, places)
+            floor = floors.at(places.nodes())
+        yield Keyframe(tick, steps, scene_at(prepared, places, actors), actors, places, floor)
 
 
 def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation) -> tuple[Actor, ...]:
@@ -226,7 +230,7 @@ def advanced(
     for number, actor in enumerate(actors):
         others = [a.spot for a in (*after, *actors[number + 1 :])]
         known = replace(places, graph=graph)
-        after.append(moved(actor, graph, known, floor, by_agent.get(number), others))
+        after.append(moved(actor, graph, known, floor.reachable_from(actor.spot), by_agent.get(number), others))
     after = list(standing(after, world))
     near = {actor.node.id: actor.position for actor in after}
     put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}

@@ -12,11 +12,10 @@ from hearth.rendering.people.acting import Actor, carried, posed, reach_for
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.skeleton import HIP, PELVIS_ON_SEAT, BodyPose
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.routes import path, ways_of
+from hearth.rendering.scene.routes import WalkableFloor, path
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Node, Point, Spot
 from hearth.schemas.program import Step
-from hearth.simulation.motion.navigation import Ways
 
 WALKING, RUNNING = 1.15, 2.6
 """Metres per second."""
@@ -102,10 +101,9 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
         fps: frames per second.
         speed: factor of all motions' speed.
     """
-    ways = _ways(trajectory)
     set_ = _SceneCache(trajectory)
     number = 0
-    for span, before, after, tracks in _spans(trajectory, ways, speed):
+    for span, before, after, tracks in _spans(trajectory, speed):
         change, swings = _change(tracks), swinging(before, after)
         while number / fps < span.end:
             time = number / fps
@@ -130,17 +128,10 @@ def _change(tracks: Sequence[Track]) -> float:
 
 def spans(trajectory: Trajectory, speed: float = 1.0) -> list[Span]:
     """Start and end of each tick in the film; the first span is before the program."""
-    return [span for span, *_ in _spans(trajectory, _ways(trajectory), speed)]
+    return [span for span, *_ in _spans(trajectory, speed)]
 
 
-def _ways(trajectory: Trajectory) -> Ways | None:
-    first = trajectory.keyframes[0]
-    return ways_of(trajectory.prepared.rooms.values(), first.places.nodes())
-
-
-def _spans(
-    trajectory: Trajectory, ways: Ways | None, speed: float
-) -> Iterator[tuple[Span, Keyframe, Keyframe, tuple[Track, ...]]]:
+def _spans(trajectory: Trajectory, speed: float) -> Iterator[tuple[Span, Keyframe, Keyframe, tuple[Track, ...]]]:
     first = trajectory.keyframes[0]
     static = tuple(Track((_motionless(actor, 1.0),), 0.0) for actor in first.actors)
     yield Span(0, (), 0.0, 1.0 / speed), first, first, static
@@ -148,7 +139,7 @@ def _spans(
     for before, after in zip(trajectory.keyframes, trajectory.keyframes[1:], strict=False):
         by_agent = {step.agent: step for step in after.steps}
         tracks = tuple(
-            track(one, other, before, by_agent.get(number), ways)
+            track(one, other, before, by_agent.get(number))
             for number, (one, other) in enumerate(zip(before.actors, after.actors, strict=True))
         )
         takes = [found.seconds for found in tracks] or [HOLD]
@@ -202,13 +193,13 @@ def _opened(node: Node) -> Node:
     return replace(node, states=tuple(sorted({*node.states, "OPEN"} - {"CLOSED"})))
 
 
-def track(one: Actor, other: Actor, before: Keyframe, step: Step | None, ways: Ways | None) -> Track:
+def track(one: Actor, other: Actor, before: Keyframe, step: Step | None) -> Track:
     """An actor's motion from one keyframe to the next."""
     segments: list[Segment] = []
     rest = _resting(one, before)
     if rest.body_pose != one.body_pose:
         segments.append(_blended(one, rest, RELAX))
-    here = _approach(segments, rest, other, step, ways)
+    here = _approach(segments, rest, other, step, before.floor.walkable)
     if step is not None:
         reach = reach_for(here, other, before.places, step)
         if reach.body_pose != here.body_pose:
@@ -228,7 +219,9 @@ def _motionless(actor: Actor, seconds: float) -> Segment:
     return Segment(seconds, lambda share: actor)
 
 
-def _approach(segments: list[Segment], one: Actor, other: Actor, step: Step | None, ways: Ways | None) -> Actor:
+def _approach(
+    segments: list[Segment], one: Actor, other: Actor, step: Step | None, ways: WalkableFloor | None
+) -> Actor:
     """Append the segments up to the acting position; returns the actor there, hands in default pose."""
     seated, sits = one.body_pose.posture != "standing", other.body_pose.posture != "standing"
     if seated and sits and one.place == other.place:

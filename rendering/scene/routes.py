@@ -1,20 +1,114 @@
 """Routes of walks: the walkable floor of a graph with boxes, and straightened paths over it."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import dist
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hearth.homes.plans import raster
 from hearth.homes.plans.floor import Floor
-from hearth.rendering.scene.standing_places import CELL, IGNORED, cells_of, eroded, is_in_the_way
+from hearth.rendering.arrays import Floats
+from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
 from hearth.schemas.graph import Box, Node, Spot
 from hearth.simulation.motion.navigation import Ways
 
 DOORS = frozenset({"door", "maindoor", "balcony_door"})
-"""Classes of doors."""
+"""Classes of doors. Open leaves are in the way; closed ones are opened, or passed where the rules ignore doors."""
+
+STEPPED_OVER = 0.25
+"""Height in metres up to which things that one can carry do not block a walk, such as a pillow on the floor."""
+
+NARROW = 1
+"""Cells that a character needs on each side of the middle one where it squeezes through."""
+
+FARTHEST = 1.6
+"""Metres within which a walk enters or leaves the walkable floor, such as from a seat at a table."""
+
+AMONG = 60
+"""Cells that are tried for that."""
+
+Cells = NDArray[np.bool_]
 
 
-def ways_of(rooms: Iterable[Node], nodes: Sequence[Node]) -> Ways | None:
-    """The free floor of rooms and doorways; None for rooms without boxes."""
+@dataclass(frozen=True, eq=False)
+class WalkableFloor:
+    """The floor on which characters walk.
+
+    Attributes:
+        free: bool, (columns, rows): where nothing stands.
+        wide: the cells with space around for a body.
+        narrow: those with space to squeeze through.
+    """
+
+    free: Cells
+    wide: Ways
+    narrow: Ways
+
+    @cached_property
+    def regions(self) -> NDArray[np.int32]:
+        """(columns, rows): cells of `narrow` that join share a number from 1; others are 0."""
+        return raster.regions(self.narrow.floor.walkable)
+
+    def region(self, spot: Spot) -> int:
+        """The number of the region from which one comes to a spot; 0 for none."""
+        entry = self.entry(self.narrow, spot)
+        return 0 if entry is None else int(self.regions[self.narrow.floor.index(*entry)])
+
+    def regions_at(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
+        """(n,) the numbers of the regions of (n, 2) points; 0 for none."""
+        index = ((points - self.narrow.floor.origin) // CELL).astype(int).clip(0, np.array(self.regions.shape) - 1)
+        found: NDArray[np.int32] = self.regions[tuple(index.T)]
+        return found
+
+    def blocked(self, a: Spot, b: Spot) -> Cells:
+        """(n,) whether something stands at points, half a cell apart, on the line from a to b."""
+        shares = np.linspace(0, 1, max(2, int(np.ceil(dist(a, b) / CELL * 2)) + 1))
+        return ~self._at(self.free, np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a)))
+
+    def clear(self, a: Spot, b: Spot, ways: Ways) -> bool:
+        """Whether the straight line is walkable."""
+        shares = np.linspace(0, 1, max(2, int(np.ceil(dist(a, b) / CELL * 2)) + 1))
+        points = np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a))
+        return bool(self._at(ways.floor.walkable, points).all())
+
+    def _at(self, cells: Cells, points: NDArray[np.float64]) -> Cells:
+        index = ((points - self.wide.floor.origin) // CELL).astype(int)
+        inside = ((index >= 0) & (index < cells.shape)).all(axis=1)
+        found = np.zeros(len(points), np.bool_)
+        found[inside] = cells[tuple(index[inside].T)]
+        return found
+
+    def entry(self, ways: Ways, spot: Spot) -> Spot | None:
+        """The walkable point from which one comes straight to a spot, which may be in a seat, but through nothing else;
+        None if there is none.
+        """
+        far = np.hypot(*(ways.points - spot).T)
+        best: tuple[float, Spot] | None = None
+        for number in np.argsort(far, kind="stable")[:AMONG].tolist():
+            if far[number] > FARTHEST or (best is not None and far[number] >= best[0]):
+                break
+            point = (float(ways.points[number, 0]), float(ways.points[number, 1]))
+            blocked = self.blocked(spot, point)
+            # Once outside what the spot is in, nothing else may be in the way.
+            if blocked[: int(blocked.sum())].all():
+                cost = float(far[number]) + CELL * float(blocked.sum())
+                best = min(best or (cost, point), (cost, point))
+        return best[1] if best else None
+
+
+def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None = None) -> WalkableFloor | None:
+    """The walkable floor of rooms and doorways; None for rooms without boxes.
+
+    Args:
+        rooms: with boxes.
+        nodes: everything, as it stands now.
+        leaves: (n, 2) x and z of further points in the way, such as open doors of cupboards.
+    """
     boxes = [room.box for room in rooms if room.box]
     if not boxes:
         return None
@@ -24,12 +118,32 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node]) -> Ways | None:
     free = np.zeros((int((high[0] - low[0]) / CELL) + 1, int((high[2] - low[2]) / CELL) + 1), np.bool_)
     for box in [*boxes, *(_deeper(node.box) for node in nodes if node.class_name == "doorjamb" and node.box)]:
         free[cells_of(box, origin)] = True
-    floor = low[1] + 2 * CELL
     for node in nodes:
-        if node.box and node.class_name not in DOORS and node.class_name not in IGNORED and is_in_the_way(node, floor):
-            free[cells_of(node.box, origin)] = False
-    walkable = eroded(free)
-    return Ways(Floor(origin, CELL, free, walkable, np.where(free, 0, -1).astype(np.int16)))
+        if node.box and blocks_walks(node, low[1] + 2 * CELL):
+            free[cells_of(_thick(node.box), origin)] = False
+    for i, j in ((np.zeros((0, 2)) if leaves is None else leaves - origin) // CELL).astype(int):
+        if 0 <= i < free.shape[0] and 0 <= j < free.shape[1]:
+            free[i, j] = False
+
+    def ways(walkable: Cells) -> Ways:
+        return Ways(Floor(origin, CELL, free, walkable, np.where(free, 0, -1).astype(np.int16)))
+
+    return WalkableFloor(free, ways(eroded(free)), ways(eroded(free, NARROW)))
+
+
+def blocks_walks(node: Node, floor: float) -> bool:
+    """Whether one walks around a thing."""
+    assert node.box is not None
+    if node.class_name in DOORS:
+        return "OPEN" in node.states
+    top = node.box.center[1] + node.box.size[1] / 2 - floor
+    return is_in_the_way(node, floor) and not ("GRABBABLE" in node.properties and top < STEPPED_OVER)
+
+
+def _thick(box: Box) -> Box:
+    """A box at least a cell wide and deep, so that it takes up cells."""
+    (w, h, d) = box.size
+    return Box(box.center, (max(w, CELL), h, max(d, CELL)))
 
 
 def _deeper(jamb: Box) -> Box:
@@ -38,30 +152,52 @@ def _deeper(jamb: Box) -> Box:
     return Box(jamb.center, (w + more, h, d) if w < d else (w, h, d + more))
 
 
-def path(ways: Ways | None, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...]:
-    """A path with few corners from start to goal; a straight line without a walkable path."""
-    found = ways.path(start, goal, others) if ways else None
-    if not found or ways is None:
+def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[Spot] = ()) -> tuple[Spot, ...]:
+    """A path with few corners from start to goal.
+
+    It keeps a body's width from things where it can, and squeezes through where it must. Where no way leads to the
+    goal, it ends at the walkable point nearest to it; without a floor it is the straight line.
+    """
+    if floor is None or dist(start, goal) < CELL / 2:
         return start, goal
-    points = [start, *found[1:-1], goal]
-    kept = [points[0]]
-    k = 0
+    for ways in (floor.wide, floor.narrow):
+        found = _found(floor, ways, start, goal, others)
+        if found is not None:
+            return found
+    return _nearest(floor, start, goal)
+
+
+def _found(
+    floor: WalkableFloor, ways: Ways, start: Spot, goal: Spot, others: Sequence[Spot]
+) -> tuple[Spot, ...] | None:
+    """The path over some cells from where one comes onto the floor to where one leaves it; None if there is none."""
+    if floor.clear(start, goal, ways):
+        return start, goal
+    first, last = floor.entry(ways, start), floor.entry(ways, goal)
+    found = ways.path(first, last, others) if first and last else None
+    if not found:
+        return None
+    return (start, *_straightened(floor, ways, found), goal)
+
+
+def _nearest(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
+    """The path to the point nearest to the goal that can be reached; the start alone if it cannot be left."""
+    ways = floor.narrow
+    region = floor.region(start)
+    if not region:
+        return start, start
+    mine = np.flatnonzero(floor.regions[floor.narrow.floor.walkable] == region)
+    x, z = ways.points[mine[np.hypot(*(ways.points[mine] - goal).T).argmin()]]
+    return _found(floor, ways, start, (float(x), float(z)), ()) or (start, start)
+
+
+def _straightened(floor: WalkableFloor, ways: Ways, points: Sequence[Spot]) -> list[Spot]:
+    """The corners of a path over neighbouring cells."""
+    kept, k = [points[0]], 0
     while k < len(points) - 1:
         ahead = len(points) - 1
-        while ahead > k + 1 and not _clear(ways, points[k], points[ahead]):
+        while ahead > k + 1 and not floor.clear(points[k], points[ahead], ways):
             ahead -= 1
         kept.append(points[ahead])
         k = ahead
-    return tuple(kept)
-
-
-def _clear(ways: Ways, a: Spot, b: Spot) -> bool:
-    """Whether the straight line is walkable; ends close to furniture are ignored."""
-    floor = ways.floor
-    distance = float(np.hypot(b[0] - a[0], b[1] - a[1]))
-    for step in np.arange(0.25, max(distance - 0.25, 0.26), CELL / 2):
-        share = min(step / max(distance, 1e-9), 1.0)
-        i, j = floor.index(a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
-        if not (0 <= i < floor.walkable.shape[0] and 0 <= j < floor.walkable.shape[1] and floor.walkable[i, j]):
-            return False
-    return True
+    return kept

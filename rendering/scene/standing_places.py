@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, radians, sin
 from random import Random
 
@@ -11,15 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats
+from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
+from hearth.rendering.scene.routes import WalkableFloor
 from hearth.schemas.graph import Box, Node, Spot
-
-CELL = 0.1
-BODY = 2
-"""Cells that a standing character needs on each side of the middle one."""
-HEADROOM = 1.7
-STEP_OVER = 0.06
-IGNORED = frozenset({"floor", "ceiling", "mat", "carpet", "doorjamb", "window", "curtain", "blinds", "doormat"})
-"""Classes that do not block the floor."""
 
 NEAR, FAR = 0.32, 1.1
 """Preferred distance from an object, and distance from which it is hard to use, metres."""
@@ -43,6 +37,7 @@ class FreeFloor:
         rooms: (n,) id of each cell's room.
         level: height of the floor.
         sweeps: node id -> (n, 2) x and z of the floor that its doors or drawers sweep.
+        walkable: the floor over which one comes to them, if known.
     """
 
     origin: Spot
@@ -50,9 +45,16 @@ class FreeFloor:
     rooms: NDArray[np.int64]
     level: float
     sweeps: Callable[[int], Floats] = nothing
+    walkable: WalkableFloor | None = None
 
     @classmethod
-    def of(cls, rooms: Iterable[Node], nodes: Iterable[Node], sweeps: Callable[[int], Floats] = nothing) -> FreeFloor:
+    def of(
+        cls,
+        rooms: Iterable[Node],
+        nodes: Iterable[Node],
+        sweeps: Callable[[int], Floats] = nothing,
+        walkable: WalkableFloor | None = None,
+    ) -> FreeFloor:
         """The free floor of rooms between things; both have boxes."""
         known = [(room.id, room.box) for room in rooms if room.box]
         if not known:
@@ -70,7 +72,15 @@ class FreeFloor:
         free = eroded(free)
         i, j = np.nonzero(free)
         centers = np.column_stack((low[0] + (i + 0.5) * CELL, low[2] + (j + 0.5) * CELL))
-        return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps)
+        return cls((low[0], low[2]), centers, inside[i, j], low[1], sweeps, walkable)
+
+    def reachable_from(self, spot: Spot) -> FreeFloor:
+        """The part to which a way leads from a spot; all of it where that is unknown."""
+        region = self.walkable.region(spot) if self.walkable else 0
+        if self.walkable is None or not region:
+            return self
+        same = self.walkable.regions_at(self.centers) == region
+        return replace(self, centers=self.centers[same], rooms=self.rooms[same]) if same.any() else self
 
     def spot_in(self, room: int, taken: Iterable[Spot] = ()) -> Spot | None:
         """The free spot nearest to the middle of a room's free floor."""
@@ -105,6 +115,9 @@ class FreeFloor:
         """
         mine = self.centers[self.rooms == room]
         if not len(mine):
+            # No way leads into the room: one comes as near as one can.
+            mine = self.centers
+        if not len(mine):
             return None
         middle, half = np.array((box.center[0], box.center[2])), np.array((box.size[0], box.size[2])) / 2
         offset = mine - middle
@@ -128,37 +141,6 @@ class FreeFloor:
             return np.zeros(len(centers))
         near = np.linalg.norm(centers[:, None] - passed, axis=2).min(axis=1) < SIDE
         return np.where(near, 2.0, 0.0)
-
-
-def is_in_the_way(node: Node, floor: float) -> bool:
-    """Whether a thing with a box blocks the floor of that height."""
-    assert node.box is not None
-    low, high = node.box.center[1] - node.box.size[1] / 2 - floor, node.box.center[1] + node.box.size[1] / 2 - floor
-    return node.class_name not in IGNORED and low < HEADROOM and high > STEP_OVER and node.category not in (
-        "Rooms", "Characters", "BodyParts"
-    )  # fmt: skip
-
-
-def cells_of(box: Box, origin: Spot) -> tuple[slice, slice]:
-    """Cells with their middle in a box."""
-
-    def part(center: float, size: float, start: float) -> slice:
-        first = int(np.ceil((center - size / 2 - start) / CELL - 0.5))
-        last = int(np.floor((center + size / 2 - start) / CELL - 0.5)) + 1
-        return slice(max(first, 0), max(last, 0))
-
-    return part(box.center[0], box.size[0], origin[0]), part(box.center[2], box.size[2], origin[1])
-
-
-def eroded(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Cells with `BODY` free cells on every side."""
-    padded = np.pad(free, BODY)
-    kept = free.copy()
-    for i in range(-BODY, BODY + 1):
-        for j in range(-BODY, BODY + 1):
-            if i * i + j * j <= BODY * BODY + 1:
-                kept &= padded[BODY + i : BODY + i + free.shape[0], BODY + j : BODY + j + free.shape[1]]
-    return kept
 
 
 def _crowding(centers: NDArray[np.float64], taken: Iterable[Spot]) -> NDArray[np.float64]:

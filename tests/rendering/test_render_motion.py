@@ -218,3 +218,56 @@ def test_a_film_shows_characters_where_the_world_has_them():
         assert (actor.spot, actor.yaw) == (pose.point, pose.yaw)
     last = list(frames(trajectory, 12.0))[-1].actors[0]
     assert (last.spot, last.yaw) == (done.final.agents[0].pose.point, 200.0)
+
+
+ROOM = node(1, "kitchen", "Rooms", (0, 1.3, 0), (4, 2.6, 4))
+
+
+def standing(number, name, at, size, *states, properties=()):
+    return Node(number, name, "Furniture", states=states, properties=properties, box=Box(at, size))
+
+
+def crosses(way, thing):
+    """Whether a way leads through a thing's box."""
+    (x, _, z), (w, _, d) = thing.box
+    points = [np.add(a, (np.array(b) - a) * s) for a, b in pairwise(way) for s in np.linspace(0, 1, 200)]
+    return any(abs(p[0] - x) < w / 2 - 0.02 and abs(p[1] - z) < d / 2 - 0.02 for p in points)
+
+
+def test_without_a_way_one_comes_as_near_as_one_can_and_never_through():
+    shelf = standing(2, "bookshelf", (0, 1, 0), (0.4, 2, 4))
+    way = path(ways_of([ROOM], [ROOM, shelf]), (-1.5, 0.0), (1.5, 1.0))
+    assert not crosses(way, shelf)
+    assert way[-1][0] < 0 and abs(way[-1][1] - 1.0) < 0.2
+
+
+def test_one_squeezes_through_where_there_is_no_space_for_two():
+    shelves = [standing(2, "bookshelf", (0, 1, -1.15), (0.4, 2, 1.7)), standing(3, "bookshelf", (0, 1, 1), (0.4, 2, 2))]
+    way = path(ways_of([ROOM], [ROOM, *shelves]), (-1.5, 1.0), (1.5, 1.0))
+    assert way[-1] == (1.5, 1.0)
+    assert not any(crosses(way, shelf) for shelf in shelves)
+
+
+def test_open_leaves_are_walked_around_and_closed_ones_are_not():
+    opened = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "OPEN")
+    closed = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "CLOSED")
+    start, goal = (-1.0, 0.0), (1.0, 0.0)
+    assert not crosses(path(ways_of([ROOM], [ROOM, opened]), start, goal), opened)
+    assert path(ways_of([ROOM], [ROOM, closed]), start, goal) == (start, goal)
+
+
+def test_a_pillow_on_the_floor_is_stepped_over():
+    pillow = standing(2, "pillow", (0, 0.08, 0), (0.6, 0.16, 3.9), properties=("GRABBABLE",))
+    chest = standing(2, "chest", (0, 0.08, 0), (0.6, 0.16, 3.9))
+    start, goal = (-1.0, 0.0), (1.0, 0.0)
+    assert path(ways_of([ROOM], [ROOM, pillow]), start, goal) == (start, goal)
+    assert path(ways_of([ROOM], [ROOM, chest]), start, goal)[-1] != goal
+
+
+def test_from_a_seat_one_does_not_climb_over_the_table():
+    chair = standing(2, "chair", (0, 0.45, 0.6), (0.4, 0.9, 0.4))
+    table = standing(3, "table", (0, 0.37, -0.3), (2.4, 0.74, 1.4))
+    floor = ways_of([ROOM], [ROOM, chair, table])
+    entry = floor.entry(floor.wide, (0.0, 0.6))
+    assert entry is not None and entry[1] > 0.6
+    assert not crosses(path(floor, (0.0, 0.6), (0.0, -1.6)), table)

@@ -1,0 +1,106 @@
+"""Measures of a film's cameras: which steps it shows, how long its shots are, and whether something is in their way."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import groupby
+from typing import NamedTuple
+
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.cameras.recognition import in_the_way, shows
+from hearth.rendering.film.snapshots import AUTO, Keyframe, Trajectory, named_nodes
+from hearth.rendering.film.video import CameraSelector
+from hearth.rendering.people.motion import frames
+from hearth.rendering.rays.shot import shoot
+from hearth.rendering.scene.places import Places
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Step
+
+SIZE = (160, 120)
+RATE = 2.0
+"""Size, and number a second, of the pictures that are judged."""
+
+
+class StepShown(NamedTuple):
+    """Whether a film shows a step: the person and what the step is about can be recognised in one of its pictures.
+
+    Attributes:
+        tick, step: the step.
+        objects: ids of the nodes that have to be seen, besides the person.
+        shown: whether they are.
+    """
+
+    tick: int
+    step: Step
+    objects: tuple[int, ...]
+    shown: bool
+
+
+class FilmQuality(NamedTuple):
+    """Measures of one film.
+
+    Attributes:
+        steps: each step of each character.
+        shots: seconds of each shot.
+        pictures: number of judged pictures; `blocked`: of those with something in the camera's way.
+    """
+
+    steps: tuple[StepShown, ...]
+    shots: tuple[float, ...]
+    pictures: int
+    blocked: int
+
+
+def film_quality(trajectory: Trajectory, home: EnvironmentGraph, view: str = AUTO) -> FilmQuality:
+    """Judge the pictures of a film by one camera (see `RATE` and `SIZE`)."""
+    selector = CameraSelector(home, view, SIZE, trajectory.variation)
+    keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
+    shown: dict[tuple[int, int], bool] = {}
+    cameras: list[Camera] = []
+    blocked = 0
+    for frame in frames(trajectory, RATE, trajectory.variation.speed):
+        cameras.append(selector.camera(frame))
+        shot = shoot(frame.scene, cameras[-1])
+        blocked += in_the_way(shot)
+        for step in frame.steps:
+            key = frame.tick, step.agent
+            if not shown.get(key):
+                person = frame.actors[step.agent].node.id
+                shown[key] = shows(shot, person, objects_of(step, trajectory, keyframes[frame.tick]))
+    steps = [
+        StepShown(tick, step, objects_of(step, trajectory, keyframe), shown.get((tick, step.agent), False))
+        for tick, keyframe in keyframes.items()
+        for step in keyframe.steps
+    ]
+    return FilmQuality(tuple(steps), tuple(_lengths(cameras)), len(cameras), blocked)
+
+
+def objects_of(step: Step, trajectory: Trajectory, keyframe: Keyframe) -> tuple[int, ...]:
+    """The nodes by which a step's objects are seen, without rooms and the person itself."""
+    named = named_nodes([step], trajectory.prepared.rooms)
+    person = keyframe.actors[step.agent].node.id
+    return tuple(dict.fromkeys(node for node in (seen_as(one, keyframe.places) for one in named) if node != person))
+
+
+def seen_as(node: int, places: Places) -> int:
+    """The node by which an onlooker sees a node.
+
+    Body parts and worn clothes are drawn with their wearer, and what is in a closed container is seen by that.
+    """
+    states: Mapping[int, tuple[str, ...]] = {known.id: known.states for known in places.graph.nodes}
+    if any(known.id == node and known.category == "BodyParts" for known in places.graph.nodes):
+        return next((known.id for known in places.graph.nodes if known.category == "Characters"), node)
+    found = node
+    for _ in range(8):
+        location = places.locations.get(node)
+        if location is None or location.kind not in ("on", "inside", "worn"):
+            break
+        node = location.holder
+        if location.kind == "worn" or (location.kind == "inside" and "CLOSED" in states.get(node, ())):
+            found = node
+    return found
+
+
+def _lengths(cameras: list[Camera]) -> Iterator[float]:
+    """Seconds of each shot."""
+    for _, shot in groupby(cameras, lambda camera: replace(camera, name="")):
+        yield len(list(shot)) / RATE
