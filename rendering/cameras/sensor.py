@@ -62,12 +62,19 @@ class CameraSensor:
 
     def __call__(self, env: Env, agent: int, modalities: tuple[str, ...]) -> dict[str, NDArray[Any]]:
         """The current pictures of an agent, by modality."""
+        return render(self.scene(env), self.camera(env, agent), modalities, quality=self.quality)
+
+    def scene(self, env: Env) -> Scene:
+        """What there is to picture now."""
         self._follow(env)
         if self._scene is None:
             self._scene = scene_at(self.prepared, self.places, self.actors)
-        return render(self._scene, self._camera(self.actors[agent]), modalities, quality=self.quality)
+        return self._scene
 
-    def _camera(self, actor: Actor) -> Camera:
+    def camera(self, env: Env, agent: int) -> Camera:
+        """The camera of an agent now."""
+        self._follow(env)
+        actor = self.actors[agent]
         if self.view == FIRST:
             return first_person(actor, self.size)
         if self.view == THIRD:

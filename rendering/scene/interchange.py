@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from itertools import chain, count
 from pathlib import Path
@@ -57,8 +58,41 @@ def write(scene: Scene, path: Path, form: str = "gltf") -> int:
     return len({thing.id for thing in scene.everything})
 
 
+def glb(scene: Scene, textures: bool = True) -> bytes:
+    """A scene as a glTF file in memory, as `write` describes it; without textures it has plain colours.
+
+    Raises:
+        HearthError: MISSING_FILE without trimesh.
+    """
+    library("trimesh")
+    return _bytes(_Exchanged(scene, textures).made)
+
+
+def node_names(scene: Scene) -> dict[Thing, str]:
+    """The node of a glTF that each thing of a scene is; of equal things, the first's."""
+    found: dict[Thing, str] = {}
+    for thing, name in zip(scene.everything, _names(scene), strict=True):
+        found.setdefault(thing, name)
+    return found
+
+
+def _names(scene: Scene) -> Iterator[str]:
+    used: set[str] = set()
+    for thing in scene.everything:
+        name = f"{thing.class_name}_{thing.id}"
+        panels = (f"{name}.panel{number}" for number in count(2))
+        found = next(each for each in chain((name,), panels) if each not in used)
+        used.add(found)
+        yield found
+
+
+def _bytes(found: Any) -> bytes:
+    data: bytes = found.export(file_type="glb", include_normals=True)
+    return data
+
+
 def _gltf(found: Any, path: Path) -> dict[str, bytes]:
-    return {path.name: found.export(file_type="glb", include_normals=True)}
+    return {path.name: _bytes(found)}
 
 
 def _obj(found: Any, path: Path) -> dict[str, bytes]:
@@ -76,13 +110,11 @@ class _Exchanged:
 
         self._textures = textures
         self.made: Any = Made()
-        self._names: set[str] = set()
         self._models: dict[Model | Figure, list[str]] = {}
-        for thing in scene.everything:
-            self._add(thing)
+        for thing, name in zip(scene.everything, _names(scene), strict=True):
+            self._add(thing, name)
 
-    def _add(self, thing: Thing) -> None:
-        name = self._unused(f"{thing.class_name}_{thing.id}")
+    def _add(self, thing: Thing, name: str) -> None:
         extras = {"id": thing.id, "class": thing.class_name}
         graph = self.made.graph
         graph.update(frame_from="world", frame_to=name, matrix=_matrix(thing), metadata=extras)
@@ -102,12 +134,6 @@ class _Exchanged:
         found = {f"{name}.{number}": piece for number, piece in enumerate(_by_material(mesh, self._textures))}
         self.made.geometry.update(found)
         return list(found)
-
-    def _unused(self, name: str) -> str:
-        panels = (f"{name}.panel{number}" for number in count(2))
-        found = next(each for each in chain((name,), panels) if each not in self._names)
-        self._names.add(found)
-        return found
 
 
 def _matrix(thing: Thing) -> Floats:
@@ -138,13 +164,12 @@ def _piece(mesh: Mesh, chosen: Any, kind: Floats) -> Any:
     from trimesh import Trimesh
     from trimesh.visual.texture import TextureVisuals
 
-    corners = mesh.corners[chosen].reshape(-1, 3)
     # Pictures count their rows from the top, as `mesh.uvs` do, and trimesh turns them over when it writes.
     uvs = mesh.uvs[chosen].reshape(-1, 2) * (1, -1) + (0, 1)
-    faces = np.arange(len(corners)).reshape(-1, 3)
-    look = TextureVisuals(uv=uvs, material=_material(tuple(map(float, kind))))
-    normals = mesh.normals[chosen].reshape(-1, 3)
-    return Trimesh(corners, faces, vertex_normals=normals, visual=look, process=False)
+    rows = np.column_stack((mesh.corners[chosen].reshape(-1, 3), mesh.normals[chosen].reshape(-1, 3), uvs))
+    rows, faces = np.unique(rows.astype(np.float32), axis=0, return_inverse=True)  # equal corners are one
+    look = TextureVisuals(uv=rows[:, 6:], material=_material(tuple(map(float, kind))))
+    return Trimesh(rows[:, :3], faces.reshape(-1, 3), vertex_normals=rows[:, 3:6], visual=look, process=False)
 
 
 @cache

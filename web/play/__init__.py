@@ -25,6 +25,8 @@ ROOM = Room(
         post("/new", play_pages.new),
         get("/game/{game}", play_pages.game_page),
         get("/game/{game}/episode.jsonl", play_pages.record),
+        get("/game/{game}/models/{key}.glb", play_pages.model_file),
+        get("/home/{challenge}/{home}.glb", play_pages.home_file),
         socket("/game/{game}/live", live),
         get("/join/{code}", play_pages.join_page),
         post("/join/{code}", play_pages.join),

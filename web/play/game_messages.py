@@ -1,4 +1,4 @@
-"""What a person's page is told of a game: at first all that it sees, then what is different after each tick."""
+"""The messages to a person's page: at first all that it sees, then what is different after each tick."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def thing_group(node: Node) -> str:
 
 
 class Telling:
-    """What one page knows of a game, so that it is told only what is new.
+    """What one page knows of a game, so that only what is new is sent to it.
 
     Args:
         game: the game.

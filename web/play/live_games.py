@@ -15,6 +15,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web.play import game_store
+from hearth.web.play.drawn_games import DrawnGame
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
 from hearth.web.play.trials import PROGRAM
@@ -47,6 +48,7 @@ class LiveGame:
         self.lock = threading.RLock()
         self.waiting_since = 0.0
         self.decided: tuple[int, ...] = ()
+        self._drawn: dict[int, DrawnGame] = {}
         self._listener: Listener | None = None
         self._program: WireAgent | None = None
 
@@ -59,6 +61,12 @@ class LiveGame:
     def characters(self) -> int:
         """How many there are."""
         return len(self.game.start.agents)
+
+    def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
+        """The game's scene for the eyes of a character. Hold the lock."""
+        if number not in self._drawn:
+            self._drawn[number] = DrawnGame(self.game, knowledge, number)
+        return self._drawn[number]
 
     def sync(self) -> Game:
         """The game with every tick that the store has. Hold the lock."""

@@ -11,6 +11,7 @@ from hearth.challenges.definition import NAMES, challenge
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.schemas.failures import Code
 from hearth.web.play import game_store
+from hearth.web.play.drawn_games import base_file
 from hearth.web.play.game_messages import goal_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
@@ -126,6 +127,28 @@ def record(visit: Visit) -> Response:
 def _file(data: bytes, name: str) -> Response:
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     return Response(data, media_type="application/x-ndjson", headers=headers)
+
+
+def home_file(visit: Visit) -> Response:
+    """A home in 3D as all games of a challenge have it, as glTF."""
+    name, home = visit.part("challenge"), visit.part("home")
+    if name not in NAMES:
+        raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join(NAMES), name[:40])
+    return _model(base_file(name, home, visit.web.known, visit.web.out / "homes"))
+
+
+def model_file(visit: Visit) -> Response:
+    """A model of a game that its home's file lacks, as glTF."""
+    live, number = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
+    with live.lock:
+        return _model(live.drawn(visit.web.known, number).model(visit.part("key")))
+
+
+def _model(data: bytes) -> Response:
+    # The address names what the file contains, so that a browser need not ask for it again.
+    return Response(
+        data, media_type="model/gltf-binary", headers={"Cache-Control": "private, max-age=604800, immutable"}
+    )
 
 
 def desk_page(visit: Visit) -> Response:

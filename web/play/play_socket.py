@@ -13,6 +13,7 @@ from hearth.schemas.failures import Code
 from hearth.web import sessions
 from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
+from hearth.web.play.drawn_games import SIZE, DrawnGame
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.trials import PERSON, PROGRAM
@@ -62,15 +63,43 @@ class Page:
         elif kind == "finish":
             await in_thread(self._finish)
             await self.tell()
+        elif kind in ("picture", "pick") and self.live.game.trial.interface == "stream":
+            await self._show(message)
         else:
-            raise WebError(Code.BAD_ARGUMENT, "type", "hello, act or finish", kind[:40])
+            raise WebError(Code.BAD_ARGUMENT, "type", "hello, act, finish, picture or pick", kind[:40])
+
+    async def _show(self, message: dict[str, Any]) -> None:
+        """A picture, or what a pixel of it shows."""
+        if message["type"] == "picture":
+            await self.link.socket.send_bytes(await in_thread(self._picture))
+            return
+        x, y = (int_field(message, name, 0, size - 1) for name, size in zip("xy", SIZE, strict=True))
+        await self.link.send({"type": "picked", "id": await in_thread(self._pick, x, y)})
 
     def _begin(self) -> dict[str, Any]:
         with self.live.lock:
             self.telling.game = self.live.sync()
             port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
             self._told = self._state()
-            return {**self.telling.begin(), "port": port, "code": self._code(), **self._waiting()}
+            return {**self.telling.begin(), "port": port, "code": self._code(), **self._waiting(), **self._scene()}
+
+    def _scene(self) -> dict[str, Any]:
+        """What is different in 3D, for pages that draw it."""
+        if self.live.game.trial.interface != "visual":
+            return {}
+        return {"drawn": self._drawn().as_json()}
+
+    def _drawn(self) -> DrawnGame:
+        return self.live.drawn(self.link.web.known, self.number)
+
+    def _picture(self) -> bytes:
+        with self.live.lock:
+            self.live.sync()
+            return self._drawn().jpeg()
+
+    def _pick(self, x: int, y: int) -> int:
+        with self.live.lock:
+            return self._drawn().pick(x, y)
 
     def _code(self) -> str:
         """What the first of two people gives the second."""
@@ -97,13 +126,15 @@ class Page:
             if self._state() == self._told:
                 return None
             self._told = self._state()
-            return {**self.telling.tick(), **self._waiting()}
+            return {**self.telling.tick(), **self._waiting(), **self._scene()}
 
     async def tell(self) -> None:
         """Send what is new."""
         async with self._sending:
             if self.tab and (news := await in_thread(self._news)) is not None:
                 await self.link.send(news)
+                if self.live.game.trial.interface == "stream":
+                    await self.link.socket.send_bytes(await in_thread(self._picture))
 
     async def watch(self) -> None:
         """Tell what others decided, until cancelled."""

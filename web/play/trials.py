@@ -131,11 +131,6 @@ def trial(
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such helper, goal or interface.
-
-    Examples:
-        >>> from hearth.web.play.trials import published, trial
-        >>> trial(published("wah", "test-1", 0), known, "hp_true", seed=3).goal
-        'true'
     """
     _check("helper", helper, helpers())
     _check("interface", interface, INTERFACES)

@@ -13,6 +13,8 @@ const banner = document.getElementById("banner");
 let busy = false; // a decision is on its way
 let walking = null; // the thing that one goes all the way to
 let view = null; // first person
+let again = 0; // how often the same move is still wanted
+let latest = null; // the last message about the game
 
 const choose = (id, from) => state.things.has(id) && state.things.get(id).seen && menu.open(id, state, from);
 const menu = new Menu(decide, walk);
@@ -21,6 +23,7 @@ const panels = root.dataset.interface === "symbolic" ? new ObjectPanels(choose) 
 
 function decide(action, ids = []) {
   walking = null;
+  again = 0;
   return send(action, ids);
 }
 
@@ -37,12 +40,23 @@ function walk(id) {
   send("Walktowards", [id]);
 }
 
+// The same move a few times, a tick each.
+function several(action, times = 1) {
+  if (decide(action)) again = times > 1 ? [action, times - 1] : 0;
+}
+
 function goOn() {
-  if (walking === null) return;
+  if (again) {
+    const [action, times] = again;
+    again = times > 1 ? [action, times - 1] : 0;
+    return send(action);
+  }
+  if (walking === null) return false;
   const thing = state.things.get(walking);
   const stuck = state.mine?.last?.failure;
   if (state.over || stuck || arrived(thing) || !state.can("Walktowards", [walking])) walking = null;
-  else send("Walktowards", [walking]);
+  else return send("Walktowards", [walking]);
+  return false;
 }
 
 // One has arrived at a room once one is in it, at a thing once one stands before it and no longer moves.
@@ -55,15 +69,17 @@ function arrived(thing) {
 }
 
 function receive(message) {
-  if (message.type === "picture") return view?.picture(message.data);
+  if (message.type === "picture") return view?.picture?.(message.data);
+  if (message.type === "picked") return view?.picked?.(message.id);
   busy = false;
+  latest = message;
   state.take(message);
   if (message.type === "begin") begin(message);
   plan.update(state);
   panels?.update(state);
   menu.update(state);
   show();
-  view?.update(state, message);
+  view?.update?.(state, message);
   goOn();
 }
 
@@ -75,10 +91,11 @@ function begin(message) {
     view = {}; // until it has loaded
     const file = root.dataset.interface === "visual" ? "./first_person.js" : "./pictures.js";
     import(file).then(({ FirstPerson }) => {
-      view = new FirstPerson(root.dataset.game, document.getElementById("view"), { choose, send: (m) => connection.send(m) });
-      view.update(state, message);
+      view = new FirstPerson(root.dataset.game, document.getElementById("view"), { choose, act: several, save, finish, send: (m) => connection.send(m) });
+      view.update(state, latest);
+      root.view = view; // for tests
     }).catch((fault) => tell("", `The home can't be shown: ${fault.message}`));
-  } else view?.update?.(state, message);
+  }
 }
 
 function tell(kind, text, ...more) {
@@ -138,6 +155,7 @@ function showHands() {
 function heldButton(id) {
   const button = document.createElement("button");
   Object.assign(button, { type: "button", className: "thing close", textContent: name(state.things, id) });
+  button.dataset.id = id;
   button.addEventListener("click", () => choose(id));
   return button;
 }
@@ -172,6 +190,7 @@ function link(address, text) {
 function trouble(fault) {
   busy = false;
   walking = null;
+  again = 0;
   if (fault.code === "LOCKED") {
     const button = document.createElement("button");
     Object.assign(button, { type: "button", textContent: "Go on here" });
@@ -196,14 +215,12 @@ for (const button of document.querySelectorAll("[data-move]")) {
 document.getElementById("save").addEventListener("click", save);
 document.getElementById("finish").addEventListener("click", finish);
 
-export function save() {
+function save() {
   said.textContent = "Everything up to here is saved.";
 }
 
-export function finish() {
+function finish() {
   connection.send({ type: "finish" });
 }
-
-export { decide, state };
 
 const connection = new Connection(root.dataset.game, receive, trouble);

@@ -35,7 +35,11 @@ export class Menu {
     const states = (thing.states ?? []).map((each) => each.toLowerCase().replaceAll("_", " ")).join(", ");
     this.title.textContent = `${name(state.things, this.id)}${states ? ` (${states})` : ""}`;
     const options = state.over ? [] : state.about(this.id);
-    const buttons = options.map(([action, ids]) => this.button(spoken(action, ids, state.things), () => this.act(action, ids)));
+    const buttons = options.map(([action, ids]) => {
+      const made = this.button(spoken(action, ids, state.things), () => this.act(action, ids));
+      made.dataset.instruction = [action, ...ids].join(" ");
+      return made;
+    });
     if (state.can("Walktowards", [this.id])) {
       buttons.unshift(this.button("Go all the way", () => this.walk(this.id)));
       const step = buttons.findIndex((button) => button.textContent.startsWith("Walk to"));

@@ -22,6 +22,7 @@ export class ObjectPanels {
     const button = document.createElement("button");
     button.type = "button";
     button.className = "thing";
+    button.dataset.id = thing.id;
     button.append(name(state.things, thing.id), document.createElement("small"));
     button.addEventListener("click", () => this.choose(thing.id));
     this.buttons.set(thing.id, button);

@@ -1,0 +1,235 @@
+"""Games: a person is an agent like any other; what was accepted is in the store, and nowhere else."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from web.playing import Player, alone, begun, connected, session_of
+
+from hearth.challenges.result_files import read
+from hearth.challenges.verification import verify
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
+from hearth.web.play import recorded_episode
+from hearth.web.play.game_results import results
+from hearth.web.play.games import Game
+from hearth.web.play.live_games import LiveGame, games
+from hearth.web.play.trials import helpers, published, read_trial, trial
+
+TASK = published("wah", "test-1", 0)
+TURN = "[Turnleft]"
+
+
+@pytest.fixture
+def game(server, person):
+    return begun(server, person, TASK)
+
+
+@pytest.mark.parametrize("helper", ["none", "hp_true", "nopa", "person", "program"])
+def test_a_trial_is_read_as_it_was_written(helper):
+    made = trial(TASK, default(), helper, "visual", 3, False)
+    assert read_trial(made.as_json()) == made
+    assert made.helped == (helper != "none")
+
+
+@pytest.mark.parametrize("wrong", [{"helper": "oracle_ab"}, {"interface": "smell"}, {"goal": "mine"}])
+def test_a_trial_of_nothing_is_refused(wrong):
+    with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+        trial(TASK, default(), **wrong)
+
+
+def test_a_random_goal_is_another_one():
+    assert trial(TASK, default(), "hp_random").helper_goal not in (None, TASK.goal)
+
+
+def test_a_person_and_an_agent_do_the_same_task(server, person, tmp_path):
+    game = begun(server, person, TASK)
+    with Player(person, game) as player:
+        assert player.state["goal"][0]["text"] == "Put plate on dining table"
+        for act, text in alone(TASK):
+            assert player.act(text)["type"] == "tick", act
+    assert player.state["over"] and player.state["success"]
+    assert all(each["count"] == each["wanted"] for each in player.state["goal"])
+    file = tmp_path / "episode.jsonl"
+    file.write_bytes(person.get(f"/play/game/{game}/episode.jsonl").content)
+    found = read(file)
+    assert found.records[0].metrics["success"] == 1
+    assert verify(found, "episode.jsonl", default) == []
+
+
+def test_another_record_does_not_verify(server, person, tmp_path):
+    """The check is one that can fail: the same file with a turn more is another episode."""
+    game = begun(server, person, TASK)
+    with Player(person, game) as player:
+        player.act(TURN)
+        player.ask({"type": "finish"})
+    file = tmp_path / "episode.jsonl"
+    file.write_bytes(person.get(f"/play/game/{game}/episode.jsonl").content.replace(b"Turnleft", b"Turnright"))
+    with pytest.raises(HearthError, match="DAMAGED_FILE"):
+        read(file)
+
+
+def test_what_is_refused_changes_nothing_and_says_why(server, person, game):
+    with Player(person, game) as player:
+        refusals = [
+            player.act("[Grab] <plate> (1.999999)"),
+            player.act("[Fly]"),
+            player.act(7),
+            player.act("x" * 600),
+            player.act(TURN, tick=5),
+            player.ask({"type": "dance"}),
+            player.ask({"type": "act"}),
+        ]
+        codes = [each["error"]["code"] for each in refusals]
+        expected = ["NOT_SEEN", "UNKNOWN_ACTION", "BAD_ARGUMENT", "BAD_ARGUMENT", "OUT_OF_ORDER", "BAD_ARGUMENT"]
+        assert codes == [*expected, "BAD_ARGUMENT"]
+        assert player.act(TURN)["tick"] == 1
+
+
+def test_only_the_last_tab_acts(server, person, game):
+    with Player(person, game, "old") as old, Player(person, game, "new") as new:
+        assert old.act(TURN)["error"]["code"] == "LOCKED"
+        assert new.act(TURN)["tick"] == 1
+        assert old.act(TURN)["error"]["code"] == "OUT_OF_ORDER"
+        assert old.ask({"type": "hello", "tab": "old"})["tick"] == 1
+        assert old.act(TURN)["tick"] == 2
+
+
+def test_two_decisions_of_one_tick_are_one(server, person, game):
+    """Two servers get a decision of the same tick at the same moment: one is accepted."""
+    session = session_of(server, person)
+    with Player(person, game, "t"):
+        servers = [LiveGame(server.store, games(server.store, default()).open(game).stored, default()) for _ in "ab"]
+        done = []
+
+        def decide(live):
+            try:
+                live.decide(session, "t", 0, 0, TURN)
+                done.append("accepted")
+            except Exception as error:
+                done.append(str(error)[:12])
+
+        threads = [threading.Thread(target=decide, args=(each,)) for each in servers]
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join()
+        assert sorted(done) == ["OUT_OF_ORDER", "accepted"]
+        for live in servers:
+            live.sync()
+            assert live.game.tick == 1
+
+
+@pytest.mark.parametrize("helper", ["hp_true", "random", "nopa"])
+def test_another_process_goes_on_with_the_same_helper(server, person, helper):
+    """Done again from the store, the helper decides as the one that was there all the time."""
+    game = begun(server, person, TASK, helper)
+    with Player(person, game) as player:
+        for _ in range(6):
+            player.act(TURN)
+        kept = games(server.store, default()).open(game)
+        anew = LiveGame(server.store, kept.stored, default())
+        with kept.lock:
+            assert anew.sync().texts == kept.game.texts
+            assert len(kept.game.texts) == 6
+            assert any(texts[1] for texts in kept.game.texts)
+            assert anew.game.helper_decides() == kept.game.helper_decides()
+        assert player.act(TURN)["tick"] == 7
+
+
+def test_nobody_gets_anothers_game(server, person, game):
+    other = server.person()
+    assert other.get(f"/play/game/{game}").status_code == 404
+    assert other.get(f"/play/game/{game}/episode.jsonl").status_code == 404
+    assert other.get(f"/play/game/{game}/models/x.glb").status_code == 404
+    assert game not in other.get("/play/").text
+    with connected(other, game) as socket:
+        assert "UNKNOWN_ID" in socket.receive_text()
+    nobody = server.client()
+    assert nobody.get(f"/play/game/{game}").status_code == 401
+    assert person.get(f"/play/game/{game}").status_code == 200
+
+
+def test_a_page_that_comes_back_goes_on(server, person, game):
+    with Player(person, game) as player:
+        player.act(TURN)
+        before = player.state
+    with Player(person, game) as again:
+        assert again.state["tick"] == 1
+        assert again.state["legal"] == before["legal"]
+        assert [len(way) for way in again.state["trails"].values()] == [2]
+
+
+def test_two_people_in_one_home(server, person):
+    game = begun(server, person, TASK, "person")
+    code = games(server.store, default()).open(game).stored.code
+    other, third = server.person(), server.person()
+    assert other.post("/play/join/nothing").status_code == 404
+    assert other.post(f"/play/join/{code}").headers["location"] == f"/play/game/{game}"
+    assert third.post(f"/play/join/{code}").status_code == 409
+    with Player(person, game, "a") as main, Player(other, game, "b") as helper:
+        assert (main.state["me"], helper.state["me"], helper.state["code"]) == (0, 1, "")
+        assert main.act(TURN)["decided"] == [0]
+        assert main.act(TURN)["error"]["code"] == "OUT_OF_ORDER"
+        helper.act("[Turnright]")
+        while helper.state["tick"] < 1:
+            helper.receive()
+        while main.state["tick"] < 1:
+            main.receive()
+    assert games(server.store, default()).open(game).game.texts == [("Turnleft", "Turnright")]
+
+
+def test_who_keeps_the_other_waiting_waits(server, person, monkeypatch):
+    monkeypatch.setattr("hearth.web.play.live_games.PATIENCE", 0.0)
+    game = begun(server, person, TASK, "person")
+    with Player(person, game) as player:
+        player.act(TURN)
+        while player.state["tick"] < 1:
+            player.receive()
+    assert games(server.store, default()).open(game).game.texts == [("Turnleft", None)]
+
+
+def test_a_study_gets_the_record_once_it_is_over(server, person, game):
+    assert recorded_episode(server.store, default(), game) is None
+    with Player(person, game) as player:
+        player.act(TURN)
+        assert player.ask({"type": "finish"})["over"]
+        assert player.act(TURN)["error"]["code"] == "NOT_ALLOWED"
+    record = recorded_episode(server.store, default(), game)
+    assert record.actions == (("Turnleft",),)
+    assert record.end["code"] == "DISCONNECTED"
+
+
+def test_results_of_many_games_verify(server, person, tmp_path):
+    found = []
+    for helper in ("none", "hp_true", "hp_true"):
+        made = Game(trial(TASK, default(), helper), default())
+        for _ in range(3):
+            made.advance(("Turnleft", made.helper_decides())[: len(made.start.agents)])
+        found.append(made)
+    files = results(found)
+    assert {kind[2]: len(each.records) for kind, each in files.items()} == {"none": 1, "hp_true": 2}
+    assert [each.seed for each in files["wah", "test-1", "hp_true", "true"].records] == [0, 1]
+    for each in files.values():
+        assert verify(each, "file", default) == []
+
+
+def test_researchers_get_everybodys_results(server, person, game):
+    with Player(person, game) as player:
+        player.ask({"type": "finish"})
+    desk = server.researcher()
+    assert "results.jsonl" in desk.get("/desk/play").text
+    asked = "challenge=wah&split=test-1&helper=none&goal=none"
+    assert desk.get(f"/desk/play/results.jsonl?{asked}").status_code == 200
+    assert person.get(f"/desk/play/results.jsonl?{asked}").status_code in (401, 403)
+
+
+def test_the_form_begins_a_game(person):
+    page = person.get("/play/").text
+    assert all(f'value="{name}"' in page for name in helpers())
+    begun = person.post("/play/new", data={"challenge": "owah", "task": "1", "helper": "none", "sees": "partial"})
+    assert begun.status_code == 303
+    assert "in rowan" in person.get(begun.headers["location"]).text
+    for name, task in (("x", "1"), ("wah", "1000"), ("wah", "-1")):
+        assert person.post("/play/new", data={"challenge": name, "task": task}).status_code == 400

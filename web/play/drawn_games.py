@@ -1,0 +1,147 @@
+"""The 3D scene of a game: a home's fixed part as one glTF, and what is different from it now, for browsers to draw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+from hearth.challenges.definition import challenge
+from hearth.challenges.starts import site_of
+from hearth.kb.knowledge import Knowledge
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.cameras.sensor import CameraSensor
+from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.interchange import glb, node_names
+from hearth.rendering.scene.prepared import prepared_scene
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.simulation.world.world import World
+from hearth.storage.files import write_bytes
+from hearth.storage.names import inside
+from hearth.web.play.games import Game
+
+SIZE = (640, 480)
+"""Pixels of a picture, width and height."""
+
+
+@lru_cache(maxsize=32)
+def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
+    """A home as all games of a challenge have it: without the things of goals and without characters.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: the challenge is not played there.
+    """
+    which = challenge(name)
+    if home not in (*which.train, *which.test):
+        raise HearthError.of(Code.BAD_ARGUMENT, f"{name} is not played in `{home[:40]}`")
+    graph = World.start(site_of(name, home, knowledge).home).graph()
+    return prepared_scene(graph, knowledge).scene()
+
+
+@lru_cache(maxsize=32)
+def base_key(name: str, home: str, knowledge: Knowledge) -> str:
+    """What is drawn of it, in 32 digits, for its file and address."""
+    return _digest(base_scene(name, home, knowledge).everything)
+
+
+def base_file(name: str, home: str, knowledge: Knowledge, folder: Path) -> bytes:
+    """It as glTF in plain colours, from a folder that keeps it once it is made."""
+    file = inside(folder, f"{name}-{home}-{base_key(name, home, knowledge)}.glb")
+    if not file.is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        write_bytes(file, glb(base_scene(name, home, knowledge), textures=False))
+    return file.read_bytes()
+
+
+def _digest(value: object) -> str:
+    return blake2b(repr(value).encode(), digest_size=16).hexdigest()
+
+
+def model_key(thing: Thing) -> str:
+    """What names a thing's model in addresses; parts of the building are drawn where they stand."""
+    where = (thing.position, thing.yaw) if thing.structural else ()
+    return _digest((thing.model, where))
+
+
+class DrawnGame:
+    """The scene of a game, which follows its ticks.
+
+    Args:
+        game: the game; hold its lock.
+        knowledge: of its home.
+        number: whose eyes it is seen with.
+    """
+
+    def __init__(self, game: Game, knowledge: Knowledge, number: int) -> None:
+        task = game.trial.task
+        self.game, self.number = game, number
+        self.sensor = CameraSensor(game.start.graph(), knowledge, size=SIZE)
+        base = base_scene(task.challenge, task.home, knowledge)
+        self._base = node_names(base)
+        self.address = f"/play/home/{task.challenge}/{task.home}.glb?{base_key(task.challenge, task.home, knowledge)}"
+
+    @property
+    def scene(self) -> Scene:
+        """What there is to see now."""
+        return self.sensor.scene(self.game.playing.env)
+
+    @property
+    def camera(self) -> Camera:
+        """The eyes now."""
+        return self.sensor.camera(self.game.playing.env, self.number)
+
+    def as_json(self) -> dict[str, Any]:
+        """The home's file, which of its nodes are not there now, what else is, and the eyes.
+
+        Each of `on` is node id, class, key of its model, x, y, z in metres, and yaw in degrees. Axes are the scene's:
+        x east, y up, z north.
+        """
+        now = dict.fromkeys(self.scene.everything)
+        off = [name for thing, name in self._base.items() if thing not in now]
+        on = [_on(thing) for thing in now if thing not in self._base]
+        camera = self.camera
+        eyes = {"eye": _point(camera.eye), "target": _point(camera.target), "fov": camera.fov}
+        return {"base": self.address, "off": off, "on": on, "camera": eyes}
+
+    def model(self, key: str) -> bytes:
+        """A model that is there now, as glTF.
+
+        Raises:
+            HearthError: UNKNOWN_ID: there is none with that key.
+        """
+        for thing in self.others():
+            if model_key(thing) == key:
+                alone = thing if thing.structural else Thing(thing.id, thing.class_name, thing.model)
+                return glb(Scene((alone,)), textures=False)
+        raise HearthError.of(Code.UNKNOWN_ID, f"nothing looks like {key[:40]} now")
+
+    def others(self) -> Iterator[Thing]:
+        """What is there now and is not of the home's fixed part."""
+        return (thing for thing in self.scene.everything if thing not in self._base)
+
+    def jpeg(self) -> bytes:
+        """What is seen, as our own renderer draws it."""
+        import cv2
+
+        rgb = self.sensor(self.game.playing.env, self.number, ("rgb",))["rgb"]
+        done, data = cv2.imencode(".jpg", rgb[..., 2::-1], [cv2.IMWRITE_JPEG_QUALITY, 85])
+        assert done
+        return data.tobytes()
+
+    def pick(self, x: int, y: int) -> int:
+        """The node id that a pixel of the picture shows; 0 of the background."""
+        ids = self.sensor(self.game.playing.env, self.number, ("instance_ids",))["instance_ids"]
+        return int(ids[min(max(y, 0), SIZE[1] - 1), min(max(x, 0), SIZE[0] - 1)])
+
+
+def _on(thing: Thing) -> list[Any]:
+    place = ((0.0, 0.0, 0.0), 0.0) if thing.structural else (thing.position, thing.yaw)
+    return [thing.id, thing.class_name, model_key(thing), *_point(place[0]), round(float(place[1]), 3)]
+
+
+def _point(point: tuple[float, float, float]) -> list[float]:
+    return [round(float(value), 4) for value in point]

@@ -1,0 +1,235 @@
+// First person in 3D (figure C-8): the home is drawn here, the server says what is different after each tick.
+import * as THREE from "/fetched/three/build/three.module.js";
+import { NUMBERED, SHOWN, hide, load, merged, model, seenRooms } from "./home_meshes.js";
+import { viewKeys } from "./view_keys.js";
+import { name } from "./words.js";
+
+const [WIDTH, HEIGHT] = [640, 480];
+const GLIDE = 220; // milliseconds from one tick's eyes to the next
+const SKY = 0xbfd4e6;
+
+export class FirstPerson {
+  constructor(game, element, { choose, send, act, save, finish }) {
+    Object.assign(this, { game, element, choose });
+    this.renderer = new THREE.WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
+    const fine = this.isSoftware() ? 1 : 2;
+    this.renderer.setPixelRatio(fine);
+    this.renderer.setSize(WIDTH, HEIGHT, false);
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colours are baked in sRGB
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color().setHex(SKY, THREE.LinearSRGBColorSpace);
+    this.world = new THREE.Group();
+    this.world.scale.x = -1; // the home's axes are left-handed
+    this.scene.add(this.world);
+    this.camera = new THREE.PerspectiveCamera(82, WIDTH / HEIGHT, 0.02, 60);
+    this.pixel = new THREE.WebGLRenderTarget(1, 1);
+    this.models = new Map();
+    this.placed = new Map();
+    this.look = { pitch: 0, yaw: 0 };
+    this.turned = 0;
+    this.frames = 0;
+    this.build();
+    viewKeys(this, element, { send, act, save, finish });
+    this.renderer.setAnimationLoop((time) => this.frame(time));
+  }
+
+  isSoftware() {
+    const gl = this.renderer.getContext();
+    const known = gl.getExtension("WEBGL_debug_renderer_info");
+    return known !== null && /swiftshader|llvmpipe|software/i.test(gl.getParameter(known.UNMASKED_RENDERER_WEBGL));
+  }
+
+  build() {
+    this.label = document.createElement("div");
+    this.label.className = "label";
+    this.label.textContent = "Loading the home …";
+    this.renderer.domElement.setAttribute("aria-hidden", "true");
+    this.element.replaceChildren(this.renderer.domElement, this.label);
+    const at = (event) => {
+      const box = this.renderer.domElement.getBoundingClientRect();
+      return [Math.floor((event.clientX - box.left) / box.width * WIDTH), Math.floor((event.clientY - box.top) / box.height * HEIGHT)];
+    };
+    let from = null;
+    this.element.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY, this.look.yaw, this.look.pitch, false]; });
+    this.element.addEventListener("pointermove", (event) => {
+      if (from && (event.buttons & 1)) this.drag(event, from);
+      else this.point(...at(event));
+    });
+    this.element.addEventListener("pointerup", (event) => {
+      if (from && !from[4]) this.click(this.pick(...at(event)));
+      from = null;
+    });
+  }
+
+  drag(event, from) {
+    const [x, y, yaw, pitch] = from;
+    if (Math.hypot(event.clientX - x, event.clientY - y) > 4) from[4] = true;
+    this.look = { yaw: yaw - (event.clientX - x) * 0.2, pitch: Math.max(-75, Math.min(75, pitch + (event.clientY - y) * 0.2)) };
+    this.moved = true;
+  }
+
+  click(id) {
+    if (id) this.choose(id, this.element);
+  }
+
+  point(x, y) {
+    if (this.hovering) return;
+    this.hovering = true;
+    requestAnimationFrame(() => {
+      this.hovering = false;
+      this.show(this.pick(x, y));
+    });
+  }
+
+  show(id) {
+    this.label.hidden = !id;
+    if (id && this.state) this.label.textContent = this.state.things.has(id) ? name(this.state.things, id) : this.names.get(id) ?? "";
+  }
+
+  async update(state, message) {
+    this.state = state;
+    if (message.drawn) await this.draw(message.drawn);
+  }
+
+  async draw(drawn) {
+    if (!this.parts) {
+      this.parts = [];
+      this.rooms = this.state.plan.filter(([kind]) => kind === "room").map(([, , box]) => box);
+      const { meshes, walls } = merged(await load(drawn.base), this.rooms);
+      Object.assign(this, { parts: meshes, walls });
+      for (const mesh of meshes) this.world.add(mesh);
+      this.element.dataset.ready = "yes";
+      this.label.hidden = true;
+    }
+    const off = new Set(drawn.off);
+    for (const mesh of this.parts) hide(mesh, off);
+    await this.place(drawn.on);
+    this.glide(drawn.camera);
+    this.element.dataset.tick = this.state.tick;
+  }
+
+  async place(on) {
+    const now = new Map(on.map((each) => [`${each[0]} ${each[2]} ${each[1]}`, each]));
+    await Promise.all(on.map((each) => this.fetched(each[2], each[0])));
+    for (const [key, mesh] of this.placed) {
+      if (!now.has(key)) {
+        this.world.remove(mesh);
+        this.placed.delete(key);
+      }
+    }
+    for (const [key, [id, , kind, x, y, z, yaw]] of now) {
+      if (!this.placed.has(key)) this.placed.set(key, new THREE.Mesh(this.models.get(`${kind} ${id}`).geometry, SHOWN));
+      const mesh = this.placed.get(key);
+      mesh.position.set(x, y, z);
+      mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
+      this.world.add(mesh);
+    }
+    this.names = new Map(on.map((each) => [each[0], each[1].replaceAll("_", " ")]));
+    this.moved = true;
+  }
+
+  async fetched(kind, id) {
+    const key = `${kind} ${id}`;
+    if (this.models.has(key)) return;
+    this.models.set(key, null);
+    this.models.set(key, model(await load(`/play/game/${this.game}/models/${kind}.glb`), id));
+  }
+
+  glide({ eye, target, fov }) {
+    const to = { eye: new THREE.Vector3(-eye[0], eye[1], eye[2]), target: new THREE.Vector3(-target[0], target[1], target[2]) };
+    to.way = to.target.clone().sub(to.eye).normalize();
+    this.from = this.to ? this.now() : to;
+    this.to = to;
+    this.since = performance.now();
+    this.look.yaw = 0;
+    if (this.camera.fov !== fov) {
+      this.camera.fov = fov;
+      this.camera.updateProjectionMatrix();
+    }
+    this.moved = true;
+  }
+
+  now() {
+    const share = Math.min(1, (performance.now() - this.since) / GLIDE);
+    const way = this.from.way.clone().lerp(this.to.way, share).normalize();
+    return { eye: this.from.eye.clone().lerp(this.to.eye, share), way };
+  }
+
+  aim() {
+    const { eye, way } = this.now();
+    const [yaw, pitch] = [Math.atan2(way.x, way.z) + THREE.MathUtils.degToRad(this.look.yaw), Math.asin(way.y) + THREE.MathUtils.degToRad(this.look.pitch)];
+    const high = Math.max(-1.5, Math.min(1.5, pitch));
+    this.camera.position.copy(eye);
+    this.camera.lookAt(eye.x + Math.sin(yaw) * Math.cos(high), eye.y + Math.sin(high), eye.z + Math.cos(yaw) * Math.cos(high));
+    this.camera.updateMatrixWorld();
+    this.leaveOut(-eye.x, eye.z);
+  }
+
+  // Draws only the rooms into which one can look from here.
+  leaveOut(x, z) {
+    const place = `${x.toFixed(2)} ${z.toFixed(2)}`;
+    if (place === this.standing) return;
+    this.standing = place;
+    const seen = seenRooms(x, z, this.walls, this.rooms);
+    for (const mesh of this.parts) {
+      const { center } = mesh.geometry.boundingSphere;
+      mesh.visible = seen.has(mesh.userData.room);
+      // What is near is drawn first, so that what it hides costs nothing; walls stand behind everything.
+      mesh.renderOrder = mesh.userData.room < 0 ? 1000 : Math.hypot(center.x - x, center.z - z);
+    }
+  }
+
+  frame(time) {
+    if (!this.to) return;
+    const gliding = performance.now() - this.since < GLIDE + 50;
+    if (!gliding && !this.moved && !this.spinning) return;
+    this.moved = false;
+    if (this.spinning) this.look.yaw += 1.5;
+    this.aim();
+    this.renderer.render(this.scene, this.camera);
+    this.frames += 1;
+    this.last = time;
+  }
+
+  // The id of the thing at a pixel of the picture; 0 where there is none.
+  pick(x, y) {
+    if (!this.to) return 0;
+    this.aim();
+    this.camera.setViewOffset(WIDTH, HEIGHT, x, y, 1, 1);
+    const [background, found] = [this.scene.background, new Uint8Array(4)];
+    this.scene.background = null;
+    this.scene.overrideMaterial = NUMBERED;
+    this.renderer.setRenderTarget(this.pixel);
+    this.renderer.setClearColor(0, 1);
+    this.renderer.clear();
+    this.renderer.render(this.scene, this.camera);
+    this.renderer.readRenderTargetPixels(this.pixel, 0, 0, 1, 1, found);
+    this.renderer.setRenderTarget(null);
+    this.scene.overrideMaterial = null;
+    this.scene.background = background;
+    this.camera.clearViewOffset();
+    return found[0] + (found[1] << 8) + (found[2] << 16);
+  }
+
+  // Looks around for some seconds and gives the pictures a second.
+  async measure(seconds) {
+    const [frames, since] = [this.frames, performance.now()];
+    this.spinning = true;
+    await new Promise((done) => { setTimeout(done, seconds * 1000); });
+    this.spinning = false;
+    return (this.frames - frames) / (performance.now() - since) * 1000;
+  }
+
+  lookUp(degrees) {
+    this.look.pitch = Math.max(-75, Math.min(75, this.look.pitch + degrees));
+    this.moved = true;
+  }
+
+  turnHeld(degrees) {
+    this.turned += degrees;
+    for (const [key, mesh] of this.placed) {
+      if (this.state.mine.holding.includes(Number(key.split(" ")[0]))) mesh.rotation.y += THREE.MathUtils.degToRad(degrees);
+    }
+    this.moved = true;
+  }
+}
