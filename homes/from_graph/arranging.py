@@ -17,9 +17,10 @@ from hearth.homes.plans import raster
 from hearth.homes.plans.floor import BODY, CELL, HEAD
 from hearth.homes.plans.obstacles import Obstacles, Stand
 from hearth.homes.plans.packing import contents
-from hearth.homes.plans.plan import Faults, Room
+from hearth.homes.plans.plan import Room
 from hearth.homes.plans.shell import Shell, Thing, interior, span, strip
 from hearth.homes.relations import gaps
+from hearth.schemas.yaml_fields import Faults
 
 if TYPE_CHECKING:
     from hearth.schemas.graph import Box

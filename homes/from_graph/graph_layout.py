@@ -18,13 +18,14 @@ from hearth.homes.geometry import Rect
 from hearth.homes.plans import shell
 from hearth.homes.plans.floor import REACH
 from hearth.homes.plans.layout import Layout
-from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
+from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
 from hearth.homes.plans.shell import Thing, outer_walls, shared_wall, span
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.schemas.yaml_fields import Faults
 
 HEIGHT = 2.6
 LEAST_SIDE = 2.6

@@ -1,19 +1,17 @@
 """Reading a plan's entries: every key by the function that reads it; every fault named with its line."""
 
 import re
-from collections.abc import Callable
-from difflib import get_close_matches
 from typing import Any
 
 from hearth.homes.geometry import DIRECTIONS, Rect
-from hearth.homes.plans import located
-from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Piece, Plan, Room, Window
+from hearth.homes.plans.plan import OUTSIDE, Doorway, Piece, Plan, Room, Window
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas import located
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import ROOM_CATEGORY
+from hearth.schemas.yaml_fields import Faults, ReadValue, fields, one_of, reads, shown
 
-ReadValue = Callable[[Any], Any]
 CORNERS = ("northwest", "northeast", "southwest", "southeast")
 MOST = 60
 """Things one entry may count; a larger number is a fault."""
@@ -22,36 +20,6 @@ MOST_ENTRIES = 1_000
 """Rooms and entries of things in a plan: placing and checking takes time by the square of both. Ours have 9 and 250."""
 LONGEST = 100
 """Metres that a home may measure: its floor is a grid of cells of 10 cm."""
-
-
-class WrongValueError(ValueError):
-    """The expected form of a value."""
-
-
-def reads(
-    expected: str, allows: Callable[[Any], object], first: ReadValue | None = None, then: ReadValue | None = None
-) -> ReadValue:
-    """A reader of values of the expected form; those of another are faults.
-
-    Args:
-        expected: the form, for the message about a value of another.
-        allows: whether a value has it.
-        first: reads the value that is then asked about.
-        then: what the reader makes of an allowed value; the value itself when left out.
-    """
-
-    def read(value: Any) -> Any:
-        value = value if first is None else first(value)
-        if not allows(value):
-            raise WrongValueError(expected)
-        return value if then is None else then(value)
-
-    return read
-
-
-def one_of(*words: str) -> ReadValue:
-    """A reader of one of some words."""
-    return reads(f"one of {', '.join(words)}", lambda value: value in words, then=str)
 
 
 def or_middle(read: ReadValue) -> ReadValue:
@@ -165,34 +133,7 @@ class _Reader:
         self, entry: Any, keys: dict[str, ReadValue], what: str, need: tuple[str, ...] = (), line: int = 0
     ) -> dict[str, Any]:
         """The values of a mapping, read by their keys' readers."""
-        if not isinstance(entry, located.Mapping):
-            self.faults.add(Code.SYNTAX, f"{what} is a mapping", located.line_of(entry) or line, ", ".join(keys))
-            return {}
-        for key, at in entry.twice:
-            self.faults.add(Code.DUPLICATE, f"`{key}` stands twice", at, "keep one of them")
-        found: dict[str, Any] = {}
-        for key, value in entry.items():
-            if key not in keys:
-                near = get_close_matches(key, keys, 1)
-                hint = f"did you mean `{near[0]}`?" if near else f"known are {', '.join(keys)}"
-                self.faults.add(Code.SYNTAX, f"`{key}` is not part of {what}", entry.at(key), hint)
-                continue
-            self._value(found, key, value, keys[key], entry.at(key))
-        for key in need:
-            if key not in entry:
-                self.faults.add(Code.SYNTAX, f"{what} needs `{key}`", entry.line or line)
-        return found
-
-    def _value(self, found: dict[str, Any], key: str, value: Any, read: ReadValue, line: int) -> None:
-        try:
-            if read is list:
-                if not isinstance(value, list) and value is not None:
-                    raise WrongValueError("a list")
-                found[key] = value or []
-            else:
-                found[key] = read(value)
-        except WrongValueError as wrong:
-            self.faults.add(Code.SYNTAX, f"`{key}` is `{_shown(value)}`", line, f"write {wrong}")
+        return fields(entry, keys, what, self.faults, need, line)
 
     def room(self, entry: Any) -> Room | None:
         """A room with its windows and furniture; None when it has no usable name or place."""
@@ -256,7 +197,7 @@ class _Reader:
             text, fields = entry, located.Mapping(line)
         else:
             hint = "`plate*4`, or `couch: {wall: south, at: 1.2}`"
-            self.faults.add(Code.SYNTAX, f"`{_shown(entry)}` is not an entry", line, hint)
+            self.faults.add(Code.SYNTAX, f"`{shown(entry)}` is not an entry", line, hint)
             return None
         match = re.fullmatch(r"\s*([^*\s]+)\s*(?:\*\s*(\d{1,4}))?\s*", text)
         count = int(match[2] or 1) if match else 0
@@ -297,9 +238,3 @@ class _Reader:
             self.faults.add(Code.UNKNOWN_OBJECT, f"`{name}` is not a known class", line, hint)
             return None
         return name
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, located.Number):
-        return f"{float(value):g}"
-    return str(value)[:60]

@@ -17,10 +17,11 @@ from hearth.homes.geometry import (
     turned,
     wall_of,
 )  # fmt: skip
-from hearth.homes.plans.plan import Faults, Piece, Room
+from hearth.homes.plans.plan import Piece, Room
 from hearth.homes.plans.shell import Thing, interior, span, strip
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
+from hearth.schemas.yaml_fields import Faults
 
 GAP = 0.03
 """Between furniture and the wall behind it: a socket fits in."""

@@ -11,12 +11,13 @@ from hearth.homes.plans.entries import read_plan
 from hearth.homes.plans.floor import CELL, Floor, grid
 from hearth.homes.plans.furniture import Furnishing, furnish
 from hearth.homes.plans.packing import contents
-from hearth.homes.plans.plan import Faults, Plan, Room
+from hearth.homes.plans.plan import Plan, Room
 from hearth.homes.plans.shell import Shell, Thing, interior, span, strip
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box
 from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.schemas.yaml_fields import Faults
 
 PERSON = (0.45, 1.7, 0.35)
 """Width, height and depth of a character."""
@@ -66,23 +67,12 @@ def read(text: str, file: str, knowledge: Knowledge) -> Layout:
     plan = read_plan(text, file, knowledge, faults)
     checks.check_rooms(plan, faults)
     if faults and not plan.rooms:
-        raise HearthError(_shown(faults, text))
+        raise HearthError(faults.underlined(text))
     layout = arrange(plan, knowledge, faults)
     checks.check_layout(layout.plan, layout.shell, layout.things, layout.floor, faults)
     if faults:
-        raise HearthError(_shown(faults, text))
+        raise HearthError(faults.underlined(text))
     return layout
-
-
-def _shown(faults: Faults, text: str) -> list[Diagnostic]:
-    """The faults in the order of their lines, each with its line's words to underline."""
-    lines = text.splitlines()
-    found = []
-    for fault in sorted(faults, key=lambda fault: fault.line):
-        source = lines[fault.line - 1] if 0 < fault.line <= len(lines) else ""
-        column = len(source) - len(source.lstrip()) + 1 if source else 0
-        found.append(replace(fault, source=source, column=column, length=len(source.strip())))
-    return found
 
 
 def arrange(

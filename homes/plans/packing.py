@@ -9,12 +9,13 @@ from hearth.homes.forms import Form, form
 from hearth.homes.geometry import OPPOSITE_WALL, Rect, bottom, box_over, footprint, top, wall_of
 from hearth.homes.plans.entries import ON_TOP
 from hearth.homes.plans.furniture import NoPlaceError, names_of, shape
-from hearth.homes.plans.plan import Faults, Piece
+from hearth.homes.plans.plan import Piece
 from hearth.homes.plans.shell import Thing, band, span
 from hearth.homes.plans.table_setting import places, setting
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
+from hearth.schemas.yaml_fields import Faults
 
 MARGIN = 0.015
 """Free rim of a top, and half the least distance between two things on it."""

@@ -10,8 +10,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hearth.homes.geometry import Rect
-from hearth.schemas.diagnostics import Diagnostic
-from hearth.schemas.failures import Code
 
 OUTSIDE = "outside"
 
@@ -148,17 +146,3 @@ class Plan:
             KeyError: there is none.
         """
         return {room.name: room for room in reversed(self.rooms)}[name]
-
-
-class Faults(list[Diagnostic]):
-    """Everything wrong with one plan, in the order found."""
-
-    def __init__(self, file: str) -> None:
-        super().__init__()
-        self.file = file
-
-    def add(self, code: Code, message: str, line: int = 0, suggestion: str = "") -> None:
-        """Note a fault; the same one at the same place only once."""
-        fault = Diagnostic(code, message, self.file, line, suggestion=suggestion)
-        if fault not in self:
-            self.append(fault)

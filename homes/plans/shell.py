@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 from math import ceil
 
 from hearth.homes.geometry import DIRECTIONS, OPPOSITE_WALL, Rect, along_x, box_over, facing_from, front_of
-from hearth.homes.plans.plan import OUTSIDE, Doorway, Faults, Plan, Room, Window
+from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box
+from hearth.schemas.yaml_fields import Faults
 
 WALL = 0.06
 """Half a wall's thickness: each room has its own panels on its side."""

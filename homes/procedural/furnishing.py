@@ -9,14 +9,15 @@ from random import Random
 from typing import Any
 
 from hearth.homes.geometry import DIRECTIONS, Rect, along_x, bottom, facing_from, footprint, front_of, wall_of
-from hearth.homes.plans import located
 from hearth.homes.plans.entries import PLACE_KEYS, SIZE_KEYS, read_piece
 from hearth.homes.plans.furniture import GAP, Furnishing, NoPlaceError, Placed, shape, stand, underside
 from hearth.homes.plans.obstacles import Obstacles
-from hearth.homes.plans.plan import Faults, Piece, Room
+from hearth.homes.plans.plan import Piece, Room
 from hearth.homes.plans.shell import Opening, Shell, Thing, interior, span, strip
 from hearth.homes.procedural.stocking import stock
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas import located
+from hearth.schemas.yaml_fields import Faults
 
 TRIES = 8
 """Places tried along each wall, and twice as many out in the room."""

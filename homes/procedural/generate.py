@@ -5,7 +5,7 @@ from random import Random
 
 from hearth.homes.plans import checks, shell
 from hearth.homes.plans.layout import Layout, arrange
-from hearth.homes.plans.plan import Faults, Piece, Plan, Room
+from hearth.homes.plans.plan import Piece, Plan, Room
 from hearth.homes.plans.shell import Shell, Thing
 from hearth.homes.procedural.floorplans import LEAST_ROOMS, MOST_ROOMS, floor_plan
 from hearth.homes.procedural.furnishing import UnfurnishableError, furnish
@@ -13,6 +13,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
+from hearth.schemas.yaml_fields import Faults
 
 TRIES = 60
 """Floor plans drawn before giving up; six in seven are furnished."""

@@ -1,4 +1,4 @@
-"""YAML whose every value knows its line, so that a fault in a plan can say where it stands."""
+"""YAML whose every value knows its line, so that a fault in a file can say where it stands."""
 
 from typing import Any
 
@@ -70,7 +70,7 @@ def read(text: str, file: str) -> Any:
     except yaml.YAMLError as error:
         raise HearthError.of(Code.SYNTAX, f"not YAML: {error}", file=file) from error
     if node is None:
-        raise HearthError.of(Code.EMPTY, "nothing to read", file=file, suggestion="a plan needs `rooms`")
+        raise HearthError.of(Code.EMPTY, "nothing to read", file=file)
     return _value(node)
 
 
