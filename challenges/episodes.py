@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from hearth.agents.agent_registry import MainAgent
 from hearth.challenges.definition import Challenge, challenge
 from hearth.challenges.failure_analysis import analysed
 from hearth.challenges.lineup import Lineup
@@ -40,6 +41,7 @@ class Job:
         helped: whether the helper does.
         helper_goal: what the helper is asked to do; None if nothing.
         known: gives the knowledge.
+        make: makes the main agent, if it is not the lineup's; a function that other processes find.
     """
 
     task: Task
@@ -48,6 +50,7 @@ class Job:
     helped: bool
     helper_goal: Goal | None
     known: Known
+    make: Callable[[], MainAgent] | None = None
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ def played(job: Job) -> Record:
     which, knowledge = challenge(job.task.challenge), job.known()
     start = start_of(job.task, knowledge, None if job.helped else 1)
     goals = _goals(which, job.task, job.helper_goal, start.home, job.helped)
-    players = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped)
+    players = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped, job.make)
     seed = derive(job.task.seed, "episode", job.seed)
     allowed = which.allowed(knowledge)
     done = play(

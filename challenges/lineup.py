@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hearth.agents.agent_registry import HELPERS, MAIN
+from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_registry import ONLINE
 from hearth.agents.protocol import Agent
 from hearth.challenges.definition import Challenge
@@ -69,12 +70,18 @@ class Lineup:
         return special if special in HELPERS else self.helper
 
     def players(
-        self, which: Challenge, goal: Goal, helper_goal: Goal | None, knowledge: Knowledge, helped: bool
+        self,
+        which: Challenge,
+        goal: Goal,
+        helper_goal: Goal | None,
+        knowledge: Knowledge,
+        helped: bool,
+        make: Callable[[], MainAgent] | None = None,
     ) -> list[Player]:
-        """New agents for one episode; without a helper where `helped` is False."""
+        """New agents for one episode; without a helper where `helped` is False. `make` makes another main agent."""
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
-        main = MAIN[known.main if helped and known and known.main else self.main]()
+        main = (make or MAIN[known.main if helped and known and known.main else self.main])()
         found = [Player(Guarded(main, 0, allowed, self.seconds), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
             agent: Agent = known.make(main) if known else self._own(which)

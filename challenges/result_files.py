@@ -87,7 +87,7 @@ def line(header: Header, record: Record) -> bytes:
     """An episode as a line, with a digest of itself and of what was run."""
     import orjson
 
-    data = _episode(record)
+    data = episode_data(record)
     return orjson.dumps({**data, "digest": _digest(header, data)}) + b"\n"
 
 
@@ -98,7 +98,8 @@ def first_line(header: Header) -> bytes:
     return orjson.dumps(header.as_json()) + b"\n"
 
 
-def _episode(record: Record) -> dict[str, Any]:
+def episode_data(record: Record) -> dict[str, Any]:
+    """An episode as JSON."""
     return {
         "task": record.task,
         "seed": record.seed,
@@ -165,10 +166,10 @@ def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[
     for number, each in enumerate(lines, 2):
         given = dict(_mapping(each, file, number))
         written = given.pop("digest", None)
-        record = _record(given)
+        record = episode_of(given)
         if record is None:
             raise HearthError(Diagnostic(Code.BAD_JSON, "not an episode", file, number))
-        if written != _digest(header, _episode(record)):
+        if written != _digest(header, episode_data(record)):
             message = "the episode is not as it was written: an action, a metric, a seed or the tasks were changed"
             raise HearthError(Diagnostic(Code.DAMAGED_FILE, message, file, number))
         yield record
@@ -198,7 +199,8 @@ _FIELDS: dict[str, tuple[type, ...]] = {
 }
 
 
-def _record(given: Mapping[str, Any]) -> Record | None:
+def episode_of(given: Mapping[str, Any]) -> Record | None:
+    """An episode of JSON; None where it is not one."""
     if given.keys() != _FIELDS.keys() or not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
         return None
     actions = given["actions"]

@@ -103,19 +103,18 @@ def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
         guessed = dict(zip(tasks, inferred(header.suite.tasks, reader, known, workers=workers), strict=True))
     jobs = []
     for key, seed, helped in header.keys:
-        goal = (guessed.get(key) or _helper_goal(header, tasks[key], seed)) if helped else None
+        goal = (guessed.get(key) or helper_goal(header.lineup.goal, tasks[key], seed, header.suite.tasks)) if helped else None
         jobs.append(Job(tasks[key], seed, header.lineup, helped, goal, known))
     return jobs
 
 
-def _helper_goal(header: Header, task: Task, seed: int) -> Goal | None:
-    """What the helper is asked to do; a random goal is that of another task of the suite."""
-    kind = header.lineup.goal
+def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal | None:
+    """What the helper is asked to do, if that need not be inferred; a random goal is that of another of the tasks."""
     if kind == "true":
         return task.goal
     if kind == "none" or kind in INFERRED:
         return None
-    others = [each.goal for each in header.suite.tasks if each.goal != task.goal]
+    others = [each.goal for each in tasks if each.goal != task.goal]
     if not others:
         raise HearthError.of(Code.BAD_ARGUMENT, "a random goal is that of another task, and there is none")
     return rng(task.seed, "random goal", seed).choice(others)

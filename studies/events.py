@@ -1,0 +1,198 @@
+"""What happened in a study, one event after another: nothing else is kept, and all else follows from it."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any, Protocol
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.files import sync_folder, write_bytes
+from hearth.storage.input_files import read_input
+
+PLACES = "places"
+"""The stream of who took which place; every other stream is a person's."""
+
+KINDS = ("joined", "consented", "read", "practised", "did", "answered", "left", "finished", "freed")
+"""What may happen: `joined` and `freed` in the stream of places, the others in a person's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened.
+
+    Attributes:
+        stream: `PLACES`, or a person's id.
+        number: its place in the stream, from 0; one event has it.
+        kind: one of `KINDS`.
+        at: seconds since 1970; of simulated people, since they joined.
+        data: what belongs to it.
+    """
+
+    stream: str
+    number: int
+    kind: str
+    at: float
+    data: Mapping[str, Any]
+
+
+class Ledger(Protocol):
+    """Where events are kept; `study_store` of the server keeps them in a database, `FileLedger` in a file."""
+
+    def streams(self) -> list[str]:
+        """The streams of people, in the order in which they began."""
+
+    def read(self, stream: str) -> list[Event]:
+        """The events of a stream, in order."""
+
+    def append(self, event: Event) -> bool:
+        """Keep an event, on the disk when it returns; False, and nothing kept, if another has its number."""
+
+    def forget(self, stream: str) -> None:
+        """Delete a person's events, and the person's id in the stream of places."""
+
+    def secret(self, name: str) -> str:
+        """A random text of this study, made when it is first asked for; of a simulation, derived from its seed."""
+
+
+def redacted(event: Event, stream: str) -> Event:
+    """An event of the places without a person's id."""
+    if event.data.get("person") != stream:
+        return event
+    return Event(event.stream, event.number, event.kind, event.at, {**event.data, "person": ""})
+
+
+def salted(salt: str, text: str) -> str:
+    """16 hexadecimal digits that stand for a text in tables; nobody without the salt finds out for which."""
+    return blake2b(text.encode(), key=salt.encode()[:64], digest_size=8).hexdigest()
+
+
+class MemoryLedger:
+    """Events in memory."""
+
+    def __init__(self, salt: str = "") -> None:
+        self.events: dict[str, list[Event]] = {PLACES: []}
+        self.salt = salt
+
+    def streams(self) -> list[str]:
+        """The streams of people."""
+        return [each for each in self.events if each != PLACES]
+
+    def read(self, stream: str) -> list[Event]:
+        """The events of a stream."""
+        return list(self.events.get(stream, ()))
+
+    def append(self, event: Event) -> bool:
+        """Keep an event."""
+        events = self.events.setdefault(event.stream, [])
+        if event.number != len(events):
+            return False
+        events.append(event)
+        return True
+
+    def forget(self, stream: str) -> None:
+        """Delete a person's events."""
+        self.events.pop(stream, None)
+        self.events[PLACES] = [redacted(each, stream) for each in self.events[PLACES]]
+
+    def secret(self, name: str) -> str:
+        """The salt that it was made with."""
+        self.salt = self.salt or secrets.token_hex(16)
+        return salted(self.salt, name)
+
+
+class FileLedger(MemoryLedger):
+    """Events in a file of JSON lines, appended one by one; a line that was half written when it stopped is cut off.
+
+    Args:
+        path: the file; begun if it is not there.
+        header: what its first line says; a file that says something else is refused.
+        salt: of the ids in tables.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: the file is of another study; BAD_JSON with the line.
+    """
+
+    def __init__(self, path: Path, header: Mapping[str, Any], salt: str = "") -> None:
+        super().__init__(salt)
+        self.path, self.header = path, header
+        first = _line(header)
+        if not path.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_bytes(path, first)
+        lines = path.read_bytes().splitlines(keepends=True)
+        if not lines or lines[0] != first:
+            remedy = "name a new folder, or delete this file"
+            raise HearthError.of(Code.BAD_ARGUMENT, "these are the events of another study or simulation",
+                                 file=str(path), suggestion=remedy)  # fmt: skip
+        whole = [each for each in lines[1:] if each.endswith(b"\n")]
+        if len(whole) < len(lines) - 1:
+            write_bytes(path, b"".join([first, *whole]))
+        for number, each in enumerate(whole, 2):
+            super().append(event_of(each, str(path), number))
+
+    def append(self, event: Event) -> bool:
+        """Keep an event in the file."""
+        kept = super().append(event)
+        if kept:
+            with self.path.open("ab") as file:
+                file.write(_line(event_data(event)))
+        return kept
+
+    def forget(self, stream: str) -> None:
+        """Delete a person's events; the file is written anew."""
+        lines = [event_of(each, str(self.path), 0) for each in self.path.read_bytes().splitlines()[1:]]
+        super().forget(stream)
+        kept = [redacted(each, stream) for each in lines if each.stream != stream]
+        write_bytes(self.path, b"".join([_line(self.header), *(_line(event_data(each)) for each in kept)]))
+        sync_folder(self.path.parent)
+
+
+def event_data(event: Event) -> dict[str, Any]:
+    """An event as JSON."""
+    return {"stream": event.stream, "number": event.number, "kind": event.kind, "at": event.at, "data": event.data}
+
+
+def event_of(line: bytes, file: str, number: int) -> Event:
+    """An event of a line.
+
+    Raises:
+        HearthError: BAD_JSON: it is not one.
+    """
+    import orjson
+
+    try:
+        given = orjson.loads(line)
+        return Event(str(given["stream"]), int(given["number"]), str(given["kind"]), float(given["at"]), given["data"])
+    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError) as error:
+        raise HearthError.of(Code.BAD_JSON, f"line {number} is not an event", file=file) from error
+
+
+def header_of(path: Path) -> dict[str, Any]:
+    """The first line of a file of events.
+
+    Raises:
+        HearthError: MISSING_FILE; BAD_JSON.
+    """
+    import orjson
+
+    try:
+        found = orjson.loads(read_input(path, 1 << 30).partition(b"\n")[0])
+    except orjson.JSONDecodeError as error:
+        raise HearthError.of(Code.BAD_JSON, "not a file of events", file=str(path)) from error
+    if not isinstance(found, dict) or found.get("format") != FORMAT:
+        raise HearthError.of(Code.BAD_JSON, f"not a file of events ({FORMAT})", file=str(path))
+    return found
+
+
+FORMAT = "hearth-study-events-1"
+
+
+def _line(data: Mapping[str, Any]) -> bytes:
+    import orjson
+
+    return orjson.dumps(data) + b"\n"

@@ -1,0 +1,227 @@
+"""A study: who does or judges what, under which conditions, and what they are asked (thesis 6.6, B.4, C.5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import blake2b
+from typing import Literal
+
+PLAY, JUDGE = "play", "judge"
+ROOMS = (PLAY, JUDGE)
+"""What people do: act in homes, or judge films."""
+
+EPISODES, PROGRAMS = "episodes", "programs"
+SOURCES = (EPISODES, PROGRAMS)
+"""What films show: people and agents at tasks, or programs that were written for descriptions."""
+
+AFTER = ("trial", "helped")
+"""When a question is asked: after every trial, or after those with a helper."""
+
+Kind = Literal["scale", "choice", "text"]
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page of the tutorial."""
+
+    title: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Something people are asked.
+
+    Attributes:
+        name: of its answers in tables.
+        text: as people read it.
+        kind: `scale` (whole numbers), `choice` or `text`.
+        low, high: ends of a scale.
+        labels: number -> its words.
+        choices: of which one is chosen.
+        required: whether it must be answered.
+        after: one of `AFTER`.
+    """
+
+    name: str
+    text: str
+    kind: Kind
+    low: int = 1
+    high: int = 1
+    labels: tuple[tuple[int, str], ...] = ()
+    choices: tuple[str, ...] = ()
+    required: bool = True
+    after: str = "trial"
+
+    def fault(self, answer: object) -> str:
+        """What is wrong with an answer; "" where nothing is."""
+        if answer is None or answer == "":
+            return "it needs an answer" if self.required else ""
+        if self.kind == "scale":
+            whole = isinstance(answer, int) and not isinstance(answer, bool)
+            fits = whole and isinstance(answer, int) and self.low <= answer <= self.high
+            return "" if fits else f"a whole number from {self.low} to {self.high} is asked"
+        if self.kind == "choice":
+            return "" if answer in self.choices else f"one of {', '.join(self.choices)} is asked"
+        return "" if isinstance(answer, str) and len(answer) <= MOST_TEXT else f"at most {MOST_TEXT:,} characters"
+
+
+MOST_TEXT = 4_000
+"""Characters of an answer in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Under which trials are done.
+
+    Attributes:
+        name: in tables.
+        title: in reports.
+        helper, goal: who helps, and what it is asked to do (see `challenges.lineup.Lineup`); nobody where `none`.
+        actor: whose episodes films show: `person` or `agent`; "" where people play.
+    """
+
+    name: str
+    title: str
+    helper: str = "none"
+    goal: str = ""
+    actor: str = ""
+
+    @property
+    def helped(self) -> bool:
+        """Whether there is a helper."""
+        return self.helper != "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Tasks:
+    """The tasks of a challenge that a study is about: the first of a split, whose goal sets come in turn.
+
+    Attributes:
+        challenge, split: theirs.
+        number: how many.
+    """
+
+    challenge: str
+    split: str
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Programs of a quality: normalised LCS with the reference from `low` to below `high` (1 is in the last)."""
+
+    name: str
+    title: str
+    low: float
+    high: float
+
+    def holds(self, lcs: float) -> bool:
+        """Whether a program's score is in the band."""
+        return self.low <= lcs < self.high or lcs == self.high == 1
+
+
+@dataclass(frozen=True, slots=True)
+class Films:
+    """What is judged.
+
+    Attributes:
+        of: one of `SOURCES`.
+        study: name of the study whose people are shown, where they show episodes.
+        bands: of programs.
+        each: programs of each band.
+    """
+
+    of: str
+    study: str = ""
+    bands: tuple[Band, ...] = ()
+    each: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Times after which one does not wait longer.
+
+    Attributes:
+        minutes: of a trial.
+        idle_hours: without a sign of a person, who then counts as having left.
+    """
+
+    minutes: float = 20.0
+    idle_hours: float = 24.0
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a study's file says.
+
+    Attributes:
+        name: its identifier.
+        title: for people.
+        source: where the design comes from.
+        room: one of `ROOMS`.
+        seed: of all that is drawn.
+        people: how many take part.
+        consent: what they agree to.
+        tutorial: what they read first.
+        practice: trials that do not count.
+        tasks: what is to be done; None where programs are judged.
+        films: what is judged; None where people play.
+        interface: in which they play: `symbolic` or `visual`.
+        conditions: at least one.
+        repeats: how often each task is done under each condition.
+        least: trials that everybody has under each condition.
+        limits: of time.
+        alone: name of the study whose lengths are those without a helper; "" where one of the conditions is.
+        questions: after trials.
+        exit: at the end.
+        text: the file.
+    """
+
+    name: str
+    title: str
+    source: str
+    room: str
+    seed: int
+    people: int
+    consent: str
+    tutorial: tuple[Page, ...]
+    practice: int
+    tasks: Tasks | None
+    films: Films | None
+    interface: str
+    conditions: tuple[Condition, ...]
+    repeats: int
+    least: int
+    limits: Limits
+    alone: str
+    questions: tuple[Question, ...]
+    exit: tuple[Question, ...]
+    text: str
+
+    @cached_property
+    def digest(self) -> str:
+        """32 hexadecimal digits of the file's text."""
+        return blake2b(self.text.encode(), digest_size=16).hexdigest()
+
+    @property
+    def items(self) -> int:
+        """The number of tasks, or of programs."""
+        if self.tasks is not None:
+            return self.tasks.number
+        assert self.films is not None
+        return self.films.each * len(self.films.bands)
+
+    @property
+    def trials(self) -> int:
+        """All trials that count."""
+        return self.items * len(self.conditions) * self.repeats
+
+    def condition(self, name: str) -> Condition:
+        """A condition by name."""
+        return next(each for each in self.conditions if each.name == name)
+
+    def asked(self, condition: Condition) -> tuple[Question, ...]:
+        """The questions after a trial under a condition."""
+        return tuple(each for each in self.questions if each.after == "trial" or condition.helped)
