@@ -83,6 +83,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "Ask people": {
         "serve": Entry("serve:serve", "The server where people annotate, play and judge, and the researcher's desk."),
+        "study": Entry("study:app", "Studies with people: check, simulate, prepare, export, report."),
     },
     "Make pictures": {
         "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),

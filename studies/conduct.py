@@ -14,7 +14,7 @@ from hearth.studies.assignment import Planned, Slots, assignment
 from hearth.studies.events import PLACES, Event, Ledger
 from hearth.studies.study import PLAY, Condition, Question, Study
 from hearth.studies.study_file import groups_of
-from hearth.studies.trials import checked
+from hearth.studies.study_trials import checked
 
 CONSENT, TUTORIAL, PRACTICE, TRIAL, QUESTIONS, EXIT, DONE, LEFT = STAGES = (
     "consent", "tutorial", "practice", "trial", "questions", "exit", "done", "left",

@@ -14,7 +14,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
 from hearth.studies.study import Study
-from hearth.studies.trials import tasks_of
+from hearth.studies.study_trials import tasks_of
 
 
 @dataclass(frozen=True, slots=True)

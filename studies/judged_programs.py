@@ -126,13 +126,13 @@ def _in_band(steps: tuple[Step, ...], others: tuple[Step, ...], band: Band, choo
     """Steps with some left out and some of another program put in, until their LCS is in a band; () if it never is."""
     now = list(steps)
     for _ in range(TRIES):
-        if now and band.holds(score(now, steps).step):
+        if now and band.holds(score(tuple(now), steps).step):
             return tuple(now)
         place = chooser.randrange(len(now) + 1)
         if len(now) > 2 and chooser.random() < 0.5:
             del now[min(place, len(now) - 1)]
         else:
             now.insert(place, chooser.choice(others))
-        if score(now, steps).step < band.low:
+        if score(tuple(now), steps).step < band.low:
             now = list(steps)
     return ()

@@ -32,7 +32,7 @@ from hearth.studies.simulated_people import (
 )  # fmt: skip
 from hearth.studies.study import PLAY, Study
 from hearth.studies.study_folder import EVENTS, header
-from hearth.studies.trials import job_of, tasks_of
+from hearth.studies.study_trials import job_of, tasks_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,8 @@ def visits(sizes: Sequence[int], crowd: Crowd) -> list[Visit]:
     """Who comes to a study whose places have these numbers of trials, until every place was finished by somebody."""
     chooser = rng(crowd.seed, "drop-outs")
     leaving = set(chooser.sample(range(len(sizes)), min(crowd.drop_outs, len(sizes))))
-    waiting, found = list(range(len(sizes))), []
+    waiting = list(range(len(sizes)))
+    found: list[Visit] = []
     while waiting:
         number, place = len(found), waiting.pop(0)
         trials = sizes[place]

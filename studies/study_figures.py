@@ -10,7 +10,7 @@ from hearth.analysis.corpus_figures import saved
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
-from hearth.studies.findings import AGENT, PEOPLE, Findings, scales
+from hearth.studies.study_findings import AGENT, PEOPLE, Findings, scales
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

@@ -38,6 +38,8 @@ from hearth.studies.study import (
 SHIPPED = ("people-alone", "people-with-helpers", "likeness-of-films", "online", "programs-by-lcs")
 """The studies that come with Hearth; each is a file of this package."""
 
+_NAME = re.compile(r"[a-z][a-z0-9_-]{0,59}")
+
 MOST_PEOPLE, MOST_TRIALS = 5_000, 100_000
 
 name = reads("a name of letters, digits, - and _", lambda it: isinstance(it, str) and _NAME.fullmatch(it), then=str)
@@ -45,14 +47,13 @@ text = reads("a text of 1 to 20,000 characters", lambda it: isinstance(it, str) 
 hours = reads("a number above 0", lambda it: isinstance(it, located.Number) and 0 < it < 10_000, then=float)
 share = reads("a number from 0 to 1", lambda it: isinstance(it, located.Number) and 0 <= it <= 1, then=float)
 yes = reads("true or false", lambda it: isinstance(it, bool))
-_NAME = re.compile(r"[a-z][a-z0-9_-]{0,59}")
 
 
 def whole(low: int, high: int) -> ReadValue:
     """A reader of whole numbers between two."""
     return reads(
         f"a whole number from {low} to {high:,}",
-        lambda it: isinstance(it, located.Number) and it == int(it) and low <= it <= high,
+        lambda it: isinstance(it, located.Number) and float(it).is_integer() and low <= it <= high,
         then=int,
     )
 

@@ -24,7 +24,7 @@ from hearth.studies.judged_films import JudgedFilm, goal_in_words, of_episodes
 from hearth.studies.judged_programs import judged_programs
 from hearth.studies.study import EPISODES, Condition, Study
 from hearth.studies.study_file import SHIPPED, named, study_of
-from hearth.studies.trials import lineup_of, record_of, suite_of
+from hearth.studies.study_trials import lineup_of, record_of, suite_of
 
 EVENTS, FILMS, REFERENCES = "events.jsonl", "films.json", "references"
 
@@ -82,12 +82,21 @@ def opened(folder: Path, known: Known) -> Collected:
     return Collected(Conduct(study, FileLedger(folder / EVENTS, first, salt), known), True, folder)
 
 
-def related(study: Study, beside: Path | None) -> Study | None:
+def beside(collected: Collected) -> Collected | None:
+    """The simulated study, in the folder beside, whose lengths are those without a helper; None where there is none."""
+    name = collected.study.alone
+    if not name or collected.folder is None:
+        return None
+    folder = inside(collected.folder.parent, name)
+    return opened(folder, collected.conduct.known) if (folder / EVENTS).is_file() else None
+
+
+def related(study: Study, files: Path | None) -> Study | None:
     """The study whose people another one needs: whom it films, or whose lengths are those alone.
 
     Args:
         study: the other one.
-        beside: a folder that may have its file, `NAME.yaml`; else one that comes with Hearth is meant.
+        files: a folder that may have its file, `NAME.yaml`; else one that comes with Hearth is meant.
 
     Raises:
         HearthError: MISSING_FILE: there is none of that name.
@@ -95,7 +104,7 @@ def related(study: Study, beside: Path | None) -> Study | None:
     name = study.films.study if study.films and study.films.of == EPISODES else study.alone
     if not name:
         return None
-    if beside is not None and (path := inside(beside, f"{name}.yaml")).is_file():
+    if files is not None and (path := inside(files, f"{name}.yaml")).is_file():
         return named(str(path))
     if name not in SHIPPED:
         raise HearthError.of(Code.MISSING_FILE, f"there is no study `{name}`", suggestion=f"put {name}.yaml beside it")

@@ -9,8 +9,8 @@ from typing import Any
 from hearth.schemas.libraries import lacking
 from hearth.storage.files import write_bytes
 from hearth.studies.comparisons import Comparison
-from hearth.studies.findings import METRICS, PEOPLE, Figure, Findings, scales
 from hearth.studies.study_figures import draw, names_of, own_figure
+from hearth.studies.study_findings import METRICS, PEOPLE, Figure, Findings, scales
 from hearth.version import VERSION
 
 PAGE = "index.html"

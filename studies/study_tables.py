@@ -12,6 +12,8 @@ import pyarrow as pa
 
 from hearth.analysis.episode_drawing import ticks_of
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.tables import comment_of, struct
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
@@ -20,7 +22,7 @@ from hearth.studies.conduct import Standing
 from hearth.studies.events import Event, salted
 from hearth.studies.judged_films import JudgedFilm, read_films
 from hearth.studies.study_folder import FILMS, Collected
-from hearth.studies.trials import record_of, tasks_of
+from hearth.studies.study_trials import record_of, tasks_of
 
 TABLES: dict[str, pa.Schema] = {
     name: pa.schema(list(struct(row)), metadata={"comment": str(row.__doc__)})
@@ -187,3 +189,16 @@ def _trial_of(standing: Standing, item: int, condition: str) -> int:
     """The number of the trial with a task under a condition; a person has it once."""
     did = _of_kind(standing, "did")
     return next(n for n, each in enumerate(did) if (each.data["item"], each.data["condition"]) == (item, condition))
+
+
+def person_of(collected: Collected, given: str) -> str:
+    """Who is meant by an id of the tables, or by the id of a session.
+
+    Raises:
+        HearthError: UNKNOWN_ID: nobody of this id takes part.
+    """
+    salt = collected.ledger.secret("participants")
+    for person in collected.ledger.streams():
+        if given in (person, salted(salt, person)):
+            return person
+    raise HearthError.of(Code.UNKNOWN_ID, f"nobody of the id `{given[:60]}` takes part")

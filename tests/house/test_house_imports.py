@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 LAYERS = {
     "schemas": 0, "storage": 1, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
     "datasets": 6, "scoring": 7, "pipelines": 8, "models": 9, "agents": 10, "challenges": 11, "analysis": 12,
-    "web": 13, "commands": 14,
+    "studies": 13, "web": 14, "commands": 15,
 }  # fmt: skip
 """Packages by layer: each may import those below it and itself."""
 

@@ -1,0 +1,65 @@
+"""Studies' files: what is wrong is named with its line and its remedy."""
+
+import pytest
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.studies.study_file import SHIPPED, named, study_of
+from tests.studies.small import SMALL, small
+
+
+def faults(text):
+    with pytest.raises(HearthError) as caught:
+        study_of(text, "study.yaml")
+    return caught.value.diagnostics
+
+
+def fault(old, new):
+    assert old in SMALL
+    (found, *_) = faults(SMALL.replace(old, new, 1))
+    return found
+
+
+def test_the_small_study_is_read():
+    study = small()
+    assert (study.name, study.items, study.trials, study.practice) == ("small", 4, 8, 1)
+    assert [each.helped for each in study.conditions] == [False, True]
+    assert study.asked(study.conditions[0]) == ()
+    assert [each.name for each in study.asked(study.conditions[1])] == ["helpful"]
+
+
+def test_the_studies_that_ship_are_read():
+    assert [named(name).name for name in SHIPPED] == list(SHIPPED)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message", "remedy"),
+    [
+        ("room: play", "room: plya", 4, "`room` is `plya`", "write one of play, judge"),
+        ("people: 4", "people: 0", 6, "`people` is `0`", "write a whole number from 1 to 5,000"),
+        ("people: 4", "peple: 4", 2, "a study needs `people`", ""),
+        ("hp_random", "hp_randm", 14, "there is no helper `hp_randm`", "none, random,"),
+        ("hp_random, goal: random", "hp_true", 14, "`hp_true` reads its partner's plan", "hp, hp_random"),
+        ("number: 4", "number: 4000", 11, "the split has 100 tasks", "at most 100"),
+        ("split: test", "split: tset", 11, "there is no split `tset`", "train"),
+        ("from: 1, to: 7", "from: 7, to: 1", 17, "the scale from 7 to 1 is empty", "`from` is below `to`"),
+        ("{name: alone,", "{name: hp_rg,", 12, "two conditions are called `hp_rg`", "rename one of them"),
+        ("at_least: 1", "at_least: 2", 6, "place 1 has 1 trials under `alone`, not 2", "change `people`"),
+        ("room: play", "room: judge", 4, "people who judge need `films`", "films: {of: episodes"),
+        ("choices: [young, old]", "choices: [young]", 19, "`choices` is a list of two or more texts", ""),
+    ],
+)
+def test_a_fault_has_its_line_and_its_remedy(old, new, line, message, remedy):
+    found = fault(old, new)
+    assert (found.file, found.line) == ("study.yaml", line)
+    assert message in found.message
+    assert remedy in found.suggestion
+
+
+def test_every_fault_is_named_at_once_with_its_words():
+    found = faults(SMALL.replace("room: play", "room: plya").replace("people: 4", "people: x"))
+    assert [each.line for each in found[:2]] == [4, 6]
+    assert found[0].source == "room: plya"
+
+
+def test_yaml_that_holds_itself_is_refused():
+    assert faults("&a [*a]")
