@@ -31,18 +31,20 @@ def serve(
     \b
     Examples:
       python cli.py serve
+      python cli.py serve --study people-alone
       python cli.py serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
+    from hearth.studies.study_file import named
     from hearth.web.application import application
     from hearth.web.desk_access import desk_token
     from hearth.web.serving import listening, run
     from hearth.web.store import Store, default_url
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    if study is not None and not study.is_file():
-        raise HearthError.of(Code.MISSING_FILE, "no such file", file=str(study))
+    if study is not None:
+        named(str(study))
     where = listening(port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     token = desk_token(out)

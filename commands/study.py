@@ -286,7 +286,7 @@ def _opened(source: Path, store: str, study: str) -> Collected:
     from hearth.schemas.libraries import library
 
     library("sqlalchemy")
-    from hearth.web.judge.study_store import opened_store
+    from hearth.web.study.study_store import opened_store
 
     return opened_store(source, store, study, default)
 
@@ -297,6 +297,6 @@ def _alone(collected: Collected, source: Path, store: str) -> Collected | None:
 
     if (source / EVENTS).is_file() and not store:
         return beside(collected)
-    from hearth.web.judge.study_store import names_in
+    from hearth.web.study.study_store import names_in
 
     return _opened(source, store, collected.study.alone) if collected.study.alone in names_in(source, store) else None

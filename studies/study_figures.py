@@ -10,6 +10,7 @@ from hearth.analysis.corpus_figures import saved
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import library
+from hearth.storage.names import inside
 from hearth.studies.study_findings import AGENT, PEOPLE, Findings, scales
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def draw(number: str, found: Findings, alone: Findings | None, folder: Path) -> 
     figure = FIGURES[number](found, alone)
     if found.simulated:
         figure.suptitle(SIMULATED, fontsize=9, color="#a3262a")
-    return saved(figure, folder / f"figure-{number}")
+    return saved(figure, inside(folder, f"figure-{number}"))
 
 
 def own_figure(study: str) -> str:
@@ -67,6 +68,9 @@ def with_helpers(found: Findings, alone: Findings | None) -> Drawing:
     points.set_title("a) success and speedup")
     points.legend(frameon=False, loc="lower left", fontsize=8)
     points.margins(0.18)
+    points.locator_params(axis="x", nbins=6)
+    points.set_xticks([tick for tick in points.get_xticks() if tick < 1.001])
+    points.spines[["top", "right"]].set_visible(False)
     _bars(rewards, both, "reward", names_of(found))
     rewards.set_title("b) cumulative reward")
     _ratings(rated, found)
@@ -82,10 +86,10 @@ def _point(axes: Any, found: Findings, who: str, name: str, title: str) -> None:
         success.mean, speedup.mean, xerr=success.error or 0, yerr=speedup.error or 0, fmt="o", color=COLOURS[who],
         capsize=2,
     )  # fmt: skip
-    above = who == PEOPLE
+    left = who == PEOPLE
     axes.annotate(
-        title.partition(" (")[0], (success.mean, speedup.mean), xytext=(-6, 7 if above else -13),
-        textcoords="offset points", fontsize=8, color=COLOURS[who], ha="right",
+        title.partition(" (")[0], (success.mean, speedup.mean), xytext=(-7, 4) if left else (7, -9),
+        textcoords="offset points", fontsize=8, color=COLOURS[who], ha="right" if left else "left",
     )  # fmt: skip
 
 

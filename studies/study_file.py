@@ -98,7 +98,7 @@ def read_study(path: Path) -> Study:
 def named(given: str) -> Study:
     """A study that comes with Hearth, by its name; else that of a file."""
     if given in SHIPPED:
-        return study_of((files("hearth.studies") / f"{given}.yaml").read_text("utf-8"), f"{given}.yaml")
+        return study_of(files("hearth.studies").joinpath(f"{given}.yaml").read_text("utf-8"), f"{given}.yaml")
     return read_study(Path(given))
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hearth.web import play
+from hearth.web import play, study
 from hearth.web.room import Room
 
-ROOMS: tuple[Room, ...] = (play.ROOM,)
+ROOMS: tuple[Room, ...] = (play.ROOM, study.ROOM)
 """Every room. Its tables are made because its modules, which declare them in METADATA, are imported here."""

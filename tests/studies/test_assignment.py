@@ -1,6 +1,7 @@
 """Assignments are balanced, whatever the design: every task under every condition equally often, everybody alike."""
 
 from collections import Counter
+from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
@@ -76,5 +77,5 @@ def test_a_latin_square_has_each_number_once_in_each_row_and_column(size):
     assert all(set(row) == every for row in square)
     assert all({row[place] for row in square} == every for place in range(size))
     if size % 2 == 0:
-        following = Counter(pair for row in square for pair in zip(row, row[1:], strict=False))
+        following = Counter(pair for row in square for pair in pairwise(row))
         assert set(following.values()) <= {1}

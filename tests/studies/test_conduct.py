@@ -1,6 +1,7 @@
 """A study as it goes on: one thing after the other, once each; places of those who leave go to others."""
 
 import pytest
+from studies.small import small
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
@@ -9,7 +10,6 @@ from hearth.studies.conduct import CONSENT, DONE, EXIT, LEFT, PRACTICE, QUESTION
 from hearth.studies.events import PLACES, Event, FileLedger, MemoryLedger
 from hearth.studies.simulate import Ahead, play_ahead
 from hearth.studies.simulated_people import simulated_person
-from tests.studies.small import small
 
 
 class Clock:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pyarrow.parquet as pq
 import pytest
+from studies.small import simulated
 
 from hearth.kb.loading.load import default
 from hearth.studies.events import PLACES
@@ -13,7 +14,6 @@ from hearth.studies.study_findings import AGENT, PEOPLE, findings
 from hearth.studies.study_folder import EVENTS, opened
 from hearth.studies.study_report import page
 from hearth.studies.study_tables import TABLES, Rows, archive, export, person_of
-from tests.studies.small import simulated
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,10 @@
 """Studies' files: what is wrong is named with its line and its remedy."""
 
 import pytest
+from studies.small import SMALL, small
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.studies.study_file import SHIPPED, named, study_of
-from tests.studies.small import SMALL, small
 
 
 def faults(text):

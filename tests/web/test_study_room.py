@@ -1,0 +1,285 @@
+"""The room Study: a person's way through, films that are judged, the desk; the same events as simulations have."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from dataclasses import asdict
+
+import pyarrow.parquet as pq
+import pytest
+import sqlalchemy as sql
+from studies.small import SMALL
+from web.people import Server
+
+from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
+from hearth.storage.files import write_json
+from hearth.studies.conduct import Conduct
+from hearth.studies.judged_films import JudgedFilm
+from hearth.studies.simulate import Ahead, play_ahead
+from hearth.studies.simulated_people import simulated_person
+from hearth.studies.study_file import study_of
+from hearth.studies.study_trials import tasks_of
+from hearth.web.play.game_tables import GAMES
+from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, TRIAL_GAMES
+from hearth.web.study.study_store import StoreLedger, conducted, opened_store
+from hearth.web.web_tables import SESSIONS
+
+JUDGE = """
+name: judging
+title: Judging
+room: judge
+seed: 1
+people: 2
+consent: You may stop at any time.
+films:
+  of: programs
+  each: 1
+  bands: [{name: a, title: good, from: 0.5, to: 1}, {name: b, title: bad, from: 0, to: 0.5}]
+conditions: [{name: written, title: Written}]
+repeats: 2
+questions:
+- {name: quality, text: How well is it done?, scale: {from: 1, to: 5}}
+exit:
+- {name: comments, text: What else?, required: false}
+"""
+
+
+@pytest.fixture
+def playing(tmp_path, knowledge):
+    (tmp_path / "study.yaml").write_text(SMALL)
+    made = Server(tmp_path / "served", knowledge, study=tmp_path / "study.yaml")
+    yield made
+    made.store.close()
+
+
+@pytest.fixture
+def judging(tmp_path, knowledge):
+    (tmp_path / "study.yaml").write_text(JUDGE)
+    folder = tmp_path / "served" / "studies" / "judging"
+    (folder / "films").mkdir(parents=True)
+    films = [
+        JudgedFilm(item, "written", f"{item:03d}-{band}", band, f"Title: Text {item} <b>", "maple", 1 - item, [])
+        for item, band in enumerate("ab")
+    ]
+    write_json(folder / "films.json", [asdict(film) for film in films])
+    for film in films:
+        (folder / "films" / f"{film.name}.webm").write_bytes(b"film of " + film.group.encode())
+    made = Server(tmp_path / "served", knowledge, study=tmp_path / "study.yaml")
+    yield made
+    made.store.close()
+
+
+def ledger_of(server):
+    return conducted(server.store, study_of(server_text(server), "study.yaml"), default)
+
+
+def server_text(server):
+    return (server.out.parent / "study.yaml").read_text()
+
+
+def at_trial(client):
+    client.post("/study/agree", data={"agree": "yes"})
+    client.post("/study/understood")
+
+
+def finish(server, client, acts=()):
+    """Begin the game that is to come, do something in it, and finish it."""
+    address = client.post("/study/begin").headers["location"]
+    assert address.startswith("/play/game/")
+    cookie = {"cookie": f"hearth={client.cookies['hearth']}"}
+    with client.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
+        link.send_json({"type": "hello", "n": 1, "tab": "t"})
+        link.receive_json()
+        number = 2
+        for tick, act in enumerate(acts):
+            link.send_json({"type": "act", "n": number, "tick": tick, "act": act})
+            answer = link.receive_json()
+            assert answer["type"] == "tick", answer
+            number += 1
+        link.send_json({"type": "finish", "n": number})
+        link.receive_json()
+    return client.get("/study/").text
+
+
+def spoken(text, home):
+    """An instruction of a record as pages send it."""
+    action, *nodes = (text or "wait").split(" ")
+    return f"{action} {', '.join(f'{home.classes[home.index[int(node)]]} {node}' for node in nodes)}".strip()
+
+
+def test_without_a_study_the_room_and_its_desk_say_so(server):
+    assert "no study" in server.person().get("/study/").text
+    assert "--study FILE" in server.researcher().get("/desk/study/").text
+    assert server.person().post("/study/agree", data={"agree": "yes"}).status_code == 503
+
+
+def test_nothing_is_recorded_before_one_agrees(playing):
+    person = playing.person()
+    assert "agree to take part" in person.get("/study/").text
+    assert person.post("/study/agree").status_code == 400
+    assert playing.store.read(lambda c: c.execute(sql.select(PLACES_TAKEN)).all()) == []
+
+
+def test_a_person_goes_the_whole_way(playing):
+    person = playing.person()
+    at_trial(person)
+    assert "<h1>Practice</h1>" in person.get("/study/").text
+    page = finish(playing, person)
+    conduct = ledger_of(playing)
+    (name,) = conduct.ledger.streams()
+    for _ in range(2):
+        standing = conduct.standing(name)
+        planned = conduct.trial(standing)
+        helped = conduct.condition(standing).helped
+        assert f"Task {standing.number + 1} of 2" in page
+        assert ("A helper is in the home" in page) is helped
+        record = play_ahead(Ahead(conduct.study, planned, simulated_person(0, 0), default))
+        home = tasks_of(conduct.study)[planned.item].start(default()).home
+        page = finish(playing, person, [spoken(tick[0], home) for tick in record["actions"]][:6])
+        if helped:
+            assert "How helpful was it?" in page and "hurting" in page
+            assert person.post("/study/answer", data={"answer-helpful": "9"}).status_code == 400
+            assert person.post("/study/answer", data={}).status_code == 400
+            assert person.post("/study/answer", data={"answer-helpful": "6"}).status_code == 303
+            page = person.get("/study/").text
+    assert "Last questions" in page
+    assert person.post("/study/answer", data={"answer-age": "ancient"}).status_code == 400
+    person.post("/study/answer", data={"answer-comments": "<script>"})
+    assert name in person.get("/study/").text and "Thank you" in person.get("/study/").text
+    events = conduct.standing(name).events
+    assert [each.kind for each in events].count("did") == 2
+    assert events[-1].data == {"answers": {"comments": "<script>"}}
+    did = [each.data["record"] for each in events if each.kind == "did"]
+    assert all(len(each["actions"]) == 6 and each["end"]["agent"] == 0 for each in did)
+    assert {each["helped"] for each in did} == {False, True}
+
+
+def test_a_game_is_begun_once_and_gone_on_with(playing):
+    person = playing.person()
+    at_trial(person)
+    address = person.post("/study/begin").headers["location"]
+    assert person.post("/study/begin").headers["location"] == address
+    assert "Practice" in person.get("/study/").text
+    assert len(playing.store.read(lambda c: c.execute(sql.select(TRIAL_GAMES)).all())) == 1
+
+
+def test_a_game_that_takes_too_long_is_ended(playing):
+    person = playing.person()
+    at_trial(person)
+    person.post("/study/begin")
+    playing.store.write(lambda c: c.execute(sql.update(GAMES).values(created=GAMES.c.created - 21 * 60)))
+    assert "Task 1 of 2" in person.get("/study/").text
+
+
+def test_one_answers_what_is_asked_and_nothing_else(playing):
+    person = playing.person()
+    assert person.post("/study/answer", data={"answer-helpful": "6"}).status_code == 404
+    at_trial(person)
+    assert person.post("/study/answer", data={"answer-helpful": "6"}).headers["location"] == "/study/"
+    assert person.post("/study/understood").status_code == 400
+    assert person.get("/study/film/0").status_code == 404
+
+
+def test_films_are_judged_one_after_the_other(judging):
+    person = judging.person()
+    person.post("/study/agree", data={"agree": "yes"})
+    conduct = ledger_of(judging)
+    (name,) = conduct.ledger.streams()
+    for number in range(2):
+        page = person.get("/study/").text
+        item = conduct.trial(conduct.standing(name)).item
+        assert f"Film {number + 1} of 2" in page and f"Text {item} &lt;b&gt;" in page
+        assert person.get(f"/study/film/{number}").content == b"film of " + b"ab"[item : item + 1]
+        assert person.get(f"/study/film/{1 - number}").status_code == 404
+        assert "000-" not in page and "001-" not in page, "the film's name says of which band it is"
+        assert person.post("/study/answer", data={"answer-quality": "0"}).status_code == 400
+        assert person.post("/study/answer", data={"answer-quality": "4"}).status_code == 303
+    assert person.post("/study/answer", data={}).status_code == 303
+    assert "Thank you" in person.get("/study/").text
+    ratings = [each.data["answers"] for each in conduct.standing(name).events if each.kind == "answered"]
+    assert ratings == [{"quality": 4}] * 2
+
+
+def test_places_are_given_away_and_people_deleted(judging):
+    clients = [judging.person() for _ in range(3)]
+    for client in clients[:2]:
+        client.post("/study/agree", data={"agree": "yes"})
+    assert clients[2].post("/study/agree", data={"agree": "yes"}).status_code == 400
+    clients[0].post("/study/leave")
+    assert "stopped taking part" in clients[0].get("/study/").text
+    assert clients[2].post("/study/agree", data={"agree": "yes"}).status_code == 303
+    desk = judging.researcher()
+    page = desk.get("/desk/study/").text
+    assert page.count("<tr><td><code>") == 3
+    conduct = ledger_of(judging)
+    people = conduct.ledger.streams()
+    assert not any(person in page for person in people), "the desk shows the ids of the tables"
+    assert desk.post("/desk/study/forget", data={"person": people[1]}).status_code == 303
+    assert conduct.ledger.streams() == [people[0], people[2]]
+    assert clients[1].get("/study/").status_code == 401, "the session is gone with it"
+    assert "deleted" in desk.get("/desk/study/").text
+    rows = judging.store.read(lambda c: c.execute(sql.select(HAPPENED)).all())
+    assert people[1] not in str(rows)
+    assert desk.post("/desk/study/dismiss", data={"person": people[2]}).status_code == 303
+    assert conduct.standing(people[2]).stage == "left"
+    assert clients[2].post("/mine/delete").status_code == 303
+    assert conduct.ledger.streams() == [people[0]], "who deletes the session is deleted from the study"
+
+
+def test_the_desk_is_behind_its_token(judging):
+    person = judging.person()
+    for path in ("/desk/study/", "/desk/study/tables.zip", "/desk/study/report.html"):
+        assert person.get(path).status_code == 403
+        assert judging.client(headers={"authorization": "Bearer wrong"}).get(path).status_code == 403
+    for path in ("/desk/study/forget", "/desk/study/dismiss"):
+        assert person.post(path, data={"person": "x"}).status_code == 403
+        assert judging.researcher().post(path, data={"person": "x"}).status_code == 404
+
+
+def test_tables_and_report_are_downloaded(judging):
+    person = judging.person()
+    person.post("/study/agree", data={"agree": "yes"})
+    person.post("/study/answer", data={"answer-quality": "4"})
+    desk = judging.researcher()
+    with zipfile.ZipFile(io.BytesIO(desk.get("/desk/study/tables.zip").content)) as packed:
+        ratings = pq.read_table(io.BytesIO(packed.read("ratings.parquet"))).to_pylist()
+        assert "study.yaml" in packed.namelist()
+    assert [(row["question"], row["value"], row["simulated"]) for row in ratings] == [("quality", 4.0, False)]
+    (name,) = ledger_of(judging).ledger.streams()
+    assert ratings[0]["participant"] != name
+    report = desk.get("/desk/study/report.html")
+    assert "Judging" in report.text and "Simulated." not in report.text
+    assert report.headers["content-disposition"].startswith("attachment")
+    assert opened_store(judging.out, "", "", default).study.name == "judging"
+    with pytest.raises(HearthError, match="no study `other`"):
+        opened_store(judging.out, "", "other", default)
+
+
+def test_a_study_that_has_begun_does_not_change(judging, tmp_path):
+    judging.person().post("/study/agree", data={"agree": "yes"})
+    (tmp_path / "study.yaml").write_text(JUDGE.replace("seed: 1", "seed: 2"))
+    answer = judging.person().get("/study/", headers={"accept": "text/html"})
+    assert answer.status_code == 400 and "began with another file" in answer.text
+
+
+def test_two_who_join_at_once_get_two_places(judging):
+    """The second finds its number taken, and asks again."""
+    conduct = ledger_of(judging)
+    people = [judging.person() for _ in range(2)]
+    query = sql.select(SESSIONS.c.id).order_by(SESSIONS.c.created)
+    ids = judging.store.read(lambda connection: connection.execute(query).scalars().all())
+
+    class Late(StoreLedger):
+        raced = False
+
+        def append(self, event):
+            if not Late.raced:
+                Late.raced = True
+                Conduct(conduct.study, StoreLedger(self.store, self.study), default).join(ids[1])
+            return super().append(event)
+
+    found = Conduct(conduct.study, Late(judging.store, "judging"), default).join(ids[0])
+    assert {found.place, conduct.standing(ids[1]).place} == {0, 1}
+    assert len(people) == 2

@@ -1,0 +1,29 @@
+"""Rooms 3 and 4: people take part in a study, doing tasks or judging films, and its researcher's desk."""
+
+from __future__ import annotations
+
+from hearth.web.room import Room, get, post
+from hearth.web.study import study_desk, study_pages
+
+ROOM = Room(
+    "study",
+    "Study",
+    "Take part in a study: do tasks in a home, or judge films.",
+    addresses=(
+        get("/", study_pages.way),
+        post("/agree", study_pages.agree),
+        post("/understood", study_pages.understood),
+        post("/begin", study_pages.begin),
+        post("/answer", study_pages.answer),
+        post("/leave", study_pages.leave),
+        get("/film/{number}", study_pages.film),
+    ),
+    desk=(
+        get("/", study_desk.overview),
+        get("/tables.zip", study_desk.tables),
+        get("/report.html", study_desk.report),
+        post("/forget", study_desk.forget),
+        post("/dismiss", study_desk.dismiss),
+    ),
+)
+"""The room."""

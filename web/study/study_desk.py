@@ -1,0 +1,107 @@
+"""The desk of a study: how far people are, who has left, tables and report, deletion on request."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from typing import Any
+
+import sqlalchemy as sql
+from starlette.responses import Response
+
+from hearth.studies.conduct import DONE, LEFT, Conduct
+from hearth.studies.events import PLACES, salted
+from hearth.studies.study_findings import findings
+from hearth.studies.study_folder import Collected
+from hearth.studies.study_report import page
+from hearth.studies.study_tables import archive, person_of
+from hearth.web.study.study_pages import conduct_here, study_here
+from hearth.web.study.study_schema import STUDIES
+from hearth.web.study.study_store import collected_in
+from hearth.web.visit import Visit
+
+
+def overview(visit: Visit) -> Response:
+    """The people of the study, and how far they are."""
+    if study_here(visit.web) is None:
+        return visit.page("study/desk_none.html")
+    conduct = conduct_here(visit.web)
+    people = list(_people(conduct))
+    stages = Counter(each["stage"] for each in people)
+    return visit.page(
+        "study/desk.html",
+        study=conduct.study,
+        people=people,
+        done=stages[DONE],
+        left=stages[LEFT],
+        going=sum(stages.values()) - stages[DONE] - stages[LEFT],
+        places=len(conduct.slots),
+    )
+
+
+def _people(conduct: Conduct) -> Any:
+    salt = conduct.ledger.secret("participants")
+    now = conduct.clock()
+    for event in conduct.ledger.read(PLACES):
+        person = event.data["person"]
+        if not person:
+            nothing = {"id": "", "why": "", "trials": 0, "of": 0, "last": ""}
+            yield {**nothing, "place": event.data["place"] + 1, "stage": "forgotten"}
+            continue
+        standing = conduct.standing(person)
+        last = max([each.at for each in standing.events] or [event.at])
+        why = [str(each.data["why"]) for each in standing.events if each.kind == "left"]
+        yield {
+            "id": salted(salt, person),
+            "place": standing.place + 1,
+            "stage": standing.stage,
+            "why": why[0] if why else "",
+            "trials": sum(each.kind == "did" for each in standing.events),
+            "of": len(conduct.slots[standing.place]),
+            "last": _ago(now - last),
+        }
+
+
+def _ago(seconds: float) -> str:
+    minutes = int(seconds // 60)
+    if minutes < 60:
+        return f"{minutes} min ago"
+    return f"{minutes // 60} h ago" if minutes < 2880 else f"{minutes // 1440} days ago"
+
+
+def _collected(visit: Visit) -> Collected:
+    return collected_in(visit.web.store, conduct_here(visit.web).study.name, visit.web.out, lambda: visit.web.known)
+
+
+def tables(visit: Visit) -> Response:
+    """The study's tables as an archive."""
+    found = _collected(visit)
+    return _file(archive(found), "application/zip", f"{found.study.name}.zip")
+
+
+def report(visit: Visit) -> Response:
+    """The study's report as a page to keep; it has a style of its own, which pages of this server may not have."""
+    found = _collected(visit)
+    names = visit.web.store.read(lambda connection: set(connection.execute(sql.select(STUDIES.c.name)).scalars()))
+    other = found.study.alone
+    alone = collected_in(visit.web.store, other, visit.web.out, found.conduct.known) if other in names else None
+    written = page(findings(found, alone), []).encode()
+    return _file(written, "text/html", f"{found.study.name}-{time.strftime('%Y-%m-%d')}.html")
+
+
+def _file(data: bytes, kind: str, name: str) -> Response:
+    return Response(data, media_type=kind, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+
+
+def forget(visit: Visit) -> Response:
+    """Delete all that is known of a person, as the person asked."""
+    found = _collected(visit)
+    found.conduct.forget(person_of(found, visit.field("person", 100)))
+    return visit.go("/desk/study/")
+
+
+def dismiss(visit: Visit) -> Response:
+    """Count a person as having left, so that the place is given to another."""
+    found = _collected(visit)
+    found.conduct.leave(person_of(found, visit.field("person", 100)), "dismissed")
+    return visit.go("/desk/study/")

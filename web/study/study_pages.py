@@ -1,0 +1,194 @@
+"""A person's way through a study: consent, tutorial, practice, trials or films, questions, exit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from starlette.responses import FileResponse, Response
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.names import inside
+from hearth.studies.conduct import (
+    CONSENT,
+    DONE,
+    EXIT,
+    LEFT,
+    PRACTICE,
+    QUESTIONS,
+    TRIAL,
+    TUTORIAL,
+    Conduct,
+    Standing,
+)  # fmt: skip
+from hearth.studies.filming import film_path
+from hearth.studies.judged_films import JudgedFilm, read_films
+from hearth.studies.study import JUDGE, MOST_TEXT, Question, Study
+from hearth.studies.study_file import named
+from hearth.studies.study_folder import FILMS
+from hearth.web import play
+from hearth.web.study.study_store import FOLDER, conducted
+from hearth.web.study.study_trial_games import begun, gone_on
+from hearth.web.visit import Visit, Web
+from hearth.web.web_errors import WebError
+
+TEMPLATES = {
+    TUTORIAL: "study/tutorial.html", PRACTICE: "study/begin.html", TRIAL: "study/begin.html",
+    QUESTIONS: "study/questions.html", EXIT: "study/questions.html", DONE: "study/done.html", LEFT: "study/left.html",
+}  # fmt: skip
+"""The page of every stage; films have their own."""
+
+
+def study_here(web: Web) -> Study | None:
+    """The study that this server is for; None where it is for none."""
+    if web.study is None:
+        return None
+    return _read(str(web.study), web.study.stat().st_mtime_ns if web.study.is_file() else 0)
+
+
+@lru_cache(maxsize=4)
+def _read(study: str, changed: int) -> Study:
+    """A study's file, read again when it has changed."""
+    return named(study)
+
+
+def conduct_here(web: Web) -> Conduct:
+    """The same as it goes on.
+
+    Raises:
+        WebError: MISSING_FILE: the server is for no study.
+    """
+    study = study_here(web)
+    if study is None:
+        raise WebError(Code.MISSING_FILE, "study", "a server that was started with `serve --study FILE`", "none")
+    return conducted(web.store, study, lambda: web.known)
+
+
+def way(visit: Visit) -> Response:
+    """The page of where a person is."""
+    if study_here(visit.web) is None:
+        return visit.page("study/none.html")
+    conduct = conduct_here(visit.web)
+    standing = _standing(conduct, visit.person)
+    if standing is None:
+        return visit.page("study/consent.html", study=conduct.study)
+    if standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
+        standing = gone_on(visit.web, conduct, standing)
+    return shown(visit, conduct, standing)
+
+
+def shown(
+    visit: Visit, conduct: Conduct, standing: Standing, fault: str = "", given: Mapping[str, Any] | None = None
+) -> Response:
+    """The page of a stage; with what was wrong with answers, if anything was."""
+    study = conduct.study
+    values: dict[str, Any] = {
+        "study": study,
+        "standing": standing,
+        "fault": fault,
+        "given": given or {},
+        "total": len(conduct.slots[standing.place]),
+        "most": MOST_TEXT,
+    }
+    status = 400 if fault else 200
+    if study.room == JUDGE and standing.stage in (TRIAL, QUESTIONS):
+        film = film_at(visit.web, conduct, standing)
+        planned = conduct.condition(standing)
+        return visit.page("study/film.html", status, film=film, questions=study.asked(planned), **values)
+    if standing.stage == CONSENT:
+        return visit.page("study/consent.html", study=study)
+    helped = standing.stage == TRIAL and conduct.condition(standing).helped
+    questions = conduct.questions(standing)
+    return visit.page(TEMPLATES[standing.stage], status, questions=questions, helped=helped, **values)
+
+
+def _standing(conduct: Conduct, person: str) -> Standing | None:
+    try:
+        return conduct.standing(person)
+    except HearthError:
+        return None
+
+
+def agree(visit: Visit) -> Response:
+    """A person agrees to take part, and gets a place."""
+    conduct = conduct_here(visit.web)
+    if visit.field("agree", 10) != "yes":
+        raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
+    standing = conduct.join(visit.person)
+    if standing.stage == CONSENT:
+        conduct.consent(visit.person)
+    return visit.go("/study/")
+
+
+def understood(visit: Visit) -> Response:
+    """A person has read the tutorial."""
+    conduct_here(visit.web).read(visit.person)
+    return visit.go("/study/")
+
+
+def begin(visit: Visit) -> Response:
+    """Begin a trial or a practice, or go on with it."""
+    conduct = conduct_here(visit.web)
+    standing = conduct.standing(visit.person)
+    if conduct.study.room == JUDGE or standing.stage not in (PRACTICE, TRIAL):
+        return visit.go("/study/")
+    return visit.go(play.trial_address(begun(visit.web, conduct, standing)))
+
+
+def answer(visit: Visit) -> Response:
+    """Answers to the questions of now; those about a film are also the word that it was watched."""
+    conduct = conduct_here(visit.web)
+    standing = conduct.standing(visit.person)
+    judged = conduct.study.room == JUDGE and standing.stage == TRIAL
+    if standing.stage not in (QUESTIONS, EXIT) and not judged:
+        return visit.go("/study/")
+    asked = conduct.study.asked(conduct.condition(standing)) if judged else conduct.questions(standing)
+    given = {each.name: _given(visit, each) for each in asked}
+    faults = [f"{each.text} – {fault}" for each in asked if (fault := each.fault(given[each.name]))]
+    if faults:
+        return shown(visit, conduct, standing, "; ".join(faults), given)
+    if judged:
+        since = conduct.clock() - max(each.at for each in standing.events)
+        conduct.watched(visit.person, round(since, 1))
+    conduct.answer(visit.person, {name: each for name, each in given.items() if each is not None})
+    return visit.go("/study/")
+
+
+def _given(visit: Visit, question: Question) -> Any:
+    """The answer to a question that came with the form; None if there is none."""
+    text = visit.field(f"answer-{question.name}", MOST_TEXT + 1).strip()
+    if question.kind == "scale" and text.isascii() and text.isdigit() and len(text) < 4:
+        return int(text)
+    return text or None
+
+
+def leave(visit: Visit) -> Response:
+    """A person leaves the study; what was done is kept, and the place goes to somebody else."""
+    conduct_here(visit.web).leave(visit.person)
+    return visit.go("/study/")
+
+
+def film(visit: Visit) -> Response:
+    """The film that is judged now. Its address does not say whose it is."""
+    conduct = conduct_here(visit.web)
+    standing = conduct.standing(visit.person)
+    if standing.stage not in (TRIAL, QUESTIONS) or visit.part("number") != str(standing.number):
+        raise WebError(Code.UNKNOWN_ID, "film", "the film that is to be judged now", visit.part("number")[:20])
+    path = film_path(_folder(visit.web, conduct.study), film_at(visit.web, conduct, standing))
+    if not path.is_file():
+        raise WebError(Code.MISSING_FILE, "film", f"`study prepare {conduct.study.name}`", "no film")
+    return FileResponse(path, media_type="video/webm", headers={"Cache-Control": "private, no-store"})
+
+
+def film_at(web: Web, conduct: Conduct, standing: Standing) -> JudgedFilm:
+    """What is judged in a trial."""
+    planned = conduct.trial(standing)
+    films = read_films(_folder(web, conduct.study) / FILMS)
+    return next(each for each in films if (each.item, each.condition) == (planned.item, planned.condition))
+
+
+def _folder(web: Web, study: Study) -> Path:
+    return inside(web.out, f"{FOLDER}/{study.name}")

@@ -1,0 +1,149 @@
+"""A study's events in the server's store: the same that a file of a simulation has."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Callable
+from pathlib import Path
+
+import orjson
+import sqlalchemy as sql
+from sqlalchemy.exc import IntegrityError
+
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.names import inside
+from hearth.studies.conduct import Conduct
+from hearth.studies.events import PLACES, Event, salted
+from hearth.studies.study import Study
+from hearth.studies.study_file import study_of
+from hearth.studies.study_folder import Collected
+from hearth.web import play  # noqa: F401 - its tables are those of trials' games
+from hearth.web.sessions import forget as forget_session
+from hearth.web.store import Store, default_url
+from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, STUDIES
+
+FOLDER = "studies"
+"""In the server's folder, the folders of studies: their films, and the episodes of the human-like agent."""
+
+
+class StoreLedger:
+    """The events of a study in the store; see `studies.events.Ledger`."""
+
+    def __init__(self, store: Store, study: str) -> None:
+        self.store, self.study = store, study
+
+    def streams(self) -> list[str]:
+        """The people, in the order in which they joined."""
+        query = sql.select(PLACES_TAKEN.c.session).where(PLACES_TAKEN.c.study == self.study)
+        query = query.where(PLACES_TAKEN.c.session.is_not(None)).order_by(PLACES_TAKEN.c.number)
+        return [str(each) for each in self.store.read(lambda connection: connection.execute(query).scalars().all())]
+
+    def read(self, stream: str) -> list[Event]:
+        """The events of a stream."""
+        if stream == PLACES:
+            return self._places()
+        query = sql.select(HAPPENED).where(HAPPENED.c.study == self.study, HAPPENED.c.session == stream)
+        rows = self.store.read(lambda connection: connection.execute(query.order_by(HAPPENED.c.number)).all())
+        return [Event(stream, row.number, row.kind, row.at, orjson.loads(row.data)) for row in rows]
+
+    def _places(self) -> list[Event]:
+        query = sql.select(PLACES_TAKEN).where(PLACES_TAKEN.c.study == self.study).order_by(PLACES_TAKEN.c.number)
+        rows = self.store.read(lambda connection: connection.execute(query).all())
+        return [
+            Event(PLACES, row.number, "joined", row.at, {"person": row.session or "", "place": row.place})
+            for row in rows
+        ]
+
+    def append(self, event: Event) -> bool:
+        """Keep an event; False if another has its number."""
+        try:
+            self.store.write(lambda connection: connection.execute(self._row(event)))
+        except IntegrityError:
+            return False
+        return True
+
+    def _row(self, event: Event) -> sql.Insert:
+        if event.stream == PLACES:
+            taken = {"place": event.data["place"], "session": event.data["person"]}
+            return sql.insert(PLACES_TAKEN).values(study=self.study, number=event.number, at=event.at, **taken)
+        data = orjson.dumps(event.data).decode()
+        row = {"study": self.study, "session": event.stream, "number": event.number, "kind": event.kind}
+        return sql.insert(HAPPENED).values(**row, at=event.at, data=data)
+
+    def forget(self, stream: str) -> None:
+        """Delete a person's session with all that belongs to it, in every room."""
+        forget_session(self.store, stream)
+
+    def secret(self, name: str) -> str:
+        """Derived from the study's salt."""
+        query = sql.select(STUDIES.c.salt).where(STUDIES.c.name == self.study)
+        return salted(str(self.store.read(lambda connection: connection.execute(query).scalar_one())), name)
+
+
+def conducted(store: Store, study: Study, known: Callable[[], Knowledge]) -> Conduct:
+    """A study in the store, begun if it is new.
+
+    Raises:
+        HearthError: CONTRADICTION: it has begun with another file.
+    """
+    query = sql.select(STUDIES.c.text).where(STUDIES.c.name == study.name)
+    begun = store.read(lambda connection: connection.execute(query).scalar())
+    if begun is None:
+        row = {"name": study.name, "text": study.text, "salt": secrets.token_hex(16)}
+        try:
+            store.write(lambda connection: connection.execute(sql.insert(STUDIES).values(row)))
+        except IntegrityError:  # another server began it
+            return conducted(store, study, known)
+    elif begun != study.text:
+        message = f"the study `{study.name}` began with another file, and people take part in it"
+        raise HearthError.of(Code.CONTRADICTION, message, suggestion="give the changed study another name")
+    return Conduct(study, StoreLedger(store, study.name), known)
+
+
+def names_in(source: Path, url: str = "") -> list[str]:
+    """The names of the studies of a store.
+
+    Raises:
+        HearthError: MISSING_FILE: there is none.
+    """
+    store = _store(source, url)
+    query = sql.select(STUDIES.c.name).order_by(STUDIES.c.name)
+    found = store.read(lambda connection: list(connection.execute(query).scalars()))
+    store.close()
+    return found
+
+
+def opened_store(source: Path, url: str, name: str, known: Callable[[], Knowledge]) -> Collected:
+    """A study that people took part in.
+
+    Args:
+        source: the server's folder.
+        url: of the store, if it is not embedded there.
+        name: of the study; may be empty where there is one.
+        known: gives the knowledge.
+
+    Raises:
+        HearthError: MISSING_FILE; UNKNOWN_ID: there is no such study, or several, and none was named.
+    """
+    names = names_in(source, url)
+    if (name or len(names) != 1) and name not in names:
+        message = f"there is no study `{name[:60]}`" if name else f"there are {len(names)} studies"
+        raise HearthError.of(Code.UNKNOWN_ID, message, file=str(source), suggestion=f"--study {' or '.join(names)}")
+    store = _store(source, url)
+    return collected_in(store, name or names[0], source, known)
+
+
+def collected_in(store: Store, name: str, out: Path, known: Callable[[], Knowledge]) -> Collected:
+    """A study of a store, with the folder of its films."""
+    query = sql.select(STUDIES.c.text).where(STUDIES.c.name == name)
+    text = str(store.read(lambda connection: connection.execute(query).scalar_one()))
+    return Collected(conducted(store, study_of(text, f"{name}.yaml"), known), False, inside(out, f"{FOLDER}/{name}"))
+
+
+def _store(source: Path, url: str) -> Store:
+    if not url and not (source / "store.sqlite").is_file():
+        message = "there are neither events of a simulation nor a server's store"
+        raise HearthError.of(Code.MISSING_FILE, message, file=str(source), suggestion="name the folder, or --store URL")
+    return Store(url or default_url(source))

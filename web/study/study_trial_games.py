@@ -1,0 +1,76 @@
+"""The games of a study's trials: begun in the room Play, and recorded in the study when they are over."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import sqlalchemy as sql
+
+from hearth.challenges.result_files import episode_data
+from hearth.studies.conduct import PRACTICE, Conduct, Standing
+from hearth.studies.study_trials import job_of, practice_task
+from hearth.web import play
+from hearth.web.play import game_store
+from hearth.web.play.trials import Trial, trial
+from hearth.web.study.study_schema import TRIAL_GAMES
+from hearth.web.visit import Web
+
+BACK = "/study/"
+"""Where the page of a game leads when it is over."""
+
+
+def begun(web: Web, conduct: Conduct, standing: Standing) -> str:
+    """The game of the trial or practice that a person is at; it is begun if it was not."""
+    chosen = _chosen(web, conduct, standing)
+    key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
+
+    def begin(connection: sql.Connection) -> str:
+        found = connection.execute(_query(key)).scalar()
+        if found is not None:
+            return str(found)
+        game = play.start_trial(connection, standing.person, chosen, BACK)
+        connection.execute(sql.insert(TRIAL_GAMES).values(**key, game=game))
+        return game
+
+    return web.store.write(begin)
+
+
+def _query(key: dict[str, Any]) -> sql.Select[Any]:
+    conditions = [TRIAL_GAMES.c[name] == value for name, value in key.items()]
+    return sql.select(TRIAL_GAMES.c.game).where(*conditions)
+
+
+def _chosen(web: Web, conduct: Conduct, standing: Standing) -> Trial:
+    """The trial as the room Play has it; a practice is alone."""
+    study = conduct.study
+    if standing.stage == PRACTICE:
+        task = practice_task(study, standing.number)
+        return trial(task, web.known, interface=study.interface)
+    job = job_of(study, conduct.trial(standing), conduct.known)
+    lineup, task = job.lineup, job.task
+    plain = trial(task, web.known, interface=study.interface, seed=job.seed)
+    goal = lineup.goal if job.helped else "none"
+    return Trial(task, lineup.helper, goal, job.helper_goal, study.interface, job.seed, plain.partial)
+
+
+def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
+    """Where a person is once the game of the trial, if it is over, is recorded in the study.
+
+    A game that has taken longer than the study allows is ended.
+    """
+    key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
+    game = web.store.read(lambda connection: connection.execute(_query(key)).scalar())
+    if game is None:
+        return standing
+    seconds = time.time() - web.store.read(lambda connection: game_store.stored(connection, game)).created
+    if seconds > conduct.study.limits.minutes * 60:
+        why = {"agent": 0, "code": "TIMED_OUT", "message": "the study's time for a trial was over"}
+        web.store.write(lambda connection: game_store.end(connection, game, why))
+    record = play.recorded_episode(web.store, web.known, game)
+    if record is None:
+        return standing
+    if standing.stage == PRACTICE:
+        return conduct.practised(standing.person)
+    data = {**episode_data(record), "actions": [list(tick) for tick in record.actions]}
+    return conduct.played(standing.person, data, round(seconds, 1))
