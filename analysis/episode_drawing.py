@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Record, replayed, start_of
+from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.homes.drawing import Trail
 from hearth.kb.knowledge import Knowledge
@@ -16,6 +17,26 @@ from hearth.simulation.world.world import World
 
 COLOURS = ("#d1495b", "#2a6fbb")
 """Of the main agent and of the helper."""
+
+
+def episode_of(found: Results, file: str, task: str, episode: int, alone: bool) -> tuple[Task, Record]:
+    """An episode of results, and its task.
+
+    Args:
+        found: the results.
+        file: their name in faults.
+        task: its task's id.
+        episode: its number among those of its task.
+        alone: without the helper, where there are episodes with one.
+
+    Raises:
+        HearthError: UNKNOWN_ID: there is none.
+    """
+    wanted = (task, episode, found.header.helped[-1] and not alone)
+    record = next((each for each in found.records if (each.task, each.seed, each.helped) == wanted), None)
+    if record is None:
+        raise HearthError.of(Code.UNKNOWN_ID, f"no episode {episode} of `{task[:80]}`", file=file)
+    return next(each for each in found.header.suite.tasks if each.id == task), record
 
 
 def ticks_of(task: Task, record: Record, knowledge: Knowledge) -> tuple[World, list[Tick]]:

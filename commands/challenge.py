@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from hearth.commands import output
+from hearth.commands.challenge_film import film
 
 if TYPE_CHECKING:
     from hearth.challenges.result_files import Results
@@ -284,6 +285,9 @@ def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None
     print(f"agents start in {rooms}")
 
 
+app.command()(film)
+
+
 @app.command()
 def show(
     results: Path,
@@ -300,21 +304,14 @@ def show(
     Example:
       python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
     """
-    from hearth.analysis.episode_drawing import narrated, ticks_of, trails
+    from hearth.analysis.episode_drawing import episode_of, narrated, ticks_of, trails
     from hearth.challenges.result_files import read
     from hearth.homes.drawing import write
     from hearth.homes.library import load_layout
     from hearth.kb.loading.load import default
-    from hearth.schemas.diagnostics import HearthError
-    from hearth.schemas.failures import Code
 
-    found = read(results)
-    wanted = (task, episode, found.header.helped[-1] and not alone)
-    record = next((each for each in found.records if (each.task, each.seed, each.helped) == wanted), None)
-    if record is None:
-        raise HearthError.of(Code.UNKNOWN_ID, f"no episode {episode} of `{task}`", file=str(results))
-    known = default()
-    (one,) = (each for each in found.header.suite.tasks if each.id == task)
+    found, known = read(results), default()
+    one, record = episode_of(found, str(results), task, episode, alone)
     start, ticks = ticks_of(one, record, known)
     if out is not None:
         write(load_layout(one.home, known), out, trails(start, ticks))

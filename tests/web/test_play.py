@@ -121,7 +121,7 @@ def test_two_decisions_of_one_tick_are_one(server, person, game):
             assert live.game.tick == 1
 
 
-@pytest.mark.parametrize("helper", ["hp_true", "random", "nopa"])
+@pytest.mark.parametrize("helper", ["hp_true", "random"])
 def test_another_process_goes_on_with_the_same_helper(server, person, helper):
     """Done again from the store, the helper decides as the one that was there all the time."""
     game = begun(server, person, TASK, helper)

@@ -1,0 +1,54 @@
+"""`challenge film`: an episode as a film."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hearth.commands import output
+
+
+def film(
+    results: Path,
+    task: str,
+    episode: int = 0,
+    *,
+    out: Path,
+    alone: bool = False,
+    view: str = "auto",
+    width: int = 320,
+    fps: float = 15.0,
+    as_json: bool = False,
+) -> None:
+    """Film an episode of a task, of agents or of people, with a page that plays it step by step.
+
+    \b
+    Examples:
+      python cli.py challenge film hp.jsonl wah-test-1-0003 --out film
+      python cli.py challenge film episode.jsonl wah-test-1-0003 --view first --out film
+    """
+    from hearth.analysis.episode_drawing import episode_of, ticks_of
+    from hearth.challenges.episode_films import execution_of
+    from hearth.challenges.result_files import read
+    from hearth.homes.library import load_graph
+    from hearth.kb.loading.load import default
+    from hearth.rendering.film.player import page
+    from hearth.rendering.film.snapshots import trajectory_of
+    from hearth.rendering.film.video import record as filmed
+
+    known, found = default(), read(results)
+    one, record = episode_of(found, str(results), task, episode, alone)
+    start, ticks = ticks_of(one, record, known)
+    home = load_graph(one.home, known)
+    trajectory = trajectory_of(execution_of(start, ticks, task), home, known)
+    out.mkdir(parents=True, exist_ok=True)
+    done = filmed(trajectory, home, out, view, size=(width, width * 3 // 4), fps=fps)
+    files = [path.name for path in done.files]
+    (out / "index.html").write_text(page(f"{task}: {one.goal}", files, done.steps), encoding="utf-8")
+    document = {
+        "task": task,
+        "ticks": len(ticks),
+        "frames": done.frames,
+        "files": files,
+        "page": str(out / "index.html"),
+    }
+    output.say(f"{done.frames} pictures of {len(ticks)} ticks; open {document['page']}", document, as_json)

@@ -1,0 +1,242 @@
+"""Games in a Chromium: whole tasks by clicks, keys, two people, what is under the cursor, what is seen."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from web.people import accessibility, watched
+from web.playing import alone
+
+from hearth.kb.loading.load import default
+from hearth.web.play import game_store
+from hearth.web.play.live_games import LiveGame
+from hearth.web.play.trials import published
+from hearth.web.store import Store, default_url
+from hearth.web.third_party_scripts import missing
+
+pytestmark = pytest.mark.tools
+SPLIT = {"wah": "test-1", "owah": "test"}
+WEBGL = ("--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader")
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def page(browser):
+    faults = []
+    made = watched(browser.new_context(viewport={"width": 1400, "height": 1000}).new_page(), faults)
+    yield made
+    assert faults == []
+
+
+def begin(page, server, challenge="wah", task=0, **choices):
+    page.goto(f"{server.address}/")
+    if page.locator('form[action="/begin"]').count():
+        page.locator('form[action="/begin"] button').first.click()
+    page.goto(f"{server.address}/play/")
+    form = page.locator(f'form:has(input[value="{challenge}"])')
+    form.locator("select[name=task]").select_option(str(task))
+    for name, value in choices.items():
+        form.locator(f"select[name={name}]").select_option(value)
+    form.locator("button").click()
+    page.wait_for_selector("#game[data-tick]", timeout=60_000)
+    return page.url.rpartition("/")[2]
+
+
+def click(page, act, tick):
+    """Do by clicks what a record has as `Grab 41`."""
+    action, *ids = (act or "").split(" ")
+    if not ids:
+        page.locator(f'[data-move="{action}"]').click()
+    else:
+        page.locator(f'#game button.thing[data-id="{ids[0]}"]').first.click()
+        page.locator(f'#menu-actions [data-instruction="{act}"]').click()
+    page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
+
+
+@pytest.mark.parametrize("challenge", ["wah", "owah"])
+@pytest.mark.parametrize("number", range(5))
+def test_each_kind_of_task_can_be_finished_by_clicks(serving, page, challenge, number):
+    task = published(challenge, SPLIT[challenge], number)
+    begin(page, serving(), challenge, number)
+    for tick, (act, _) in enumerate(alone(task)):
+        click(page, act, tick)
+    page.wait_for_selector("#banner.good")
+    assert "the goal is reached" in page.locator("#banner").text_content()
+    assert page.locator("#goal li:not(.met)").count() == 0
+
+
+def test_the_ten_tasks_are_of_ten_kinds():
+    kinds = {(name, published(name, split, n).sets) for name, split in SPLIT.items() for n in range(5)}
+    assert len(kinds) == 10
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [360, 1400])
+def test_the_page_is_accessible_and_fits(serving, browser, scheme, width):
+    page = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme).new_page()
+    begin(page, serving(), "owah", 1, helper="nopa")
+    page.locator(".lists button.thing:not([disabled])").nth(8).click()
+    assert accessibility(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_the_keyboard_alone_will_do(serving, page):
+    begin(page, serving())
+    for tick, key in enumerate(("ArrowLeft", "ArrowRight", ".")):
+        page.keyboard.press(key)
+        page.wait_for_selector(f'#game[data-tick="{tick + 1}"]')
+    button = page.locator("#furniture button:not([disabled])").first
+    button.focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.parentElement.id") == "menu-actions"
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.dataset.id") == button.get_attribute("data-id")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")  # one step towards it
+    page.wait_for_selector('#game[data-tick="4"]')
+
+
+def test_a_reloaded_page_goes_on(serving, page):
+    begin(page, serving())
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_selector('#game[data-tick="1"]')
+    page.reload()
+    page.wait_for_selector('#game[data-tick="1"]')
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_selector('#game[data-tick="2"]')
+
+
+def test_the_older_of_two_tabs_says_so(serving, page):
+    begin(page, serving())
+    other = page.context.new_page()
+    other.goto(page.url)
+    other.wait_for_selector("#game[data-tick]")
+    page.keyboard.press("ArrowLeft")
+    page.locator("#banner button").click()
+    page.wait_for_selector("#banner", state="hidden")
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_selector('#game[data-tick="1"]')
+    other.wait_for_selector('#game[data-tick="1"]')
+
+
+def test_two_people_in_two_browsers(serving, browser, page):
+    server = serving()
+    begin(page, server, helper="person")
+    link = page.locator("#banner a").get_attribute("href")
+    other = browser.new_context().new_page()
+    other.goto(f"{server.address}/")
+    other.locator('form[action="/begin"] button').first.click()
+    other.goto(link)
+    other.get_by_role("button", name="Join").click()
+    other.wait_for_selector("#game[data-tick]")
+    page.keyboard.press("ArrowLeft")
+    other.keyboard.press("ArrowRight")
+    for each in (page, other):
+        each.wait_for_selector('#game[data-tick="1"]')
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
+def test_a_program_in_another_language_helps(serving, page):
+    begin(page, serving(), "wah", 0, helper="program")
+    port = page.locator("#banner").text_content().split("port ")[1].split(" ")[0]
+    program = subprocess.Popen(["node", ROOT / "docs/examples/helper.js", port])
+    try:
+        time.sleep(1.5)
+        for tick in range(8):
+            page.keyboard.press("ArrowLeft")
+            page.wait_for_selector(f'#game[data-tick="{tick + 1}"]', timeout=30_000)
+    finally:
+        program.kill()
+    game = page.url.rpartition("/")[2]
+    answer = page.request.get(f"{page.url}/episode.jsonl").text()
+    acts = json.loads(answer.splitlines()[1])["actions"]
+    assert game and any(helper is not None for _, helper in acts)
+
+
+@pytest.fixture
+def drawing(browser):
+    """A page of a browser that draws in 3D, in software."""
+    if "three" in missing():
+        pytest.skip("no three.js: make web")
+    started = browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL))
+    yield started.new_context(viewport={"width": 1400, "height": 1000}).new_page()
+    started.close()
+
+
+def test_what_is_under_the_cursor_is_what_our_renderer_shows(serving, drawing):
+    """Ten views, 200 pixels each; those within two pixels of an edge are left out."""
+    server = serving()
+    chooser, equal = random.Random(1), 0
+    for number in range(2):
+        game = begin(drawing, server, "wah", number, helper="hp_true", interface="visual")
+        drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+        live = _live(server, game)
+        for view in range(5):
+            tick = _walk_about(drawing, chooser) if view else 0
+            ids = _ids(live, tick)
+            rows, columns = np.nonzero(~_edges(ids))
+            points = [(int(columns[n]), int(rows[n])) for n in chooser.sample(range(len(rows)), 200)]
+            pick = "points => points.map(([x, y]) => document.getElementById('game').view.pick(x, y))"
+            equal += sum(
+                ids[y, x] == found for (x, y), found in zip(points, drawing.evaluate(pick, points), strict=True)
+            )
+    assert equal >= 0.99 * 2_000
+
+
+def _live(server, game):
+    store = Store(default_url(server.out))
+    return LiveGame(store, store.read(lambda connection: game_store.stored(connection, game)), default())
+
+
+def _walk_about(page, chooser):
+    tick = int(page.get_attribute("#view", "data-tick"))
+    page.focus("#view")
+    for _ in range(3):
+        page.keyboard.press(chooser.choice("ad"))
+        tick += 1
+        page.wait_for_selector(f'#view[data-tick="{tick}"]', timeout=30_000)
+    page.wait_for_timeout(600)  # until the eyes are there
+    return tick
+
+
+def _ids(live, tick):
+    game = live.sync()
+    assert game.tick == tick
+    found = live.drawn(default(), 0).sensor(game.playing.env, 0, ("instance_ids",))
+    return found["instance_ids"].astype(int)
+
+
+def _edges(ids):
+    near = [np.roll(ids, (dy, dx), (0, 1)) for dy in range(-2, 3) for dx in range(-2, 3)]
+    return np.any([each != ids for each in near], axis=0)
+
+
+def test_a_thing_is_clicked_and_acted_on_in_3d(serving, drawing):
+    begin(drawing, serving(), "wah", 0, interface="visual")
+    drawing.wait_for_selector('#view[data-tick="0"]', timeout=60_000)
+    box = drawing.locator("#view canvas").bounding_box()
+    drawing.mouse.click(box["x"] + box["width"] * 0.3, box["y"] + box["height"] * 0.8)
+    drawing.locator("#menu-actions button", has_text="One step").click()
+    drawing.wait_for_selector('#view[data-tick="1"]', timeout=30_000)
+    drawing.focus("#view")
+    for key in ("ArrowUp", "t", "Enter"):
+        drawing.keyboard.press(key)
+    assert drawing.locator("#menu").is_visible()
+
+
+def test_pictures_of_our_renderer_need_no_webgl(serving, page):
+    begin(page, serving(), "wah", 0, interface="stream")
+    page.wait_for_selector('#view[data-tick="0"]', timeout=90_000)
+    page.wait_for_function("() => document.querySelector('#view img').naturalWidth === 640", timeout=60_000)
+    box = page.locator("#view img").bounding_box()
+    page.mouse.click(box["x"] + box["width"] * 0.3, box["y"] + box["height"] * 0.8)
+    page.locator("#menu-actions button", has_text="One step").click(timeout=60_000)
+    page.wait_for_selector('#view[data-tick="1"]', timeout=60_000)
