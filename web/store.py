@@ -5,7 +5,9 @@ A write is one transaction, isolated from all others and on the disk when it ret
 
 from __future__ import annotations
 
+import contextlib
 import random
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -39,6 +41,10 @@ class Store:
 
     def __init__(self, url: str) -> None:
         self.engine = _engine(url)
+        # SQLite lets one write; who waits here is woken at once, who waits for SQLite tries again later.
+        self._turn: contextlib.AbstractContextManager[Any] = contextlib.nullcontext()
+        if self.engine.dialect.name == "sqlite":
+            self._turn = threading.Lock()
         try:
             self.write(_make_tables)
         except DBAPIError as error:
@@ -57,7 +63,11 @@ class Store:
         """
         for attempt in range(TRIES):
             try:
-                with self.engine.connect().execution_options(hearth_writes=True) as connection, connection.begin():
+                with (
+                    self._turn,
+                    self.engine.connect().execution_options(hearth_writes=True) as connection,
+                    connection.begin(),
+                ):
                     return work(connection)
             except DBAPIError as error:
                 if attempt == TRIES - 1 or not _is_conflict(error):

@@ -111,11 +111,19 @@ class LiveGame:
                 return
             turn = Turn(self.stored.id, tick, self.characters)
             game_store.accept(self.store, session, tab, turn, acts)
-            self._after()
+            if len(acts) == self.characters:
+                game.advance(tuple(act for _, act in sorted(acts.items())))  # as the store now has it
+                self._written_if_over()
+            else:
+                self._after()
 
     def _after(self) -> None:
         """Do what is complete, and write the result once it is over."""
-        game = self.sync()
+        self.sync()
+        self._written_if_over()
+
+    def _written_if_over(self) -> None:
+        game = self.game
         if game.over:
             success, ticks = game.playing.progress[-1].satisfied, game.tick
             self.store.write(lambda connection: game_store.over(connection, self.stored.id, success, ticks))

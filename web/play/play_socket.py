@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from collections.abc import Callable
 from typing import Any
 
 from starlette.concurrency import run_in_threadpool as in_thread
@@ -56,13 +57,12 @@ class Page:
             self.tab = text_field(message, "tab", 60)
             if message.get("again") is not True:  # a page that comes back does not take the session from a newer one
                 await in_thread(sessions.take_tab, self.link.web.store, self.link.session.id, self.tab)
-            await self.link.send(await in_thread(self._begin))
+            async with self._sending:
+                await self.link.send(await in_thread(self._begin))
         elif kind == "act":
-            await in_thread(self._act, int_field(message, "tick", 0, 100_000), _act_of(message))
-            await self.tell()
+            await self.tell(self._act, int_field(message, "tick", 0, 100_000), _act_of(message))
         elif kind == "finish":
-            await in_thread(self._finish)
-            await self.tell()
+            await self.tell(self._finish)
         elif kind in ("picture", "pick") and self.live.game.trial.interface == "stream":
             await self._show(message)
         else:
@@ -105,11 +105,15 @@ class Page:
         """What the first of two people gives the second."""
         return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
 
-    def _act(self, tick: int, text: str | None) -> None:
-        self.live.decide(self.link.session.id, self.tab, self.number, tick, text)
+    def _act(self, tick: int, text: str | None) -> dict[str, Any] | None:
+        with self.live.lock:
+            self.live.decide(self.link.session.id, self.tab, self.number, tick, text)
+            return self._new()
 
-    def _finish(self) -> None:
-        self.live.leave(self.number)
+    def _finish(self) -> dict[str, Any] | None:
+        with self.live.lock:
+            self.live.leave(self.number)
+            return self._new()
 
     def _state(self) -> tuple[Any, ...]:
         game = self.live.game
@@ -119,19 +123,23 @@ class Page:
         return {"decided": list(self.live.decided), "go_on": self.live.stored.go_on}
 
     def _news(self) -> dict[str, Any] | None:
-        """What the page does not know yet; None if it knows everything."""
+        """What others did, if anything."""
         with self.live.lock:
             self.live.sync()
             self.live.hurry()
-            if self._state() == self._told:
-                return None
-            self._told = self._state()
-            return {**self.telling.tick(), **self._waiting(), **self._scene()}
+            return self._new() if self._told else None
 
-    async def tell(self) -> None:
-        """Send what is new."""
+    def _new(self) -> dict[str, Any] | None:
+        """What the page does not know yet; None if it knows everything. Hold the lock."""
+        if self._state() == self._told:
+            return None
+        self._told = self._state()
+        return {**self.telling.tick(), **self._waiting(), **self._scene()}
+
+    async def tell(self, done: Callable[..., dict[str, Any] | None], *given: Any) -> None:
+        """Do something, and send what is new then."""
         async with self._sending:
-            if self.tab and (news := await in_thread(self._news)) is not None:
+            if (news := await in_thread(done, *given)) is not None:
                 await self.link.send(news)
                 if self.live.game.trial.interface == "stream":
                     await self.link.socket.send_bytes(await in_thread(self._picture))
@@ -140,7 +148,7 @@ class Page:
         """Tell what others decided, until cancelled."""
         while True:
             await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
-            await self.tell()
+            await self.tell(self._news)
 
 
 def _act_of(message: dict[str, Any]) -> str | None:
