@@ -4,33 +4,20 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.commands import inputs, output
+from hearth.pipelines.checks.checked_text import Checked, check_text, warnings_of
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.syntax import parse_programs
 from hearth.storage.input_files import placed, read_input
 
 if TYPE_CHECKING:
     from hearth.kb.knowledge import Knowledge
-    from hearth.schemas.program import Program
     from hearth.storage.rejects import Reject
-
-
-@dataclass(frozen=True, slots=True)
-class Checked:
-    """The counts, faults and warnings of one file."""
-
-    file: str
-    programs: int
-    steps: int
-    faults: tuple[Diagnostic, ...]
-    warnings: tuple[Diagnostic, ...] = ()
-    diff: str = ""
 
 
 def check(
@@ -133,37 +120,8 @@ def _check_programs(
         faults += found.faults
         faults += grammar.affordances(found.program, knowledge, found.place) if affordances else ()
         warnings += found.warnings
-        warnings += _warnings(found.program, knowledge, found.place, []) if lint else ()
+        warnings += warnings_of(found.program, knowledge, found.place, []) if lint else ()
     return Checked(name, programs, steps, tuple(faults), tuple(warnings))
-
-
-def check_text(
-    text: str, knowledge: Knowledge, file: str = "", *, affordances: bool = False, lint: bool = False
-) -> Checked:
-    """Find all faults of a text of programs: of syntax, names and arity, ordered by line."""
-    from hearth.kb import grammar
-
-    parsed = parse_programs(text, file)
-    source = text.split("\n")
-    faults = list(parsed.diagnostics)
-    warnings: list[Diagnostic] = []
-    for program in parsed.programs:
-        canonical, found = grammar.check(program, knowledge, file, source)
-        faults += found
-        if affordances:
-            faults += grammar.affordances(canonical, knowledge, file, source)
-        if lint and not found:
-            warnings += _warnings(canonical, knowledge, file, source)
-    faults.sort(key=lambda fault: (fault.line, fault.column))
-    steps = sum(len(program.steps) for program in parsed.programs)
-    return Checked(file, len(parsed.programs), steps, tuple(faults), tuple(warnings))
-
-
-def _warnings(program: Program, knowledge: Knowledge, file: str, source: list[str]) -> list[Diagnostic]:
-    from hearth.pipelines.checks import programs
-
-    found = [*programs.contradictions(program, knowledge), *programs.findings(program, knowledge)]
-    return [programs.diagnostic(each, program, file, source) for each in found]
 
 
 def _json(checked: Checked) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,6 @@ from hearth.commands.inputs import read_given, read_goals, read_knowledge
 
 if TYPE_CHECKING:
     from hearth.grounding.trial import Trial
-    from hearth.schemas.change import Change
     from hearth.schemas.failures import Failure
     from hearth.schemas.program import Program
     from hearth.simulation.goals import Progress
@@ -82,6 +80,7 @@ def _goal_json(progress: Progress) -> dict[str, Any]:
 
 def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool) -> None:
     from hearth.schemas.failures import Failure
+    from hearth.simulation.change_summary import summary
 
     print(f"{program.title or 'A program'}, in {place.name}")
     if isinstance(trial, Failure):
@@ -98,7 +97,7 @@ def _print(program: Program, trial: Trial | Failure, place: Home, explain: bool)
             return
         change = execution.worlds[number + 1].changes(before)
         moves = list(_moved(before, execution.worlds[number + 1]))
-        said = [_summary(change, before)] if change or not moves else []
+        said = [summary(change, before)] if change or not moves else []
         print(f"{number + 1:3}  {_tick(tick)}", *said, *moves, sep="\n     ")
         for pose in poses[number] if poses else ():
             print(f"       {_pose(pose)}")
@@ -145,20 +144,6 @@ def _print_binding(trial: Trial) -> None:
         index = world.home.index.get(ref.node or -1, -1)
         what = f"{world.home.classes[index]} ({ref.node})" if index >= 0 else "nothing"
         print(f"  <{ref.name}> ({ref.instance}) is {what}{', added' if ref.node in added else ''}")
-
-
-def _summary(change: Change, world: World) -> str:
-    def name(node: int) -> str:
-        return f"{world.home.classes[world.home.index[node]]} ({node})"
-
-    parts = [f"{name(node)} is {state}" for node, state in change.set_states]
-    loud = [edge for edge in change.added if edge.relation not in ("CLOSE", "FACING")]
-    parts += [f"{name(e.source)} {e.relation} {name(e.target)}" for e in loud]
-    quiet = Counter(edge.relation for edge in change.added if edge not in loud)
-    parts += [f"{count} more {relation}" for relation, count in quiet.items()]
-    if change.removed:
-        parts.append(f"{output.counted(len(change.removed), 'edge')} removed")
-    return "; ".join(parts) or "no change"
 
 
 def _print_checks(world: World, tick: tuple[Any, ...], rules: Rules) -> None:

@@ -18,6 +18,7 @@ def serve(
     out: Path = Path("collected"),
     store: str = "",
     study: Path | None = None,
+    films: Path | None = None,
     public: str = "",
     kb: Path | None = None,
     as_json: bool = False,
@@ -25,8 +26,8 @@ def serve(
     """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
 
     Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
-    share. Prints the address and the link to the desk, whose token is also in DIR/desk-token. Ctrl-C stops it; what was
-    accepted is kept, also if the server is killed.
+    share. What people made and others accepted is what `build DIR` reads. Prints the address and the link to the desk,
+    whose token is also in DIR/.server/desk-token. Ctrl-C stops it; what was accepted is kept, also if it is killed.
 
     \b
     Examples:
@@ -48,7 +49,7 @@ def serve(
     where = listening(port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     token = desk_token(out)
-    app = application(Store(store or default_url(out)), read_knowledge(kb), out, token, study, _hosts(public))
+    app = application(Store(store or default_url(out)), read_knowledge(kb), out, token, study, films, _hosts(public))
     for name in missing():
         output.note(f"Without {name}, {THIRD_PARTY[name].purpose}: {REMEDY}.")
     desk = f"{public or address}/desk/enter/{token}"

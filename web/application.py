@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hmac
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, front, sessions
-from hearth.web.limits import Rate
+from hearth.web.limits import Rate, usual_rates
 from hearth.web.link import Link, nobody
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
@@ -43,9 +43,10 @@ def application(
     out: Path,
     desk: str,
     study: Path | None = None,
+    films: Path | None = None,
     hosts: Collection[str] = (),
     rooms: Sequence[Room] = ROOMS,
-    rate: Rate | None = None,
+    rates: Mapping[str, Rate] | None = None,
 ) -> ASGIApp:
     """The server.
 
@@ -55,17 +56,19 @@ def application(
         out: the server's folder.
         desk: the desk's token.
         study: the file of the study.
+        films: a dataset whose films people describe.
         hosts: names of a public address by which people come, over https.
         rooms: what it consists of.
-        rate: the limit of each person; the usual one if None.
+        rates: how fast one may ask; as usual if None.
     """
     templates = _templates(rooms)
-    web = Web(store, known, out, templates, sessions.digest(desk), study, secure=bool(hosts))
-    limits = rate or Rate(each_second=40, burst=200)
-    routes: list[BaseRoute] = [_route(web, address, limits) for address in front.ADDRESSES]
+    web = Web(store, known, out, templates, sessions.digest(desk), rates or usual_rates(), study, bool(hosts), films)
+    for room in rooms:
+        room.opens(web)
+    routes: list[BaseRoute] = [_route(web, address) for address in front.ADDRESSES]
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
-            routes += [_route(web, address, limits, prefix) for address in addresses]
+            routes += [_route(web, address, prefix) for address in addresses]
     routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
     routes.append(Mount("/fetched", StaticFiles(directory=FETCHED, check_dir=False)))
     handlers: dict[Any, Any] = {
@@ -82,7 +85,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.globals["rooms"] = [room for room in rooms if room.listed]
+    made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made
 
@@ -91,16 +94,16 @@ def _for_desk(addresses: Sequence[Address]) -> list[Address]:
     return [Address(each.method, each.path, each.handler, Who.RESEARCHER, each.most) for each in addresses]
 
 
-def _route(web: Web, address: Address, rate: Rate, prefix: str = "") -> BaseRoute:
+def _route(web: Web, address: Address, prefix: str = "") -> BaseRoute:
     if address.method == "SOCKET":
         return WebSocketRoute(prefix + address.path, partial(_connect, web, address))
-    return Route(prefix + address.path, _endpoint(web, address, rate), methods=[address.method])
+    return Route(prefix + address.path, _endpoint(web, address), methods=[address.method])
 
 
-def _endpoint(web: Web, address: Address, rate: Rate) -> Callable[[Request], Any]:
+def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
     async def endpoint(request: Request) -> Response:
         sender = request.cookies.get(sessions.COOKIE) or (request.client.host if request.client else "")
-        rate.check(sender[:100], request.url.path)
+        web.rates["request"].check(sender[:100], request.url.path)
         body = await _body(request, address.most)
         return await run_in_threadpool(_answer, web, address, request, body)
 

@@ -6,6 +6,8 @@ import os
 import secrets
 from pathlib import Path
 
+from hearth.web.store import private
+
 COOKIE = "hearth_desk"
 """The cookie of who has entered the desk."""
 
@@ -21,8 +23,7 @@ def desk_token(out: Path) -> str:
     given = os.environ.get(VARIABLE, "")
     if len(given) >= SHORTEST:
         return given
-    file = out / "desk-token"
-    out.mkdir(parents=True, exist_ok=True)
+    file = private(out) / "desk-token"
     try:
         descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:

@@ -8,16 +8,12 @@ from starlette.responses import Response
 
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
-from hearth.web.limits import Rate
 from hearth.web.room import Who, get, post
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
 
 YEAR = 365 * 24 * 3600
-
-_BEGINNINGS = Rate(each_second=1, burst=30)
-_TRIES = Rate(each_second=0.5, burst=10)
 
 
 def _start(visit: Visit) -> Response:
@@ -28,7 +24,7 @@ def _start(visit: Visit) -> Response:
 def _begin(visit: Visit) -> Response:
     """Start a session, unless there is one, and go on to where the person wanted to go."""
     if visit.session is None:
-        _BEGINNINGS.check(_sender(visit), "/begin")
+        visit.web.rates["begin"].check(_sender(visit), "/begin")
     session = visit.session or sessions.start(visit.web.store)
     wanted = visit.field("to", 300)
     return _entered(visit, visit.go(_own_address(wanted)), session.token)
@@ -36,7 +32,7 @@ def _begin(visit: Visit) -> Response:
 
 def _come(visit: Visit) -> Response:
     """Return to a session by its link, from another browser or after the cookie has gone."""
-    _TRIES.check(_sender(visit), "/come")
+    visit.web.rates["token"].check(_sender(visit), "/come")
     session = sessions.find(visit.web.store, visit.part("token"))
     if session is None:
         raise WebError(Code.NO_SESSION, "link", "the link of a session", "an unknown one")
@@ -63,7 +59,7 @@ def _door(visit: Visit) -> Response:
 
 def _enter(visit: Visit) -> Response:
     """Enter the desk by its token, from the form or from the link that `serve` prints."""
-    _TRIES.check(_sender(visit), "/desk/enter")
+    visit.web.rates["token"].check(_sender(visit), "/desk/enter")
     token = visit.request.path_params.get("token") or visit.field("token", 200)
     if not hmac.compare_digest(sessions.digest(token), visit.web.desk):
         return visit.page("desk_door.html", 403, wrong=True)

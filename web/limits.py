@@ -15,6 +15,10 @@ MOST_BODY = 256 * 1024
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 
+RATES = {"request": (40, 200), "begin": (1, 30), "token": (0.5, 10), "run": (1, 5)}
+"""Requests a second and at once: all of a session; new sessions and tokens that are tried, of an address; runs of a
+program, of a session."""
+
 MOST_SENDERS = 10_000
 """Senders that are remembered; the one that was silent longest is forgotten first."""
 
@@ -50,3 +54,8 @@ class Rate:
         """
         if not self.allows(sender):
             raise WebError(Code.TOO_FAST, place, f"at most {self.each_second:g} a second", "more")
+
+
+def usual_rates() -> dict[str, Rate]:
+    """The limits of `RATES`, with nothing counted yet."""
+    return {name: Rate(each_second, burst) for name, (each_second, burst) in RATES.items()}

@@ -15,7 +15,7 @@ from enum import Enum
 from typing import Any
 
 from hearth.web.limits import MOST_BODY
-from hearth.web.visit import Handler
+from hearth.web.visit import Handler, Web
 
 
 class Who(Enum):
@@ -60,6 +60,10 @@ def socket(path: str, handler: Callable[[Any], Awaitable[None]]) -> Address:
     return Address("SOCKET", path, handler)
 
 
+def _nothing(web: Web) -> None:
+    """What most rooms do when a server starts."""
+
+
 @dataclass(frozen=True, slots=True)
 class Room:
     """A room.
@@ -72,6 +76,7 @@ class Room:
         desk: what researchers may ask for, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
+        opens: called once when a server starts, such as to write files that follow from the store.
     """
 
     name: str
@@ -81,3 +86,4 @@ class Room:
     desk: tuple[Address, ...] = ()
     needs: tuple[str, ...] = ()
     listed: bool = True
+    opens: Callable[[Web], None] = _nothing

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from hearth.web import play, study
+from hearth.web.annotate.annotate_room import ROOM as ANNOTATE
 from hearth.web.room import Room
 
-ROOMS: tuple[Room, ...] = (play.ROOM, study.ROOM)
+ROOMS: tuple[Room, ...] = (ANNOTATE, play.ROOM, study.ROOM)
 """Every room. Its tables are made because its modules, which declare them in METADATA, are imported here."""

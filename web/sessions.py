@@ -48,7 +48,7 @@ def find(store: Store, token: str) -> Session | None:
     if not token or len(token) > 100:
         return None
     query = sql.select(SESSIONS.c.id).where(SESSIONS.c.token == digest(token))
-    found = store.read(lambda connection: connection.execute(query).scalar())
+    found = store.scalar(query)
     return Session(found, token) if found else None
 
 

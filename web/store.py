@@ -22,6 +22,9 @@ from hearth.web.web_tables import METADATA
 
 T = TypeVar("T")
 
+Row = dict[str, Any]
+"""A row by the names of its columns."""
+
 TRIES = 40
 """Attempts of a transaction that conflicts with another, about ten seconds in all."""
 
@@ -56,6 +59,18 @@ class Store:
         with self.engine.connect() as connection, connection.begin():
             return work(connection)
 
+    def rows(self, query: sql.Select[Any]) -> list[Row]:
+        """The rows of a query by the names of its columns."""
+        return self.read(lambda connection: [dict(row) for row in connection.execute(query).mappings()])
+
+    def row(self, query: sql.Select[Any]) -> Row | None:
+        """The first row of a query, or None."""
+        return next(iter(self.rows(query)), None)
+
+    def scalar(self, query: sql.Select[Any]) -> Any:
+        """The first value of the first row of a query, or None."""
+        return self.read(lambda connection: connection.execute(query).scalar())
+
     def write(self, work: Callable[[sql.Connection], T]) -> T:
         """Run a function as one transaction; what it returns, once that is on the disk.
 
@@ -82,8 +97,14 @@ class Store:
 
 def default_url(out: Path) -> str:
     """The address of the embedded store of a folder, which is made."""
-    out.mkdir(parents=True, exist_ok=True)
-    return f"sqlite:///{(out / 'store.sqlite').resolve()}"
+    return f"sqlite:///{(private(out) / 'store.sqlite').resolve()}"
+
+
+def private(out: Path) -> Path:
+    """The folder within a server's own for what is no answer; `build` does not look into hidden folders."""
+    folder = out / ".server"
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    return folder
 
 
 def _engine(given: str) -> sql.Engine:

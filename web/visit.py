@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
+from hearth.web.limits import Rate
 from hearth.web.messages import json_object
 from hearth.web.sessions import Session
 from hearth.web.store import Store
@@ -27,11 +28,13 @@ class Web:
     Attributes:
         store: the database.
         known: the knowledge that programs are checked against.
-        out: the server's folder, where rooms write files.
+        out: the server's folder: what rooms write there is what `build` reads, but for hidden folders.
         templates: the pages.
         study: the file of the study, or None.
         desk: the digest of the desk's token.
         secure: whether people come by https.
+        rates: how fast one may ask, by the names of `RATES`.
+        films: a dataset whose films people describe, or None.
     """
 
     store: Store
@@ -39,8 +42,10 @@ class Web:
     out: Path
     templates: jinja2.Environment
     desk: str
+    rates: Mapping[str, Rate]
     study: Path | None = None
     secure: bool = False
+    films: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,13 @@
 """Sketches: the steps of a program that somebody kept as its gist (thesis 4.2), in the release's annotation file.
 
-`prefix` is the name of a program of a release, or the id of one that was written (`written:P...`).
+`prefix` is the name of a program of a release, or the id of one that was written
+(`written:P...`) or that a crowd gave (`crowd:P...`).
 """
 
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from hearth.pipelines.readers import release
+from hearth.pipelines.readers import crowd, release
 from hearth.pipelines.readers.crowd import WRITTEN
 from hearth.pipelines.readers.elements import entries
 from hearth.pipelines.readers.item import Item, record, refused
@@ -52,5 +53,6 @@ def read(item: Item) -> IngestedRow | Reject:
         return Reject.of(Code.BAD_JSON, message, file=item.place, suggestion="it needs title, descr, prog and prefix")
     if not flags:
         return Reject.of(Code.EMPTY, "a sketch without steps", file=item.place)
-    described = program_id if program_id.startswith(f"{WRITTEN}:") else f"{release.NAME}:{program_id}"
+    own = program_id.startswith((f"{WRITTEN}:", f"{crowd.NAME}:"))
+    described = program_id if own else f"{release.NAME}:{program_id}"
     return record(item, "sketch", title, description, description_id=described, text=text, line=0, keep=flags)

@@ -13,7 +13,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hearth.web.application import application
-from hearth.web.limits import Rate
+from hearth.web.limits import RATES, Rate
 from hearth.web.store import Store, default_url
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,7 +28,7 @@ class Server:
 
     def __init__(self, out: Path, knowledge, url: str = "", **options) -> None:
         self.out, self.store = out, Store(url or default_url(out))
-        options = {"rate": Rate(10_000, 10_000), **options}
+        options = {"rates": dict.fromkeys(RATES, Rate(10_000, 10_000)), **options}
         self.app = application(self.store, knowledge, out, DESK, **options)
 
     def client(self, **options) -> TestClient:

@@ -1,0 +1,115 @@
+"""Programs in the store: found for the session that may see them, changed by whoever read their last version."""
+
+from __future__ import annotations
+
+import secrets
+import time
+
+import sqlalchemy as sql
+
+from hearth.schemas.failures import Code
+from hearth.web.annotate.annotate_tables import ACCEPTED, DRAFT, PROGRAMS, RETURNED, SUBMITTED, TEXTS
+from hearth.web.annotate.draft import Draft
+from hearth.web.store import Row, Store
+from hearth.web.web_errors import WebError
+
+CHANGED = (DRAFT, RETURNED)
+"""States in which its author may change a program."""
+
+
+def text_of(store: Store, text: str) -> Row:
+    """A description by its id.
+
+    Raises:
+        WebError: UNKNOWN_ID.
+    """
+    query = sql.select(TEXTS).where(TEXTS.c.id == text)
+    found = store.row(query)
+    if found is None:
+        raise WebError(Code.UNKNOWN_ID, "task", "a description of this server", text[:40])
+    return found
+
+
+def own_program(store: Store, person: str, text: str) -> Row | None:
+    """The program that a person has begun for a description."""
+    query = sql.select(PROGRAMS).where(PROGRAMS.c.session == person, PROGRAMS.c.text == text)
+    return store.row(query)
+
+
+def begun(store: Store, person: str, text: str) -> Row:
+    """The same, begun with an empty scene if there is none."""
+    found = own_program(store, person, text)
+    if found is not None:
+        return found
+    row: Row = {
+        "id": f"P{secrets.token_hex(5).upper()}",
+        "session": person,
+        "text": text,
+        "draft": Draft({}, {}).dumped(),
+        "version": 1,
+        "state": DRAFT,
+        "note": "",
+        "created": time.time(),
+    }
+    store.write(lambda connection: connection.execute(sql.insert(PROGRAMS).values(row)))
+    return row
+
+
+def save(store: Store, person: str, text: str, version: int, draft: Draft, state: str | None = None) -> int:
+    """Replace the last version of a person's own program; the number of the new one.
+
+    Raises:
+        WebError: LOCKED, if another tab has saved since, or the program is with a reviewer.
+    """
+    own = (PROGRAMS.c.session == person, PROGRAMS.c.text == text)
+    values = {"draft": draft.dumped(), "version": version + 1, **({"state": state} if state else {})}
+    query = sql.update(PROGRAMS).where(*own, PROGRAMS.c.version == version, PROGRAMS.c.state.in_(CHANGED))
+    if not store.write(lambda connection: connection.execute(query.values(values)).rowcount):
+        row = own_program(store, person, text)
+        actual = f"version {version}, after {row['version']} ({row['state']})" if row else "no program"
+        raise WebError(Code.LOCKED, "version", "the version that was saved last, in your hands", actual)
+    return version + 1
+
+
+def tasks(store: Store, person: str, most: int = 100) -> list[Row]:
+    """Descriptions that a person may write a program for, with the state of the person's own and the number of others'.
+
+    Those without any program come first, then the oldest.
+    """
+    mine = sql.and_(PROGRAMS.c.text == TEXTS.c.id, PROGRAMS.c.session == person)
+    given = PROGRAMS.alias("given")
+    of_others = (given.c.text == TEXTS.c.id, given.c.session != person, given.c.state != DRAFT)
+    others = sql.select(sql.func.count()).select_from(given).where(*of_others).correlate(TEXTS).scalar_subquery()
+    query = (
+        sql.select(TEXTS.c.id, TEXTS.c.scene, TEXTS.c.title, PROGRAMS.c.state, PROGRAMS.c.note, others.label("others"))
+        .select_from(TEXTS.outerjoin(PROGRAMS, mine))
+        .order_by(PROGRAMS.c.state.is_(None), others, TEXTS.c.created)
+        .limit(most)
+    )
+    return store.rows(query)
+
+
+def submitted(store: Store, person: str, most: int = 100) -> list[Row]:
+    """Programs of others that wait for a second person."""
+    joined = PROGRAMS.join(TEXTS, PROGRAMS.c.text == TEXTS.c.id)
+    query = (
+        sql.select(PROGRAMS.c.id, TEXTS.c.title, TEXTS.c.scene)
+        .select_from(joined)
+        .where(PROGRAMS.c.state == SUBMITTED, PROGRAMS.c.session != person)
+        .order_by(PROGRAMS.c.created)
+        .limit(most)
+    )
+    return store.rows(query)
+
+
+def accepted(store: Store, person: str = "") -> list[Row]:
+    """Accepted programs with their descriptions, oldest first; of all but one person."""
+    joined = PROGRAMS.join(TEXTS, PROGRAMS.c.text == TEXTS.c.id)
+    columns = (TEXTS.c.title, TEXTS.c.description, TEXTS.c.scene, TEXTS.c.session.label("writer"))
+    query = (
+        sql.select(PROGRAMS, *columns)
+        .select_from(joined)
+        .where(PROGRAMS.c.state == ACCEPTED, PROGRAMS.c.session != person)
+        .order_by(PROGRAMS.c.created, PROGRAMS.c.id)
+    )
+    return store.rows(query)

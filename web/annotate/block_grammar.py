@@ -1,0 +1,71 @@
+"""Blocks from the action grammar: each action with its slots, each declared thing with the slots that take it."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.records import Action
+from hearth.web.annotate.draft import Draft
+
+DRAWERS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("Go", ("goes",)),
+    ("Sit, lie, stand", ("rests", "rises", "gets_up", "lies")),
+    ("Take and put", ("takes", "puts", "frees_hand")),
+    ("Open and switch", ("operates",)),
+    ("Dress", ("dresses",)),
+    ("Look", ("looks", "idle")),
+    ("By hand", ("hand",)),
+)
+"""The drawers of actions and their groups; the first that fits has the action."""
+
+OTHER = "Other"
+
+
+def drawer(action: Action, known: Knowledge) -> str:
+    """The drawer in which an action's block is found."""
+    groups = ((name, each) for name, members in DRAWERS for each in members)
+    return next((name for name, each in groups if action.name in known.group(each)), OTHER)
+
+
+@lru_cache(maxsize=4)
+def actions(known: Knowledge) -> tuple[dict[str, Any], ...]:
+    """Every action as a block: its name, drawer, words with `{0}` for slots, the kind of each slot, whether it runs."""
+    return tuple(
+        {
+            "name": action.name,
+            "drawer": drawer(action, known),
+            "words": action.template,
+            "slots": [f"{action.name} {slot}" for slot in range(action.arity)],
+            "roles": [role.replace("_", " ") for role in action.roles],
+            "runs": action.executed,
+        }
+        for action in sorted(known.actions.values(), key=lambda each: (not each.executed, each.id))
+    )
+
+
+def things(draft: Draft, known: Knowledge) -> list[dict[str, Any]]:
+    """Every declared thing: its name, instance, words, and the kinds of slots that take it."""
+    fits = {name: _slots(name, known) for name in (*draft.rooms, *draft.props)}
+    several = {name: count > 1 for name, count in (*draft.rooms.items(), *draft.props.items())}
+    return [
+        {
+            "name": ref.name,
+            "instance": ref.instance,
+            "words": ref.name.replace("_", " ") + (f" {ref.instance}" if several[ref.name] else ""),
+            "room": ref.name in draft.rooms,
+            "fits": fits[ref.name],
+        }
+        for ref in draft.things()
+    ]
+
+
+@lru_cache(maxsize=4_096)
+def _slots(name: str, known: Knowledge) -> list[str]:
+    return [
+        f"{action.name} {slot}"
+        for action in known.actions.values()
+        for slot in range(action.arity)
+        if known.affords(action.name, slot, name)
+    ]

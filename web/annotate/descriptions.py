@@ -1,0 +1,84 @@
+"""Stage one: a title and a description of an activity that begins in a room that was drawn (thesis 3.3)."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from typing import Any
+
+import sqlalchemy as sql
+from starlette.responses import Response
+
+from hearth.pipelines.crowd.topics import no_activity
+from hearth.schemas.rng import rng
+from hearth.web.annotate.annotate_tables import TEXTS
+from hearth.web.visit import Visit
+
+SCENES = (
+    "living room", "kitchen", "dining room", "bedroom", "kids bedroom", "bathroom", "entrance hall", "home office",
+)  # fmt: skip
+"""The eight rooms (thesis 3.3)."""
+
+FEWEST_WORDS, MOST_TITLE, MOST_DESCRIPTION = 10, 80, 2_000
+
+EXAMPLES = (
+    ("living room", "Watch TV",
+     "Walk to the living room and sit down on the sofa. Pick up the remote control from the table and switch on the "
+     "television. Then watch it until the film is over."),
+    ("kitchen", "Make tea",
+     "Fill the kettle with water and put it on. Take a cup out of the cupboard and put a tea bag in. When the water "
+     "boils, pour it into the cup."),
+)  # fmt: skip
+
+
+def describe(visit: Visit) -> Response:
+    """The page of stage one."""
+    thanks = visit.fields.get("thanks") == "yes"
+    return _page(visit, title="", description="", wishes=(), thanks=thanks)
+
+
+def submit_description(visit: Visit) -> Response:
+    """Store a description, or ask politely for what it lacks."""
+    title, description = visit.field("title").strip(), visit.field("description").strip()
+    wishes = lacks(title, description)
+    if wishes:
+        return _page(visit, 400, title=title, description=description, wishes=wishes, thanks=False)
+    row = {
+        "id": f"D{secrets.token_hex(5).upper()}",
+        "session": visit.person,
+        "scene": _scene(visit),
+        "title": " ".join(title.split()),
+        "description": description,
+        "created": time.time(),
+    }
+    visit.web.store.write(lambda connection: connection.execute(sql.insert(TEXTS).values(row)))
+    return visit.go("/annotate/describe?thanks=yes")
+
+
+def lacks(title: str, description: str) -> tuple[str, ...]:
+    """What a description lacks, as polite sentences; none if it is good enough to be read by others."""
+    found = []
+    if sum(letter.isalpha() for letter in title) < 3 or len(title) > MOST_TITLE or len(title.split()) > 10:
+        found.append("Please give the activity a short title of its own, such as “Make tea”.")
+    words = len(description.split())
+    if words < FEWEST_WORDS:
+        found.append(
+            f"Please write a little more: {words} words so far, and others need at least {FEWEST_WORDS} to understand "
+            "what is done. Two or three sentences are usually right."
+        )
+    if len(description) > MOST_DESCRIPTION:
+        found.append(f"Please shorten it to {MOST_DESCRIPTION:,} characters; it has {len(description):,}.")
+    if not found and (other := no_activity(f"{title}. {description}")):
+        found.append(f"This reads like {other[0]}. Please describe something that a person does at home.")
+    return tuple(found)
+
+
+def _scene(visit: Visit) -> str:
+    """The room that is drawn for a person's next description."""
+    query = sql.select(sql.func.count()).select_from(TEXTS).where(TEXTS.c.session == visit.person)
+    count = visit.web.store.scalar(query)
+    return rng(0, "annotate", visit.person, count).choice(SCENES)
+
+
+def _page(visit: Visit, status: int = 200, **values: Any) -> Response:
+    return visit.page("annotate/describe.html", status, scene=_scene(visit), examples=EXAMPLES, **values)

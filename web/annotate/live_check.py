@@ -1,0 +1,82 @@
+"""The check of a program while it is written: the code of `check`, and what `build` would refuse."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.checks import programs, special
+from hearth.pipelines.checks.checked_text import check_program
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
+from hearth.schemas.syntax import parse_program
+from hearth.web.annotate.draft import SPECIAL, Draft
+
+REFUSED = frozenset({Code.CONTRADICTION})
+"""Codes that `check` warns of and `build` refuses."""
+
+
+class Found(NamedTuple):
+    """A fault or a warning of a step.
+
+    Attributes:
+        step: its number from 0; -1 if the program as a whole is meant.
+        fault: whether a program with it can't be submitted.
+        code: the kind.
+        message: for people.
+        remedy: what to do.
+    """
+
+    step: int
+    fault: bool
+    code: str
+    message: str
+    remedy: str
+
+
+def check_draft(draft: Draft, title: str, description: str, known: Knowledge) -> list[Found]:
+    """All faults and warnings of a draft, ordered by step."""
+    lines = draft.lines()
+    expanded = special.expand("\n".join(lines), 0)
+    pairs = zip(expanded.text.split("\n"), expanded.lines, strict=True)
+    kept = [(line, number) for line, number in pairs if not line.startswith(f"[{SPECIAL}]")]
+    source, numbers = [line for line, _ in kept], [number for _, number in kept]
+    program, syntax = parse_program("\n".join(source) + "\n")
+    program = replace(program, title=title, description=description)
+    faults, warnings = check_program(program, known, "", source, affordances=True, lint=True)
+    found = [_found(each, numbers, fault=True) for each in (*syntax, *faults)]
+    found += [_found(each, numbers, fault=each.code in REFUSED) for each in warnings]
+    if not faults:
+        scene = {"rooms": _rows(draft.rooms), "props": _rows(draft.props)}
+        undeclared = programs.undeclared(program, scene, known)
+        found += [Found(-1, False, str(each.code), each.message, each.remedy) for each in undeclared]
+    return sorted((*found, *_unfinished(draft, dict(expanded.replaced))), key=lambda each: (each.step, not each.fault))
+
+
+def _rows(quantities: Mapping[str, int]) -> list[dict[str, Any]]:
+    return [{"name": name, "quantity": quantity} for name, quantity in quantities.items()]
+
+
+def _found(each: Diagnostic, numbers: Sequence[int], *, fault: bool) -> Found:
+    step = numbers[each.line - 1] - 1 if 0 < each.line <= len(numbers) else -1
+    return Found(step, fault, str(each.code), each.message, each.suggestion)
+
+
+def _unfinished(draft: Draft, replaced: Mapping[int, str]) -> list[Found]:
+    """Special blocks: one without text is a fault; one that no steps are known for is waited with."""
+    if not draft.blocks:
+        return [Found(-1, True, str(Code.EMPTY), "the program has no steps", "put a block into it")]
+    found = []
+    for number, block in enumerate(draft.blocks):
+        if block.action != SPECIAL:
+            continue
+        if not block.text:
+            found.append(Found(number, True, str(Code.EMPTY), "a special block without text", "write what is done"))
+        elif number + 1 not in replaced:
+            message = "there is no block for this yet: a researcher reads it, and it does not run"
+            found.append(
+                Found(number, False, str(Code.SPECIAL_BLOCK), message, "use other blocks if they say the same")
+            )
+    return found

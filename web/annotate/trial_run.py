@@ -1,0 +1,91 @@
+"""A program run in a home before it is submitted: what each step changes, and where the character is."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from hearth.datasets.report.drawn_plans import draw
+from hearth.grounding.trial import Trial, attempt
+from hearth.homes import library
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.program import Program
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.change_summary import summary
+from hearth.simulation.motion.base_pose import hand_and_base_poses
+from hearth.simulation.motion.positions import placed
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose
+from hearth.web.annotate.draft import SPECIAL, Draft
+from hearth.web.web_errors import WebError
+
+
+def homes() -> tuple[str, ...]:
+    """The names of our homes."""
+    return library.names()
+
+
+@lru_cache(maxsize=8)
+def home_of(name: str, known: Knowledge) -> Home:
+    """A home of ours.
+
+    Raises:
+        WebError: UNKNOWN_HOME.
+    """
+    if name not in homes():
+        raise WebError(Code.UNKNOWN_HOME, "home", ", ".join(homes()), name[:40])
+    return Home.from_graph(library.load_graph(name, known), name, known)
+
+
+@lru_cache(maxsize=8)
+def plan_of(name: str, known: Knowledge) -> str:
+    """The floor plan of a home as SVG, in metres; z points up the page."""
+    return draw(library.load_graph(name, known).nodes)
+
+
+def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
+    """Run a draft in a home, special blocks left out.
+
+    Args:
+        draft: without faults.
+        title: of the activity, from which the random choices of the environment follow.
+        home: the name of the home.
+        known: the knowledge.
+
+    Returns:
+        `home`, `ran` (whether all steps ran), `why` and `step` (from 0) of the failure, and `ticks`: for each step done
+        its number, line, changes in words, and where the character is: (x, z) in metres, yaw in degrees.
+    """
+    numbers = [number for number, block in enumerate(draft.blocks) if block.action != SPECIAL]
+    lines = [draft.blocks[number].line() for number in numbers]
+    program, _ = parse_program("\n".join(lines) + "\n")
+    trial = attempt(Program(title, "", program.steps), home_of(home, known))
+    if isinstance(trial, Failure):
+        at = numbers[trial.tick] if trial.tick < len(numbers) else -1
+        return {"home": home, "ran": False, "why": trial.message(), "step": at, "ticks": [], "start": None}
+    return {"home": home, **_reported(trial, numbers, lines)}
+
+
+def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, Any]:
+    worlds, failure = trial.execution.worlds, trial.execution.failure
+    poses = [tick[0].pose if tick else None for tick in hand_and_base_poses(trial.execution)]
+    ticks = [
+        {
+            "step": numbers[tick],
+            "line": lines[tick],
+            "changes": summary(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
+            "at": _where(poses[tick] if tick < len(poses) else None),
+        }
+        for tick in range(len(worlds) - 1)
+    ]
+    why = failure.message() if failure else ""
+    at = numbers[failure.tick] if failure and failure.tick < len(numbers) else -1
+    start = _where(placed(worlds[0]).agents[0].pose)
+    added = trial.environment is not None
+    return {"ran": not failure, "why": why, "step": at, "ticks": ticks, "start": start, "added": added}
+
+
+def _where(pose: Pose | None) -> list[float] | None:
+    """Where the character stands, in metres and degrees; None in homes without geometry."""
+    return None if pose is None else [round(pose.x, 2), round(pose.z, 2), round(pose.yaw)]

@@ -1,0 +1,295 @@
+// The page on which a program is written: one list of steps, shown as blocks and as a list with a form.
+import { mount } from "./blocks.js";
+import { player } from "./player.js";
+
+const SAVE_AFTER = 250;
+const byId = (id) => document.getElementById(id);
+const composer = byId("composer");
+const base = composer.dataset.base;
+
+const model = { version: 0, steps: [], actions: new Map(), things: [], found: [] };
+let blocks = null;
+let timer = 0;
+let saving = Promise.resolve();
+
+function element(name, text, className) {
+  const made = document.createElement(name);
+  if (text !== undefined && text !== null) made.textContent = text;
+  if (className) made.className = className;
+  return made;
+}
+
+async function ask(path, body) {
+  const options = body === undefined ? {} : {
+    method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body),
+  };
+  const answer = await fetch(base + path, options);
+  const value = await answer.json();
+  if (!answer.ok) {
+    const { code, place, expected, actual } = value.error;
+    throw Object.assign(new Error(`${place}: ${actual || code}; expected ${expected}`), { value });
+  }
+  return value;
+}
+
+const words = (ref) => {
+  const thing = ref && model.things.find((each) => each.name === ref[0] && each.instance === ref[1]);
+  return thing ? thing.words : "…";
+};
+
+function phrase(step) {
+  if ("special" in step) return `Special: ${step.special || "…"}`;
+  return model.actions.get(step.action).words.replace(/\{(\d)\}/g, (_, slot) => words(step.things[Number(slot)]));
+}
+
+const fitting = (slot) => model.things.filter((thing) => thing.fits.includes(slot));
+
+function say(text, bad) {
+  byId("state").textContent = text;
+  byId("state").className = bad ? "fault" : "small";
+}
+
+// ------------------------------------------------------------------ changes
+
+function changed(steps, from) {
+  model.steps = steps;
+  model.found = [];
+  draw();
+  if (blocks && from !== "blocks") blocks.show(steps);
+  clearTimeout(timer);
+  say("Saving …");
+  timer = setTimeout(save, SAVE_AFTER);
+}
+
+function save() {
+  clearTimeout(timer);
+  timer = 0;
+  saving = saving.then(async () => {
+    const steps = model.steps;
+    try {
+      const { version, found } = await ask("/save", { version: model.version, steps });
+      model.version = version;
+      if (steps === model.steps) checked(found);
+    } catch (error) {
+      say(`Not saved. ${error.message}. Reload the page to see what was saved last.`, true);
+    }
+  });
+  return saving;
+}
+
+function checked(found) {
+  model.found = found;
+  const faults = found.filter((each) => each.fault).length;
+  const mended = composer.dataset.mode === "mend";
+  const kept = mended ? "Checked; nothing is kept before you accept." : "Saved.";
+  say(faults ? `${kept} Faults: ${faults}.` : `${kept} No faults.`);
+  draw();
+  if (blocks) blocks.mark(found);
+}
+
+// ------------------------------------------------------------------ the list
+
+function mark(each) {
+  const shown = element("span", each.remedy ? `${each.message}: ${each.remedy}` : each.message, each.fault ? "fault" : "note");
+  shown.dataset.code = each.code;
+  return shown;
+}
+
+function tool(text, label, work, disabled) {
+  const button = element("button", text, "plain tool");
+  button.type = "button";
+  button.ariaLabel = label;
+  button.disabled = Boolean(disabled);
+  button.addEventListener("click", work);
+  return button;
+}
+
+function moved(from, to) {
+  const steps = [...model.steps];
+  steps.splice(to, 0, ...steps.splice(from, 1));
+  changed(steps, "list");
+  focusOn(to, from < to ? 1 : 0);
+}
+
+function removed(number) {
+  changed(model.steps.filter((_, other) => other !== number), "list");
+  if (model.steps.length) focusOn(Math.min(number, model.steps.length - 1), 2);
+  else byId("action").focus();
+}
+
+function focusOn(number, which) {
+  const tools = byId("steps").children[number].querySelectorAll("button");
+  const wanted = tools[which].disabled ? tools[1 - which] ?? tools[which] : tools[which];
+  wanted.focus();
+}
+
+function row(step, number) {
+  const line = element("li");
+  const text = phrase(step);
+  line.append(element("span", text, "words"));
+  const tools = element("span", null, "tools");
+  tools.append(
+    tool("↑", `Move step ${number + 1} up: ${text}`, () => moved(number, number - 1), number === 0),
+    tool("↓", `Move step ${number + 1} down: ${text}`, () => moved(number, number + 1), number === model.steps.length - 1),
+    tool("×", `Take step ${number + 1} out: ${text}`, () => removed(number)),
+  );
+  line.append(tools, ...model.found.filter((each) => each.step === number).map(mark));
+  line.classList.toggle("faulty", model.found.some((each) => each.step === number && each.fault));
+  return line;
+}
+
+function draw() {
+  const focused = document.activeElement?.getAttribute("aria-label");
+  byId("steps").replaceChildren(...model.steps.map(row));
+  byId("empty").hidden = model.steps.length > 0;
+  byId("whole").replaceChildren(...model.found.filter((each) => each.step < 0).map((each) => {
+    const line = element("p");
+    line.append(mark(each));
+    return line;
+  }));
+  if (focused) document.querySelector(`#steps [aria-label="${CSS.escape(focused)}"]`)?.focus();
+}
+
+// ------------------------------------------------------------------ the form
+
+function fillActions() {
+  const drawers = new Map();
+  const cannot = [];
+  for (const action of model.actions.values()) {
+    const possible = action.slots.every((slot) => fitting(slot).length) && distinct(action);
+    if (!possible) {
+      if (action.runs) cannot.push(action.words.replace(/\s*\{\d\}/g, " …"));
+      continue;
+    }
+    if (!drawers.has(action.drawer)) drawers.set(action.drawer, element("optgroup"));
+    const option = element("option", action.words.replace(/\{\d\}/g, "…") + (action.runs ? "" : " (can't be run)"));
+    option.value = action.name;
+    drawers.get(action.drawer).append(option);
+  }
+  for (const [name, group] of drawers) group.label = name;
+  byId("action").replaceChildren(...drawers.values());
+  byId("cannot").textContent = cannot.length
+    ? `Not possible with the things of your scene: ${cannot.join(", ")}.` : "";
+  fillSlots();
+}
+
+// Two slots need two things.
+function distinct(action) {
+  return new Set(action.slots.flatMap((slot) => fitting(slot))).size >= action.slots.length;
+}
+
+function fillSlots() {
+  const action = model.actions.get(byId("action").value);
+  byId("slots").replaceChildren(...(action ? action.slots : []).map((slot, number) => {
+    const line = element("p");
+    const label = element("label", `Thing ${number + 1}: ${action.roles[number]}`);
+    const select = element("select");
+    select.id = `slot-${number}`;
+    label.htmlFor = select.id;
+    select.replaceChildren(...fitting(slot).map((thing) => {
+      const option = element("option", thing.words);
+      option.value = JSON.stringify([thing.name, thing.instance]);
+      return option;
+    }));
+    line.append(label, select);
+    return line;
+  }));
+}
+
+function added(event) {
+  event.preventDefault();
+  const action = byId("action").value;
+  if (!action) return;
+  const things = [...byId("slots").querySelectorAll("select")].map((select) => JSON.parse(select.value));
+  if (new Set(things.map(String)).size < things.length) {
+    say("A step takes different things.", true);
+    return;
+  }
+  changed([...model.steps, { action, things }], "form");
+}
+
+function addedSpecial(event) {
+  event.preventDefault();
+  const special = byId("special").value.trim();
+  if (!special) return;
+  byId("special").value = "";
+  changed([...model.steps, { special }], "form");
+}
+
+// ------------------------------------------------------------------ running and handing in
+
+async function run() {
+  await (timer ? save() : saving);
+  byId("result").replaceChildren(element("p", "Running …"));
+  byId("stage").hidden = true;
+  try {
+    const result = await ask("/run", { steps: model.steps, home: byId("home").value });
+    const ran = element("p", result.ran
+      ? `Every step can be done in ${result.home}.${result.added ? " Things that the home lacks were added." : ""}`
+      : `It does not run in ${result.home}. ${result.why}`, result.ran ? "good" : "fault");
+    byId("result").replaceChildren(ran);
+    if (!result.ran && result.step >= 0) {
+      const at = { step: result.step, fault: false, code: "RUN", message: `stops here: ${result.why}`, remedy: "" };
+      model.found = [...model.found.filter((each) => each.code !== "RUN"), at];
+      draw();
+      if (blocks) blocks.mark(model.found);
+    }
+    if (result.ticks.length) await player(byId("stage"), result, (number) => phrase(model.steps[number]));
+  } catch (error) {
+    byId("result").replaceChildren(element("p", `It can't be run. ${error.message}`, "fault"));
+  }
+}
+
+async function submit() {
+  await (timer ? save() : saving);
+  try {
+    const { go } = await ask("/submit", { version: model.version, steps: model.steps });
+    location.assign(go);
+  } catch (error) {
+    byId("refused").replaceChildren(element("p", `It can't be handed in yet. ${error.message}`, "fault"));
+    if (error.value?.found) checked(error.value.found);
+  }
+}
+
+// ------------------------------------------------------------------ beginning
+
+function show(view) {
+  const inBlocks = view === "blocks";
+  byId("blocks-view").hidden = !inBlocks;
+  byId("form-view").hidden = inBlocks;
+  byId("show-blocks").ariaPressed = String(inBlocks);
+  byId("show-list").ariaPressed = String(!inBlocks);
+  if (inBlocks && !blocks) {
+    blocks = mount(byId("blocks"), model, (steps) => changed(steps, "blocks"));
+    blocks.show(model.steps);
+    blocks.mark(model.found);
+  }
+  if (inBlocks) blocks.fit();
+}
+
+async function begin() {
+  const work = await ask("/work");
+  model.version = work.version;
+  model.things = work.things;
+  model.actions = new Map(work.actions.map((action) => [action.name, action]));
+  model.steps = work.steps;
+  fillActions();
+  draw();
+  byId("action").addEventListener("change", fillSlots);
+  byId("add-step").addEventListener("submit", added);
+  byId("add-special").addEventListener("submit", addedSpecial);
+  byId("run").addEventListener("click", run);
+  byId("submit").addEventListener("click", submit);
+  byId("show-blocks").addEventListener("click", () => show("blocks"));
+  byId("show-list").addEventListener("click", () => show("list"));
+  if (!window.Blockly) {
+    byId("show-blocks").disabled = true;
+    byId("show-blocks").textContent = "Blocks (not installed here)";
+  } else if (innerWidth >= 700) {
+    show("blocks");
+  }
+  if (model.steps.length) save();
+  else say("Add the first step.");
+}
+
+begin().catch((error) => say(`The page could not be set up. ${error.message}`, true));

@@ -1,0 +1,65 @@
+// A run on the floor plan: where the character is after each step, and what the step changed.
+
+const SVG = "http://www.w3.org/2000/svg";
+const PAUSE = 900;
+let timer = 0;
+
+async function planOf(home) {
+  const answer = await fetch(`/annotate/plan/${encodeURIComponent(home)}`);
+  const text = (await answer.text()).replace("<svg ", `<svg xmlns="${SVG}" `);
+  return document.importNode(new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true);
+}
+
+function shape(name, attributes) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+
+// Show a run in an element that has a `#plan` and the buttons `#play`, `#back` and `#on`.
+export async function player(stage, result, phrase) {
+  clearInterval(timer);
+  timer = 0;
+  const plan = await planOf(result.home);
+  plan.setAttribute("aria-label", `Floor plan of ${result.home}`);
+  const path = shape("polyline", { class: "path", points: "" });
+  const person = shape("g", { class: "person" });
+  person.append(shape("circle", { r: 0.22 }), shape("line", { x1: 0, y1: 0, x2: 0, y2: -0.42 }));
+  plan.append(path, person);
+  const list = document.createElement("ol");
+  list.className = "ticks";
+  list.append(...result.ticks.map((tick) => {
+    const line = document.createElement("li");
+    line.append(phrase(tick.step), document.createElement("br"));
+    const small = document.createElement("span");
+    small.className = "small";
+    small.textContent = tick.changes;
+    line.append(small);
+    return line;
+  }));
+  stage.querySelector("#plan").replaceChildren(plan, list);
+  stage.hidden = false;
+
+  const places = [result.start, ...result.ticks.map((tick) => tick.at)];
+  let now = 0;
+  function go(to) {
+    now = Math.max(0, Math.min(result.ticks.length, to));
+    const at = places[now];
+    person.toggleAttribute("hidden", !at);
+    if (at) person.setAttribute("transform", `translate(${at[0]} ${-at[1]}) rotate(${at[2]})`);
+    path.setAttribute("points", places.slice(0, now + 1).filter(Boolean).map(([x, z]) => `${x},${-z}`).join(" "));
+    [...list.children].forEach((line, number) => line.toggleAttribute("aria-current", number === now - 1));
+    list.children[now - 1]?.scrollIntoView({ block: "nearest" });
+  }
+  const play = stage.querySelector("#play");
+  function stop() { clearInterval(timer); timer = 0; play.textContent = "Play"; }
+  play.onclick = () => {
+    if (timer) { stop(); return; }
+    if (now === result.ticks.length) go(0);
+    play.textContent = "Pause";
+    timer = setInterval(() => { go(now + 1); if (now === result.ticks.length) stop(); }, PAUSE);
+  };
+  stage.querySelector("#back").onclick = () => { stop(); go(now - 1); };
+  stage.querySelector("#on").onclick = () => { stop(); go(now + 1); };
+  go(0);
+}
