@@ -101,7 +101,7 @@ def default_url(out: Path) -> str:
 
 
 def private(out: Path) -> Path:
-    """The folder within a server's own for what is no answer; `build` does not look into hidden folders."""
+    """The folder within a server's own for its own files; `build` reads no hidden folder."""
     folder = out / ".server"
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     return folder

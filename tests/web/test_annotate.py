@@ -225,8 +225,8 @@ def test_a_second_person_reviews_and_only_what_was_accepted_goes_out(server, per
     (row,) = csv.DictReader(io.StringIO((server.out / "programs.csv").read_text()))
     assert row["Answer.rooms"] == "living_room*1" and row["Input.description_id"] == text
     assert row["Answer.program"].splitlines()[2] == "[Grab] <remote_control> (1)"
-    (told,) = csv.DictReader(io.StringIO((server.out / "descriptions.csv").read_text()))
-    assert told["HITId"] == text and told["Answer.description"] == TEXT["description"]
+    (answer,) = csv.DictReader(io.StringIO((server.out / "descriptions.csv").read_text()))
+    assert answer["HITId"] == text and answer["Answer.description"] == TEXT["description"]
 
 
 def reviewer_of_own(server, person):

@@ -25,7 +25,7 @@ TEXTS = sql.Table(
     owner(),
     _text("scene", "the room that was drawn, of the eight"),
     _text("title", "of the activity"),
-    _text("description", "as told to another person"),
+    _text("description", "in sentences, for another person"),
     _when(),
 )
 """Stage one: titles and descriptions."""

@@ -90,7 +90,7 @@ function asBlocks(steps) {
     if (next) block.next = { block: next };
     next = block;
   }
-  return { type: "start", x: 24, y: 24, deletable: false, movable: false, ...(next ? { next: { block: next } } : {}) };
+  return { type: "start", x: 260, y: 24, deletable: false, movable: false, ...(next ? { next: { block: next } } : {}) };
 }
 
 function chain(workspace) {
@@ -122,16 +122,20 @@ function theme() {
   });
 }
 
-// Show the program as blocks in an element; `changed` gets the steps after each change by hand.
-export function mount(element, model, changed) {
+// Show the program as blocks in an element; `changed` gets the steps after each change by hand, `loose` the number of
+// blocks that hang on nothing.
+export function mount(element, model, changed, loose) {
   define(model);
   const workspace = withAdoptedStyles(() => Blockly.inject(element, {
     toolbox: toolbox(model), media: "/fetched/blockly/media/", renderer: "zelos", theme: theme(), sounds: false,
     trashcan: true, scrollbars: true, zoom: { controls: false, wheel: false, startScale: 0.8 }, maxTrashcanContents: 0,
   }));
   let last = "";
+  let later = 0;
+  const marked = new WeakMap();
   workspace.addChangeListener((event) => {
     if (event.isUiEvent || workspace.isDragging()) return;
+    loose(workspace.getTopBlocks().length - 1);
     const steps = chain(workspace).map(asStep);
     if (JSON.stringify(steps) === last) return;
     last = JSON.stringify(steps);
@@ -141,15 +145,23 @@ export function mount(element, model, changed) {
     workspace,
     show(steps) {
       last = JSON.stringify(steps);
+      loose(0);
       Blockly.Events.disable();
       try {
         Blockly.serialization.workspaces.load({ blocks: { languageVersion: 0, blocks: [asBlocks(steps)] } }, workspace);
       } finally { Blockly.Events.enable(); }
     },
     mark(found) {
+      clearTimeout(later);
+      if (workspace.isDragging()) {  // a block that changes its size would shake off the one that is being put to it
+        later = setTimeout(() => this.mark(found), 200);
+        return;
+      }
       chain(workspace).forEach((block, number) => {
         const mine = found.filter((each) => each.step === number);
-        block.setWarningText(mine.length ? mine.map((each) => each.message).join("\n") : null);
+        const text = mine.map((each) => each.message).join("\n");
+        if ((marked.get(block) ?? "") !== text) block.setWarningText(text || null);
+        marked.set(block, text);
         block.getSvgRoot().classList.toggle("faulty", mine.some((each) => each.fault));
       });
     },

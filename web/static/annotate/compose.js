@@ -260,7 +260,9 @@ function show(view) {
   byId("show-blocks").ariaPressed = String(inBlocks);
   byId("show-list").ariaPressed = String(!inBlocks);
   if (inBlocks && !blocks) {
-    blocks = mount(byId("blocks"), model, (steps) => changed(steps, "blocks"));
+    blocks = mount(byId("blocks"), model, (steps) => changed(steps, "blocks"), (count) => {
+      byId("loose").textContent = count ? `Blocks that hang on nothing and are not part of the program: ${count}.` : "";
+    });
     blocks.show(model.steps);
     blocks.mark(model.found);
   }
