@@ -97,7 +97,13 @@ class Store:
 
 def default_url(out: Path) -> str:
     """The address of the embedded store of a folder, which is made."""
-    return f"sqlite:///{(private(out) / 'store.sqlite').resolve()}"
+    private(out)
+    return f"sqlite:///{embedded(out).resolve()}"
+
+
+def embedded(out: Path) -> Path:
+    """The file of a folder's embedded store, which may not be there."""
+    return out / ".server" / "store.sqlite"
 
 
 def private(out: Path) -> Path:

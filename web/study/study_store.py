@@ -21,7 +21,7 @@ from hearth.studies.study_file import study_of
 from hearth.studies.study_folder import Collected
 from hearth.web import play  # noqa: F401 - its tables are those of trials' games
 from hearth.web.sessions import forget as forget_session
-from hearth.web.store import Store, default_url
+from hearth.web.store import Store, default_url, embedded
 from hearth.web.study.study_schema import HAPPENED, PLACES_TAKEN, STUDIES
 
 FOLDER = "studies"
@@ -143,7 +143,7 @@ def collected_in(store: Store, name: str, out: Path, known: Callable[[], Knowled
 
 
 def _store(source: Path, url: str) -> Store:
-    if not url and not (source / "store.sqlite").is_file():
+    if not url and not embedded(source).is_file():
         message = "there are neither events of a simulation nor a server's store"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(source), suggestion="name the folder, or --store URL")
     return Store(url or default_url(source))
