@@ -14,13 +14,13 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
-from hearth.models.completion import complete
 from hearth.models.data import AT_ONCE, requests
 from hearth.models.decoding.scorers import Scorer
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.interface import Steps
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.protocols import Decoded, Trained
+from hearth.repair.completion import complete
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program

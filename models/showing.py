@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hearth.kb.knowledge import Knowledge
-from hearth.models.completion import Completion, complete
 from hearth.models.interface import Request, Steps
 from hearth.models.protocols import Trained
 from hearth.models.text.text_words import words_of
+from hearth.repair.completion import Completion, complete
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.world.world import World
 

@@ -12,7 +12,7 @@ from hearth.datasets.verify import opened
 from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.records import Action
-from hearth.repair.loop import repair
+from hearth.repair.sketch_plan import planned_program
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.rng import rng
@@ -236,9 +236,8 @@ def sketch_alone(train: Sequence[Example], example: Example, world: World, rules
 
 
 def planner(train: Sequence[Example], example: Example, world: World, rules: Rules, random: Random) -> Steps:
-    """The sketch so bound, and repaired until it runs: what planning without learning achieves."""
-    program = Program(steps=sketch_alone(train, example, world, rules, random))
-    return repair(program, world, (), world.home.knowledge, rules, canonical_only=False).program.steps
+    """The sketch so bound, and repaired: what planning without learning achieves."""
+    return planned_program(example.sketch, world, rules)
 
 
 Maker = Callable[[Sequence[Example], Sequence[Example], int, Knowledge], list[Steps]]

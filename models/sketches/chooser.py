@@ -21,7 +21,6 @@ from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.planner import bound_to_nearest, complete_steps
 from hearth.models.sketches.choices import Choice, Packed, joined, packed
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
 from hearth.models.sketches.grounded import grounded
@@ -31,6 +30,7 @@ from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
 from hearth.models.training import Outcome, Task, train
+from hearth.repair.sketch_plan import bound_to_nearest, complete_steps
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen

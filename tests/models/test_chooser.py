@@ -15,7 +15,6 @@ from hearth.models.data import corpus
 from hearth.models.decoding.options import Grammar
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
-from hearth.models.planner import plan, planned_program
 from hearth.models.sketches.choices import Candidate, Choice, joined, packed
 from hearth.models.sketches.chooser import NO_HABITS, Chooser, TrainedChooser
 from hearth.models.sketches.chooser_examples import step_choices
@@ -25,6 +24,7 @@ from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_ch
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
+from hearth.repair.sketch_plan import plan, planned_program
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_steps

@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 from hearth.grounding.binding import nearest
 from hearth.kb.knowledge import Knowledge
-from hearth.models.interface import Steps
 from hearth.repair.loop import repair
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import Execution
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
+
+Steps = tuple[Step, ...]
 
 
 class Completion(NamedTuple):

@@ -1,0 +1,51 @@
+"""Planning without learning: a sketch's steps bound to nodes, and what must come between them from the repairs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from hearth.grounding.binding import nearest
+from hearth.repair.completion import complete
+from hearth.schemas.program import Program, Step
+from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.world.world import World
+
+Steps = tuple[Step, ...]
+
+
+class Planned(NamedTuple):
+    """A step of a plan, and the number of the sketch's step it does; -1 for one that only prepares others."""
+
+    step: Step
+    source: int
+
+
+def bound_to_nearest(sketch: Sequence[Step], world: World) -> Steps:
+    """A sketch with its objects bound to the nearest nodes of their classes; steps whose objects the home lacks go."""
+    program = Program(steps=tuple(sketch))
+    return complete_steps(nearest(program, world).apply(program).steps)
+
+
+def complete_steps(steps: Sequence[Step]) -> Steps:
+    """The steps of which every object has a node."""
+    return tuple(step for step in steps if all(ref.node is not None for ref in step.objects))
+
+
+def plan(steps: Sequence[Step], world: World, rules: Rules = DEFAULT) -> tuple[Planned, ...]:
+    """What to do so that steps can be done one after the other; it always runs.
+
+    A step that no repair makes possible is left out.
+
+    Args:
+        steps: bound to nodes.
+        world: as it is now.
+        rules: of the engine.
+    """
+    done = complete(tuple(steps), world, world.home.knowledge, rules)
+    return tuple(map(Planned, done.execution.program.steps, done.sources))
+
+
+def planned_program(sketch: Sequence[Step], world: World, rules: Rules = DEFAULT) -> Steps:
+    """The program that the planner writes for a sketch without nodes."""
+    return tuple(each.step for each in plan(bound_to_nearest(sketch, world), world, rules))
