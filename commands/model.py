@@ -53,6 +53,7 @@ def train(
     rate: float = 1e-3,
     settings: list[str] | None = None,
     augmented: bool = False,
+    sketches: str = "annotated",
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
@@ -70,7 +71,7 @@ def train(
 
     with bar("epochs") as seen:
         facts = fit(
-            name, dataset, out, split, settings or (), originals=not augmented,
+            name, dataset, out, split, settings or (), originals=not augmented, sketches=sketches,
             how={"epochs": epochs, "minutes": minutes, "rate": rate, "seed": seed}, seen=seen,
         )  # fmt: skip
     if as_json:
@@ -91,6 +92,7 @@ def predict(
     repair: bool = False,
     constrained: bool = False,
     originals: bool = False,
+    sketches: str = "annotated",
     as_json: bool = False,
 ) -> None:
     """Predict a program for each execution of a part of a dataset, into a file that `score dataset` reads.
@@ -113,6 +115,7 @@ def predict(
             repaired=repair,
             is_constrained=constrained,
             originals=originals,
+            sketches=sketches,
             seen=seen,
         )
     output.say(f"{output.counted(count, 'prediction')} in {out}", {"out": out, "predictions": count}, as_json)
@@ -150,29 +153,50 @@ def table(
     split: str = "activities",
     beam: int = 4,
     repair: bool = False,
+    sketches: str = "annotated",
+    most: int = 400,
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs) or 4.5 (of people's).
+    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
-    Intervals are of activities drawn with replacement. The parts of the test are original programs alone.
+    Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
+    and 5.4; in 5.2 and 5.3 augmented ones, too. 5.4 needs a model that writes sketches, such as desc2sketch.
 
     \b
     Example:
       python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
+      python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
     """
+    from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
-    from hearth.models.text.text_tables import COLUMNS
-    from hearth.models.text.text_tables import table as rows_of
 
-    rows = rows_of(number, Dataset.open(dataset), split, models or (), beam=beam, repaired=repair, seed=seed)
+    data = Dataset.open(dataset)
+    if number == "5.1":
+        from hearth.models.sketches.dataset_table import dataset_table
+
+        found = dataset_table(data)
+        output.emit(found) if as_json else output.records([each._asdict() for each in found])
+        return
+    if number.startswith("5."):
+        from hearth.models.sketches import sketch_tables
+
+        columns = sketch_tables.COLUMNS | ({"sketch": ""} if number == "5.4" else {})
+        with bar("executions") as seen:
+            rows = sketch_tables.table(number, data, split, models or (), beam=beam, sketches=sketches, most=most,
+                                       seed=seed, seen=seen)  # fmt: skip
+    else:
+        from hearth.models.text import text_tables
+
+        columns = text_tables.COLUMNS
+        rows = text_tables.table(number, data, split, models or (), beam=beam, repaired=repair, seed=seed)
     if as_json:
         output.emit(rows)
         return
-    shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in COLUMNS), row.seeds or None, row.minutes]
+    shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in columns), row.seeds or None, row.minutes]
              for row in rows]  # fmt: skip
-    output.table(["method", "of", *COLUMNS, "seeds", "minutes"], shown)
+    output.table(["method", "of", *columns, "seeds", "minutes"], shown)
 
 
 def _score(value: Any) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import program_of
+from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.interface import Request, Steps
@@ -79,6 +80,14 @@ class Corpus:
     validation: tuple[Example, ...]
     shared: Mapping[str, int] = field(default_factory=dict)
 
+    def of_sketches(self) -> Corpus:
+        """The same with sketches in the place of programs; programs without one are left out."""
+        train, validation = (
+            tuple(replace(each, steps=each.sketch, keep=()) for each in part if each.sketch)
+            for part in (self.train, self.validation)
+        )
+        return replace(self, train=train, validation=validation)
+
     @property
     def facts(self) -> dict[str, Any]:
         """What a checkpoint records of it."""
@@ -87,10 +96,6 @@ class Corpus:
         facts = {"dataset": self.dataset.manifest.get("version", ""), "digest": digest, "split": self.split, **counts}
         return {**facts, **{f"{name}_of_test": count for name, count in self.shared.items()}}
 
-
-_SKETCHES = """SELECT program_id, coalesce(min(keep) FILTER (origin IN ('written', 'people')), min(keep)) AS keep
-    FROM sketches WHERE keep IS NOT NULL GROUP BY 1"""
-"""The sketch of each program; an annotated one goes before others."""
 
 _PROGRAMS = """
     SELECT p.program_id, p.activity_id, p.title, p.description, p.steps, p.origin, any_value(k.keep) AS keep,
@@ -102,7 +107,9 @@ _PROGRAMS = """
 """
 
 
-def examples(dataset: Dataset, split: str, part: str, *, originals: bool = False) -> tuple[Example, ...]:
+def examples(
+    dataset: Dataset, split: str, part: str, *, originals: bool = False, sketches: str = ANNOTATED
+) -> tuple[Example, ...]:
     """The programs of a part with their texts, by id.
 
     Args:
@@ -110,11 +117,12 @@ def examples(dataset: Dataset, split: str, part: str, *, originals: bool = False
         split: one of its splits.
         part: prefix of the split's parts (`test` is all tests).
         originals: leave out augmented programs, which have the texts of the programs they were made from.
+        sketches: `annotated` or `inferred`: which go before the others.
 
     Raises:
         HearthError: UNKNOWN_ID, if the part has none.
     """
-    found = _read(dataset, split, part, originals)
+    found = _read(dataset, split, part, originals, sketches)
     if not found:
         there = dataset.rows("SELECT DISTINCT split || ' ' || part FROM splits WHERE part IS NOT NULL ORDER BY 1")[1]
         message = f"no programs in part `{part}` of split `{split}`"
@@ -123,8 +131,8 @@ def examples(dataset: Dataset, split: str, part: str, *, originals: bool = False
     return found
 
 
-def _read(dataset: Dataset, split: str, part: str, originals: bool) -> tuple[Example, ...]:
-    query = _PROGRAMS.format(sketches=_SKETCHES, where="p.parent_id IS NULL" if originals else "true")
+def _read(dataset: Dataset, split: str, part: str, originals: bool, sketches: str) -> tuple[Example, ...]:
+    query = _PROGRAMS.format(sketches=sketches_query(sketches), where="p.parent_id IS NULL" if originals else "true")
     return tuple(_example(row) for row in dataset.read(query, {"split": split, "part": part}))
 
 
@@ -136,7 +144,7 @@ def _example(row: Any) -> Example:
     )
 
 
-def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0) -> Corpus:
+def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0, sketches: str = ANNOTATED) -> Corpus:
     """The training and validation examples of a split.
 
     Where the split has no part `validation`, one in ten activities of `train` is taken out for it.
@@ -144,9 +152,9 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
     Raises:
         HearthError: UNKNOWN_ID, if the split has no training examples.
     """
-    train = examples(dataset, split, "train", originals=originals)
-    common = shared(train, _read(dataset, split, "test", originals))
-    validation = _read(dataset, split, "validation", originals)
+    train = examples(dataset, split, "train", originals=originals, sketches=sketches)
+    common = shared(train, _read(dataset, split, "test", originals, sketches))
+    validation = _read(dataset, split, "validation", originals, sketches)
     if validation:
         activities = {each.activity for each in train}
         validation = tuple(each for each in validation if each.activity not in activities)
@@ -180,20 +188,23 @@ def carved(train: Iterable[Example], seed: int) -> tuple[tuple[Example, ...], tu
     return tuple(parts[0]), tuple(parts[1])
 
 
-def requests(dataset: Dataset, names: Sequence[str], *, worlds: bool) -> Iterator[list[Request]]:
+def requests(
+    dataset: Dataset, names: Sequence[str], *, worlds: bool, sketches: str = ANNOTATED
+) -> Iterator[list[Request]]:
     """What is known of executions before they run, without their programs, in shares of at most 250.
 
     Args:
         dataset: a published dataset.
         names: ids of executions.
         worlds: whether the requests have the world at the start.
+        sketches: `annotated` or `inferred`: which go before the others.
     """
-    sketches = {row["program_id"]: tuple(row["keep"]) for row in dataset.read(_SKETCHES)}
+    known = {row["program_id"]: tuple(row["keep"]) for row in dataset.read(sketches_query(sketches))}
     homes = opened(str(dataset.folder))[1]
     for first in range(0, len(names), AT_ONCE):
         share = []
         for case in stored_cases(dataset, names[first : first + AT_ONCE]):
-            keep = sketches.get(case["program_id"], ())
+            keep = known.get(case["program_id"], ())
             steps = program_of(case).steps
             sketch = tuple(step for step, keeps in zip(steps, keep, strict=False) if keeps)
             world = start_of(case["environment"], case["home"], homes) if worlds else None

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.dataset import Dataset
+from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.checkpoint import save
 from hearth.models.data import corpus
 from hearth.models.interface import Training
-from hearth.models.model_registry import settings_of
+from hearth.models.model_registry import MODELS, settings_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
@@ -28,6 +29,7 @@ def fit(
     changed: Sequence[str] = (),
     *,
     originals: bool = True,
+    sketches: str = ANNOTATED,
     how: Mapping[str, Any],
     seen: Seen = unseen,
 ) -> dict[str, Any]:
@@ -39,7 +41,8 @@ def fit(
         out: of the checkpoint; an unfinished training in it is continued.
         split: of the dataset.
         changed: settings of the model, as `NAME=VALUE`.
-        originals: leave out augmented programs.
+        originals: leave out augmented programs; models of sketches learn from them, too.
+        sketches: `annotated` or `inferred`: which go before the others.
         how: fields of `Training`.
         seen: reports progress.
 
@@ -49,10 +52,12 @@ def fit(
     import shutil
 
     model = settings_of(name, **_changed(name, changed))
-    found = corpus(Dataset.open(folder), split, originals=originals, seed=how.get("seed", 0))
+    originals = originals and MODELS[name].input != "sketch"
+    found = corpus(Dataset.open(folder), split, originals=originals, seed=how.get("seed", 0), sketches=sketches)
+    found = found.of_sketches() if MODELS[name].output == "sketch" else found
     trained = model.fit(found, Training(**how, folder=out / STATE), seen)
     checkpoint = trained.checkpoint()
-    facts = {**found.facts, "seed": how.get("seed", 0), **checkpoint.trained}
+    facts = {**found.facts, "sketches": sketches, "seed": how.get("seed", 0), **checkpoint.trained}
     save(replace(checkpoint, model=name, trained=facts), out)
     shutil.rmtree(out / STATE, ignore_errors=True)
     return facts

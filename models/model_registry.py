@@ -18,7 +18,7 @@ TRAINED = Path(__file__).parent / "trained"
 class Entry(NamedTuple):
     """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, its source.
 
-    `learns` is false for one that needs no training.
+    `learns` is false for one that needs no training; `output` is `sketch` for one that learns to write sketches.
     """
 
     place: str
@@ -27,6 +27,7 @@ class Entry(NamedTuple):
     source: str
     settings: dict[str, Any] = {}  # noqa: RUF012
     learns: bool = True
+    output: Literal["program", "sketch"] = "program"
 
 
 MODELS: dict[str, Entry] = {
@@ -62,6 +63,13 @@ MODELS: dict[str, Entry] = {
     },
     "chooser": Entry(
         "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
+    ),
+    "chooser-text": Entry(
+        "sketches.chooser:Chooser",
+        "sketch",
+        "The same; it reads the description beside the sketch.",
+        "ours",
+        {"text": True},
     ),
     "mle": Entry(
         "text.text_models:TextModel",
@@ -101,6 +109,21 @@ MODELS: dict[str, Entry] = {
         "text",
         "The consensus of similar texts' programs, with the asked objects.",
         "ours",
+    ),
+    "desc2sketch": Entry(
+        "text.text_models:TextModel",
+        "text",
+        "`mle-composed` that writes the sketch of a description.",
+        "thesis 5.4.1, A.1",
+        {"dropout": 0.5},
+        output="sketch",
+    ),
+    "retrieve-sketch": Entry(
+        "text.retrieve_edit:RetrieveEdit",
+        "text",
+        "`retrieve-edit` over the sketches of similar descriptions.",
+        "ours",
+        output="sketch",
     ),
 }
 

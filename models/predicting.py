@@ -12,6 +12,7 @@ import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.data import AT_ONCE, requests
@@ -32,7 +33,14 @@ from hearth.storage.parallel import Seen, unseen
 
 
 def predict(
-    trained: Trained, dataset: Dataset, names: Sequence[str], beam: int = 1, *, text: bool, seen: Seen = unseen
+    trained: Trained,
+    dataset: Dataset,
+    names: Sequence[str],
+    beam: int = 1,
+    *,
+    text: bool,
+    sketches: str = ANNOTATED,
+    seen: Seen = unseen,
 ) -> Iterator[tuple[str, Steps]]:
     """The ids of executions with their predicted programs, in the dataset's order.
 
@@ -42,11 +50,12 @@ def predict(
         names: ids of executions.
         beam: as in `Trained.predict`.
         text: the model sees the text alone: each text is answered once, and no worlds are read.
+        sketches: `annotated` or `inferred`: which go before the others.
         seen: reports progress.
     """
     known: dict[tuple[str, str], Steps] = {}
     done = 0
-    for share in requests(dataset, names, worlds=not text):
+    for share in requests(dataset, names, worlds=not text, sketches=sketches):
         if text:
             asked = {(each.title, each.description): each for each in share}
             new = {key: replace(each, sketch=()) for key, each in asked.items() if key not in known}
@@ -60,7 +69,12 @@ def predict(
 
 
 def constrained(
-    trained: Trained, dataset: Dataset, names: Sequence[str], beam: int = 1, seen: Seen = unseen
+    trained: Trained,
+    dataset: Dataset,
+    names: Sequence[str],
+    beam: int = 1,
+    sketches: str = ANNOTATED,
+    seen: Seen = unseen,
 ) -> Iterator[tuple[str, Steps]]:
     """As `predict`, decoded with the engine in the loop: each program parses, and runs in its environment.
 
@@ -69,7 +83,7 @@ def constrained(
     """
     scorer = scorer_of(trained)
     done = 0
-    for share in requests(dataset, names, worlds=True):
+    for share in requests(dataset, names, worlds=True, sketches=sketches):
         for first in range(0, len(share), WRITTEN):
             part = share[first : first + WRITTEN]
             starts = [Start(each.world, each) for each in part if each.world]
@@ -117,6 +131,7 @@ def predict_part(
     repaired: bool = False,
     is_constrained: bool = False,
     originals: bool = False,
+    sketches: str = ANNOTATED,
     seen: Seen = unseen,
 ) -> int:
     """Write the predictions of a trained model for a part of a split; their number.
@@ -130,6 +145,7 @@ def predict_part(
         repaired: bind and repair each program in its environment, and leave out what can't run there.
         is_constrained: decode with the engine in the loop.
         originals: leave out executions of augmented programs.
+        sketches: `annotated` or `inferred`: which go before the others.
         seen: reports progress.
 
     Raises:
@@ -140,9 +156,9 @@ def predict_part(
     names = _asked(dataset, split, part, originals)
     text = MODELS[name].input == "text"
     if is_constrained:
-        found = constrained(trained, dataset, names, beam, seen)
+        found = constrained(trained, dataset, names, beam, sketches, seen)
     else:
-        found = predict(trained, dataset, names, beam, text=text, seen=seen)
+        found = predict(trained, dataset, names, beam, text=text, sketches=sketches, seen=seen)
     return write(completed(dataset, found) if repaired else found, out)
 
 

@@ -25,6 +25,7 @@ class Choice(NamedTuple):
         names: numbers of names, each with a meaning of its own.
         bag: numbers of names whose order says nothing.
         numbers: other numbers.
+        text: numbers of the words of a text.
         candidates: one at least.
         right: index of the right one.
     """
@@ -34,6 +35,7 @@ class Choice(NamedTuple):
     numbers: Sequence[float]
     candidates: Sequence[Candidate]
     right: int = -1
+    text: Sequence[int] = ()
 
 
 class Packed(NamedTuple):
@@ -47,6 +49,7 @@ class Packed(NamedTuple):
         candidate_numbers: (C, m') float16.
         starts: (D + 1,) int64, where each choice's candidates begin.
         right: (D,) int64.
+        text: (D, t) int16, filled up with 0.
     """
 
     names: np.ndarray
@@ -56,6 +59,7 @@ class Packed(NamedTuple):
     candidate_numbers: np.ndarray
     starts: np.ndarray
     right: np.ndarray
+    text: np.ndarray
 
     def __len__(self) -> int:
         return len(self.right)
@@ -68,30 +72,46 @@ class Packed(NamedTuple):
         rows = np.repeat(self.starts[chosen] - starts[:-1], counts) + np.arange(starts[-1])
         names, numbers = self.candidate_names[rows], self.candidate_numbers[rows]
         return Packed(
-            self.names[chosen], self.bag[chosen], self.numbers[chosen], names, numbers, starts, self.right[chosen]
+            self.names[chosen],
+            self.bag[chosen],
+            self.numbers[chosen],
+            names,
+            numbers,
+            starts,
+            self.right[chosen],
+            self.text[chosen],
         )
 
 
 BAG = 12
 """Names in a bag at most."""
 
+TEXT = 40
+"""Words of a text at most."""
+
 
 def packed(choices: Iterable[Choice]) -> Packed:
     """Choices as arrays."""
     found = list(choices)
     candidates = [each for choice in found for each in choice.candidates]
-    bags = np.zeros((len(found), BAG), np.int16)
-    for row, choice in enumerate(found):
-        bags[row, : min(BAG, len(choice.bag))] = choice.bag[:BAG]
     return Packed(
         np.array([choice.names for choice in found], np.int16),
-        bags,
+        _filled([choice.bag for choice in found], BAG),
         np.array([choice.numbers for choice in found], np.float16),
         np.array([each.names for each in candidates], np.int16),
         np.array([each.numbers for each in candidates], np.float16),
         np.cumsum([0, *(len(choice.candidates) for choice in found)]),
         np.array([choice.right for choice in found], np.int64),
+        _filled([choice.text for choice in found], TEXT),
     )
+
+
+def _filled(bags: Sequence[Sequence[int]], most: int) -> np.ndarray:
+    """Bags as rows, filled up with 0."""
+    rows = np.zeros((len(bags), most), np.int16)
+    for row, bag in enumerate(bags):
+        rows[row, : min(most, len(bag))] = bag[:most]
+    return rows
 
 
 def joined(parts: Sequence[Packed]) -> Packed:
@@ -99,4 +119,5 @@ def joined(parts: Sequence[Packed]) -> Packed:
     names, bag, numbers, more, values = (np.concatenate(column) for column in zip(*(p[:5] for p in parts), strict=True))
     counts = np.concatenate([part.starts[1:] - part.starts[:-1] for part in parts])
     starts, right = np.concatenate([[0], np.cumsum(counts)]), np.concatenate([part.right for part in parts])
-    return Packed(names, bag, numbers, more, values, starts, right)
+    text = np.concatenate([part.text for part in parts])
+    return Packed(names, bag, numbers, more, values, starts, right, text)

@@ -29,6 +29,7 @@ from hearth.models.sketches.node_features import Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
+from hearth.models.sketches.text_clues import NO_CLUES, Clues, frequent
 from hearth.models.training import Outcome, Task, train
 from hearth.repair.sketch_plan import bound_to_nearest, complete_steps
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -55,19 +56,22 @@ class Chooser(Settings):
         batch: choices at a time.
         nodes: whether nodes are chosen, or the nearest are taken.
         style: whether optional steps are chosen, or the plan is taken.
+        text: whether the title and the description are looked at, beside the sketch.
     """
 
-    programs: int = 5_000
+    programs: int = 2_500
     width: int = 16
     hidden: int = 128
     dropout: float = 0.1
     batch: int = 256
     nodes: bool = True
     style: bool = True
+    text: bool = False
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedChooser:
         """Learn from the executions of the training part; those of the validation part decide when to stop."""
-        words = Words.of(corpus.dataset.knowledge)
+        own = {each.description: each.request for each in corpus.train}
+        words = Words.of(corpus.dataset.knowledge, frequent(own.values()) if self.text else ())
         habits = Habits.of(
             ((each.sketch, each.steps) for each in corpus.train if any(each.keep)), corpus.dataset.knowledge
         )
@@ -87,7 +91,8 @@ class Chooser(Settings):
         if name == "nodes":
             return _packed(node_choices(grounded(corpus.dataset, examples), words))
         most = self.programs if part == "train" else max(1, self.programs // 8)
-        return _packed(step_choices(grounded(corpus.dataset, examples, most, seed, part), habits, words))
+        found = grounded(corpus.dataset, examples, most, seed, part)
+        return _packed(step_choices(found, habits, words, text=self.text))
 
     def _trained(
         self, name: str, learned: Packed, checked: Packed, how: Training, words: Words, seen: Seen
@@ -118,7 +123,7 @@ class Chooser(Settings):
     def restored(cls, checkpoint: Checkpoint) -> TrainedChooser:
         """The model of a checkpoint."""
         settings, content = cls.of(dict(checkpoint.settings)), checkpoint.content
-        words = Words(content["classes"], content["actions"])
+        words = Words(content["classes"], content["actions"], content["words"])
         tools = {name: tuple(each) for name, each in content["tools"].items()}
         habits = Habits(frozenset(content["optional"]), tuple(content["style"]), tools)
         rankers = {}
@@ -151,13 +156,17 @@ class TrainedChooser:
         """A program for each request with a sketch and a world; it runs there."""
         worlds = [_world(request) for request in requests]
         sketches = self.bound([request.sketch for request in requests], worlds)
-        starts = [Start(world, sketch) for world, sketch in zip(worlds, sketches, strict=True)]
+        clues = [self._clues(request, world) for request, world in zip(requests, worlds, strict=True)]
+        starts = [Start(*each[:1], each[1:]) for each in zip(worlds, sketches, clues, strict=True)]
         search = Search(beam=beam, least=0)
         programs = decode(self.scorer(), starts, search)
         return [_named(program, sketch) for program, sketch in zip(programs, sketches, strict=True)]
 
+    def _clues(self, request: Request, world: World) -> Clues:
+        return Clues.of(request, world.home.knowledge) if self.settings.text else NO_CLUES
+
     def scorer(self) -> PlanScorer:
-        """The model as a scorer of steps; the input of a program is its bound sketch."""
+        """The model as a scorer of steps; the input of a program is its bound sketch, and what its text says."""
         return PlanScorer(self.rankers.get("steps"), self.habits if self.settings.style else NO_HABITS, self.words)
 
     def bound(self, sketches: Sequence[Steps], worlds: Sequence[World]) -> list[Steps]:
@@ -187,6 +196,7 @@ class TrainedChooser:
         content = {
             "classes": list(self.words.classes),
             "actions": list(self.words.actions),
+            "words": list(self.words.words),
             "optional": sorted(self.habits.actions),
             "style": list(self.habits.style),
             "tools": {name: list(found) for name, found in sorted(self.habits.tools.items())},
@@ -233,9 +243,10 @@ class PlanScorer:
     def __init__(self, ranker: Ranker | None, habits: Habits, words: Words) -> None:
         self.ranker, self.habits, self.words = ranker, habits, words
 
-    def begin(self, worlds: Sequence[World], inputs: Sequence[Steps]) -> list[Progress]:
+    def begin(self, worlds: Sequence[World], inputs: Sequence[tuple[Steps, Clues]]) -> list[Progress]:
         """The progress before the first step of each bound sketch."""
-        return [Progress.start(sketch, world) for world, sketch in zip(worlds, inputs, strict=True)]
+        given = zip(worlds, inputs, strict=True)
+        return [Progress.start(sketch, world, clues=clues) for world, (sketch, clues) in given]
 
     def advance(self, asked: Sequence[Asked], steps: Sequence[Step]) -> list[Progress]:
         """The progress after each step."""

@@ -14,6 +14,7 @@ from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import Places, node_choice
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
+from hearth.models.sketches.text_clues import NO_CLUES, Clues
 from hearth.schemas.failures import Failure
 from hearth.simulation.engine import act
 
@@ -33,11 +34,12 @@ def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]
             bound[use.key] = nodes[use.key]
 
 
-def step_choices(examples: Iterable[Grounded], habits: Habits, words: Words) -> Iterator[Choice]:
+def step_choices(examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False) -> Iterator[Choice]:
     """The choice of each step of each program, and of its end; those that are not offered are left out."""
     for each in examples:
         grammar = Grammar(each.world.home, each.rules)
-        progress = Progress.start(each.sketch, each.world, each.rules)
+        clues = Clues.of(each.request, each.world.home.knowledge) if text else NO_CLUES
+        progress = Progress.start(each.sketch, each.world, each.rules, clues)
         for step in (*each.steps, None):
             offer = Offer(progress, grammar.options(progress.world), habits, words)
             if (choice := offer.choice(step, known=True)).right >= 0:

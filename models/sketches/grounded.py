@@ -11,7 +11,7 @@ from hearth.datasets.format.codecs import bindings_of, program_of
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.data import Example
-from hearth.models.interface import Steps
+from hearth.models.interface import Request, Steps
 from hearth.schemas.rng import derive
 from hearth.simulation.rules import RULES, Rules
 from hearth.simulation.world.world import World
@@ -30,6 +30,7 @@ class Grounded:
         steps: all steps, bound.
         world: at the start.
         rules: of the engine.
+        request: the title and the description.
     """
 
     id: str
@@ -37,6 +38,7 @@ class Grounded:
     steps: Steps
     world: World
     rules: Rules
+    request: Request
 
 
 def grounded(
@@ -61,4 +63,5 @@ def grounded(
             keep = keeps[case["execution_id"]]
             sketch = tuple(step for step, kept in zip(steps, keep, strict=False) if kept)
             world = start_of(case["environment"], case["home"], homes)
-            yield Grounded(case["execution_id"], sketch, steps, world, RULES[case["rules"]])
+            request = Request(case["execution_id"], case["title"] or "", case["description"] or "")
+            yield Grounded(case["execution_id"], sketch, steps, world, RULES[case["rules"]], request)

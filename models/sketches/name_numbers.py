@@ -1,4 +1,4 @@
-"""Names as numbers for embeddings: classes and actions of the knowledge, and codes; 0 is for none and the unknown."""
+"""Names as numbers for embeddings: classes, actions, words of texts, and codes; 0 is for none and the unknown."""
 
 from __future__ import annotations
 
@@ -12,27 +12,29 @@ CODES = 64
 
 
 class Words:
-    """The numbers of names: codes first, then classes, then actions.
+    """The numbers of names: codes first, then classes, then actions, then words.
 
     Attributes:
         classes: names of classes, in order.
         actions: names of actions, in order.
+        words: of texts, in order.
     """
 
-    def __init__(self, classes: Sequence[str], actions: Sequence[str]) -> None:
-        self.classes, self.actions = tuple(classes), tuple(actions)
+    def __init__(self, classes: Sequence[str], actions: Sequence[str], words: Sequence[str] = ()) -> None:
+        self.classes, self.actions, self.words = tuple(classes), tuple(actions), tuple(words)
         self._class = {name: n for n, name in enumerate(self.classes, CODES)}
         self._action = {name: n for n, name in enumerate(self.actions, CODES + len(self.classes))}
+        self._word = {name: n for n, name in enumerate(self.words, CODES + len(self.classes) + len(self.actions))}
 
     @classmethod
-    def of(cls, knowledge: Knowledge) -> Words:
-        """The classes and actions that are known."""
-        return cls(sorted(knowledge.objects), sorted(knowledge.actions))
+    def of(cls, knowledge: Knowledge, words: Sequence[str] = ()) -> Words:
+        """The classes and actions that are known, and some words."""
+        return cls(sorted(knowledge.objects), sorted(knowledge.actions), words)
 
     @cached_property
     def size(self) -> int:
         """How many numbers there are."""
-        return CODES + len(self.classes) + len(self.actions)
+        return CODES + len(self.classes) + len(self.actions) + len(self.words)
 
     def thing(self, name: str) -> int:
         """The number of a class."""
@@ -41,6 +43,10 @@ class Words:
     def action(self, name: str) -> int:
         """The number of an action."""
         return self._action.get(name, 0)
+
+    def word(self, name: str) -> int:
+        """The number of a word of texts."""
+        return self._word.get(name, 0)
 
     def code(self, number: int) -> int:
         """The number for a count or a kind, from 0; great ones are cut."""

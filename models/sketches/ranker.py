@@ -35,9 +35,9 @@ class Ranker(nn.Module):
         self.sizes = names, numbers, candidate_names, candidate_numbers
         self.embedding = nn.Embedding(words, width, padding_idx=0)
         nn.init.normal_(self.embedding.weight, std=0.3)
-        self.of_choice = nn.Linear((names + 1) * width + numbers, hidden)
+        self.of_choice = nn.Linear((names + 2) * width + numbers, hidden)
         self.of_candidate = nn.Linear(candidate_names * width + candidate_numbers, hidden, bias=False)
-        self.product = nn.Linear((names + 1) * width, candidate_names * width, bias=False)
+        self.product = nn.Linear((names + 2) * width, candidate_names * width, bias=False)
         self.rest = nn.Sequential(
             nn.ReLU(), nn.Dropout(dropout), nn.Linear(hidden, hidden // 2), nn.ReLU(), nn.Linear(hidden // 2, 1)
         )
@@ -47,17 +47,23 @@ class Ranker(nn.Module):
 
     def forward(self, batch: Packed) -> Tensor:
         """The scores of all candidates, (C,)."""
-        names, bag, c_names = (torch.as_tensor(column).long() for column in (batch[0], batch[1], batch[3]))
+        columns = batch.names, batch.bag, batch.text, batch.candidate_names
+        names, bag, text, c_names = (torch.as_tensor(column).long() for column in columns)
         numbers, c_numbers = (torch.as_tensor(column).float() for column in (batch[2], batch[4]))
         counts = torch.as_tensor(batch.starts[1:] - batch.starts[:-1])
         of = torch.repeat_interleave(torch.arange(len(counts)), counts)  # (C,): whose candidate each is
-        mean = self.embedding(bag).sum(1) / (bag > 0).sum(1, keepdim=True).clamp(min=1)  # (D, width)
-        context = torch.cat([self.embedding(names).flatten(1), mean], 1)  # (D, (k + 1) * width)
+        context = torch.cat(
+            [self.embedding(names).flatten(1), self._mean(bag), self._mean(text)], 1
+        )  # (D, (k + 2) * width)
         candidate = self.embedding(c_names).flatten(1)  # (C, k' * width)
         hidden = self.of_choice(torch.cat([context, numbers], 1))[of]
         hidden = hidden + self.of_candidate(torch.cat([candidate, c_numbers], 1))  # (C, hidden)
         alike = (self.product(context)[of] * candidate).sum(1)
         return self.rest(hidden).squeeze(1) + alike
+
+    def _mean(self, bag: Tensor) -> Tensor:
+        """The mean embedding of each bag, (D, width)."""
+        return self.embedding(bag).sum(1) / (bag > 0).sum(1, keepdim=True).clamp(min=1)
 
 
 def log_probabilities(scores: Tensor, starts: Tensor) -> Tensor:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from hearth.models.sketches.text_clues import NO_CLUES, Clues
 from hearth.repair.sketch_plan import Planned, plan
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.rules import DEFAULT, Rules
@@ -26,6 +27,7 @@ class Progress:
         steps: done so far.
         since: how many of them since the last step of the sketch.
         rules: of the engine.
+        clues: what the text says.
     """
 
     sketch: Steps
@@ -35,12 +37,13 @@ class Progress:
     steps: Steps = ()
     since: int = 0
     rules: Rules = DEFAULT
+    clues: Clues = NO_CLUES
 
     @classmethod
-    def start(cls, sketch: Sequence[Step], world: World, rules: Rules = DEFAULT) -> Progress:
+    def start(cls, sketch: Sequence[Step], world: World, rules: Rules = DEFAULT, clues: Clues = NO_CLUES) -> Progress:
         """Before the first step."""
         bare = tuple(plain(step, world.home) for step in sketch)
-        return cls(bare, world, 0, plan(bare, world, rules), rules=rules)
+        return cls(bare, world, 0, plan(bare, world, rules), rules=rules, clues=clues)
 
     @property
     def coming(self) -> Step | None:

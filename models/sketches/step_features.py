@@ -16,13 +16,14 @@ from hearth.models.decoding.options import Options
 from hearth.models.sketches.choices import Candidate, Choice
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.sketch_progress import Progress, plain
+from hearth.models.sketches.text_clues import AROUND, MOST, TextState
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.observation import reach
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import LYING, SITTING
 
-ROLES = 18
+ROLES = 19
 """What a node may be to the step that comes next; see `Situation.roles`."""
 
 STYLE = 9
@@ -95,10 +96,11 @@ class Offer:
         self.world, self.home = progress.world, progress.world.home
         self.me = self.world.agents[0]
         self.coming, self.proposed = progress.coming, progress.proposed
-        self._past = Past(progress.steps, progress.since)
-        self._known: dict[int, list[float]] = {}
-        self.planned = {each.step: n for n, each in reversed(list(enumerate(progress.plan)))}
-        self.candidates: list[Step | None] = list(dict.fromkeys(self._found(habits.actions)))
+        self._past = Past([self._deed(step) for step in progress.steps], progress.since)
+        self._known: dict[int, _OfNode] = {}
+        self.planned = {self._deed(each.step): n for n, each in reversed(list(enumerate(progress.plan)))}
+        self._deeds = {self._deed(step): step for step in self._found(habits.actions)}
+        self.candidates: list[Step | None] = list(self._deeds.values())
         if self.coming is None:
             self.candidates.append(None)
 
@@ -158,6 +160,7 @@ class Offer:
         yield [found for mask in around for found in list(indices(mask))[:2]]
         yield list(indices(self.home.rooms))
         yield self._tools()
+        yield self._mentioned()
 
     def _tools(self) -> list[int]:
         """Things that the sketch does not name, of classes that programs use with those it names; in the room first."""
@@ -171,6 +174,20 @@ class Offer:
             found += nodes[:2]
         return found
 
+    def _mentioned(self) -> list[int]:
+        """Things that the text mentions: those that steps were about, else the sketch's, else those nearest."""
+        home, world, places = self.home, self.world, self.progress.clues.places
+        if not places:
+            return []
+        room = rows.agent_room(world, self.me)
+        used = [node for step in (*self.progress.steps, *self.progress.sketch) for node in self._nodes(step)]
+        own = {home.classes[node]: node for node in reversed(used)}
+        found = [own[name] for name in places if name in own]
+        for name in [name for name in places if name not in own][:MOST]:
+            nodes = indices(next((home.by_class[n] for n in home.knowledge.same_class(name) if n in home.by_class), 0))
+            found += sorted(nodes, key=lambda i: (rows.room_of(world, i) != room, i))[:1]
+        return found
+
     def _nodes(self, step: Step) -> list[int]:
         return [self.home.index[ref.node] for ref in step.objects if ref.node is not None]
 
@@ -182,8 +199,10 @@ class Offer:
         if known:
             wanted = None if right is None else plain(right, self.home)
             place = self.candidates.index(wanted) if wanted in self.candidates else -1
-        candidates = [self._candidate(step) for step in self.candidates]
-        return Choice(self._names(), self._bag, self._numbers(), candidates, place)
+        candidates = [self._candidate(deed) for deed in self._deeds]
+        if len(self.candidates) > len(candidates):
+            candidates.append(Candidate([self.words.code(0), *[0] * (2 + AROUND)], [1.0, *NOTHING[1:]]))
+        return Choice(self._names(), self._bag, self._numbers(), candidates, place, self.progress.clues.bag(self.words))
 
     def _names(self) -> list[int]:
         """Three actions before, what the sketch and the plan want next, how far it is, and where the character is."""
@@ -234,6 +253,9 @@ class Offer:
             len(progress.plan) / 20,
             *(counts.count(name) / (1 + progress.next) for name in (*self.habits.style, *[""] * STYLE)[:STYLE]),
             *(self._here(nodes[0]) if nodes else [0.0] * 5),
+            self._text.place,
+            self._text.done,
+            float(bool(progress.clues.words)),
         ]
 
     def _here(self, node: int) -> list[float]:
@@ -248,6 +270,12 @@ class Offer:
         ]
 
     @cached_property
+    def _text(self) -> TextState:
+        """How far the text is done."""
+        steps = self.progress.steps
+        return TextState.of(self.progress.clues, (ref.name for step in steps for ref in step.objects[::-1]))
+
+    @cached_property
     def _close(self) -> int:
         return reach.close_to(self.world, self.me)
 
@@ -255,40 +283,61 @@ class Offer:
     def _faced(self) -> int:
         return reach.faced_by(self.world, self.me)
 
-    def _candidate(self, step: Step | None) -> Candidate:
-        word = self.words
-        if step is None:
-            return Candidate([word.code(0), 0, 0], [1.0, *[0.0] * (CANDIDATE_NUMBERS - 1)])
-        nodes = self._nodes(step)
-        first, second = (*nodes, -1, -1)[:2]
+    def _deed(self, step: Step) -> Deed:
+        first, second = (*self._nodes(step), -1, -1)[:2]
+        return step.action, first, second
+
+    @cached_property
+    def _next(self) -> tuple[Deed | None, Deed | None]:
+        """What the sketch and the plan want next."""
+        coming, proposed = (None if step is None else self._deed(step) for step in (self.coming, self.proposed))
+        return coming, proposed
+
+    def _candidate(self, deed: Deed) -> Candidate:
+        action, first, second = deed
+        coming, proposed = self._next
+        here, other = self._of(first), self._of(second)
         numbers = [
             0.0,
-            float(step == self.coming),
-            float(step == self.proposed),
-            1 / (1 + self.planned[step]) if step in self.planned else 0.0,
-            float(len(nodes) > 1),
-            *self._past.of(step),
-            *self._roles_of(first),
-            *self._roles_of(second)[:2],
-            *self._looks(first),
+            float(deed == coming),
+            float(deed == proposed),
+            1 / (1 + self.planned[deed]) if deed in self.planned else 0.0,
+            float(second >= 0),
+            *self._past.of(deed),
+            *here.numbers,
+            *other.numbers[:2],
+            *other.mention,
         ]
-        return Candidate([word.action(step.action), self._class(first), self._class(second)], numbers)
+        return Candidate([self.words.action(action), here.number, other.number, *here.around], numbers)
 
-    def _roles_of(self, node: int) -> list[float]:
-        return self.roles.get(node, NO_ROLES)
-
-    def _class(self, node: int) -> int:
-        return self.words.thing(self.home.classes[node]) if node >= 0 else 0
-
-    def _looks(self, node: int) -> list[float]:
-        """Where a node is to the character, and its states: the same for all steps about it."""
-        if node < 0:
-            return [0.0] * 15
+    def _of(self, node: int) -> _OfNode:
+        """What is so of all steps about a node."""
         known = self._known.get(node)
         if known is None:
-            states = [float(state >> node & 1) for state in self.world.states]
-            known = self._known[node] = [*self._here(node), *states]
+            known = self._known[node] = self._looked(node) if node >= 0 else NO_NODE
         return known
+
+    def _looked(self, node: int) -> _OfNode:
+        """Its class and the words about its mention; its roles, where it is, its states, where the text mentions it."""
+        clues, name = self.progress.clues, self.home.classes[node]
+        states = [float(state >> node & 1) for state in self.world.states]
+        place = clues.place(name)
+        mention = [1.0, place, place - self._text.place] if place >= 0 else [0.0] * MENTION_NUMBERS
+        numbers = [*self.roles.get(node, NO_ROLES), *self._here(node), *states, *mention]
+        return _OfNode(self.words.thing(name), clues.around(name, self.words), numbers, mention)
+
+
+Deed = tuple[str, int, int]
+"""A step as an action and the indices of its nodes; -1 for none."""
+
+
+class _OfNode(NamedTuple):
+    """The number of its class, those of the words about its mention, its numbers, and of these the mention's."""
+
+    number: int
+    around: Sequence[int]
+    numbers: Sequence[float]
+    mention: Sequence[float]
 
 
 NO_ROLES = [0.0] * ROLES
@@ -298,40 +347,43 @@ class Past:
     """What a program has done so far, counted once for all candidates.
 
     Args:
-        steps: so far.
+        deeds: so far.
         since: how many of them since the last step of the sketch.
     """
 
-    def __init__(self, steps: Sequence[Step], since: int) -> None:
-        self.times = Counter(steps)
-        self.about: dict[ObjectRef | None, list[str]] = {}
-        for step in steps:
-            self.about.setdefault(_first(step), []).append(step.action)
-        recent = steps[len(steps) - since :]
+    def __init__(self, deeds: Sequence[Deed], since: int) -> None:
+        self.times = Counter(deeds)
+        self.about: dict[int, list[str]] = {}
+        for action, first, _ in deeds:
+            self.about.setdefault(first, []).append(action)
+        recent = deeds[len(deeds) - since :]
         self.recent = {*recent}
-        self.recent_about = {_first(step) for step in recent}
-        self.recent_actions = {step.action for step in recent}
-        self.last = steps[-1] if steps else None
+        self.recent_about = {first for _, first, _ in recent}
+        self.recent_actions = {action for action, _, _ in recent}
+        self.last = deeds[-1] if deeds else ("", -2, -2)
 
-    def of(self, step: Step) -> list[float]:
+    def of(self, deed: Deed) -> list[float]:
         """Whether a step, its action and its object have come before, and how lately."""
-        first = _first(step)
-        about = self.about.get(first, []) if first else []
+        action, first, _ = deed
+        about = self.about.get(first, []) if first >= 0 else []
         return [
-            min(self.times[step], 3) / 2,
-            float(step in self.recent),
-            min(about.count(step.action), 3) / 2,
+            min(self.times[deed], 3) / 2,
+            float(deed in self.recent),
+            min(about.count(action), 3) / 2,
             min(len(about), 4) / 4,
-            float(first is not None and first in self.recent_about),
-            float(self.last is not None and self.last.action == step.action),
-            float(step.action in self.recent_actions),
-            float(self.last is not None and _first(self.last) == first),
+            float(first >= 0 and first in self.recent_about),
+            float(self.last[0] == action),
+            float(action in self.recent_actions),
+            float(self.last[1] == first),
         ]
 
 
-def _first(step: Step) -> ObjectRef | None:
-    return step.objects[0] if step.objects else None
+MENTION_NUMBERS = 3
+"""Numbers of a node that the text is about."""
 
-
-CANDIDATE_NUMBERS = 5 + 8 + ROLES + 2 + 5 + 10
+CANDIDATE_NUMBERS = 5 + 8 + ROLES + 2 + 5 + 10 + 2 * MENTION_NUMBERS
 """Numbers of a candidate step."""
+
+NOTHING = [0.0] * CANDIDATE_NUMBERS
+
+NO_NODE = _OfNode(0, [0] * AROUND, [0.0] * (ROLES + 5 + 10 + MENTION_NUMBERS), [0.0] * MENTION_NUMBERS)

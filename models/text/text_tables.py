@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from hearth.models.data import Example, examples
-from hearth.models.evaluation import by_group
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore
 from hearth.models.predicting import completed
+from hearth.models.table_rows import Entrant, Row, scored_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
 from hearth.scoring.baselines import THESIS
-from hearth.scoring.bootstrap import Interval
-from hearth.scoring.dataset_scores import score_steps
-from hearth.scoring.evaluate import METRICS
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -27,33 +24,6 @@ TABLES = ("4.4", "4.5")
 COLUMNS = {"action": "lcs_action", "object": "lcs_object", "step": "lcs_step", "mean": "lcs_mean",
            "executable": "executable", "f1": "f1", "goal": "goal"}  # fmt: skip
 """Columns of the table, and the scores that they show."""
-
-
-class Row(NamedTuple):
-    """A method's scores: the thesis's are single numbers, ours have intervals by activity.
-
-    Attributes:
-        method: its name.
-        of: `thesis`, `yardstick` or `ours`.
-        scores: by column.
-        seeds: how many trained models the scores are means of; 0 for what is not trained.
-        minutes: of training, their mean.
-    """
-
-    method: str
-    of: str
-    scores: dict[str, Interval | float]
-    seeds: int = 0
-    minutes: float | None = None
-
-
-class Entrant(NamedTuple):
-    """A method and its programs for the test examples, once for each seed."""
-
-    method: str
-    of: str
-    answers: list[list[Steps]]
-    minutes: list[float]
 
 
 def table(
@@ -87,7 +57,8 @@ def table(
     entrants = [*_yardsticks(dataset, split, test, seed), *_trained(models, test, beam)]
     if repaired:
         entrants += [_completed(dataset, each, test) for each in entrants if each.of == "ours"]
-    return [*_of_thesis(number), *_scored(dataset, test, entrants, seed)]
+    names, groups = [each.executions[0] for each in test], [each.activity for each in test]
+    return [*_of_thesis(number), *scored_rows(dataset, names, groups, entrants, COLUMNS, seed)]
 
 
 def _of_thesis(number: str) -> Iterator[Row]:
@@ -101,18 +72,18 @@ def _of_thesis(number: str) -> Iterator[Row]:
 def _yardsticks(dataset: Dataset, split: str, test: Sequence[Example], seed: int) -> Iterator[Entrant]:
     """What needs no training, and another person's program for the same text, where there is one."""
     train = examples(dataset, split, "train", originals=True)
-    yield Entrant("Empty program", "yardstick", [[()] * len(test)], [])
+    yield Entrant("Empty program", "yardstick", [[()] * len(test)])
     drawn = [rng(seed, "random retrieval", each.program_id).choice(train).steps for each in test]
-    yield Entrant("Random retrieval", "yardstick", [drawn], [])
+    yield Entrant("Random retrieval", "yardstick", [drawn])
     others = [_sibling(each, test) for each in test]
-    if any(others):
-        yield Entrant("Another person, same text", "yardstick", [others], [])
+    if any(each is not None for each in others):
+        yield Entrant("Another person, same text", "yardstick", [others])
 
 
-def _sibling(one: Example, test: Sequence[Example]) -> Steps:
-    """The program of another example with the same text; empty if there is none."""
+def _sibling(one: Example, test: Sequence[Example]) -> Steps | None:
+    """The program of another example with the same text."""
     found = (each.steps for each in test if each is not one and _text(each) == _text(one))
-    return next(found, ())
+    return next(found, None)
 
 
 def _text(example: Example) -> tuple[str, str]:
@@ -120,50 +91,22 @@ def _text(example: Example) -> tuple[str, str]:
 
 
 def _trained(models: Sequence[Path | str], test: Sequence[Example], beam: int) -> list[Entrant]:
-    found: dict[str, Entrant] = {}
+    answers: dict[str, list[list[Steps]]] = {}
+    minutes: dict[str, list[float]] = {}
     for model in models:
         name, trained = restore(model)
         texts = {_text(each): each.request for each in test}
         known = dict(zip(texts, trained.predict(list(texts.values()), beam), strict=True))
-        entrant = found.setdefault(name, Entrant(name, "ours", [], []))
-        entrant.answers.append([known[_text(each)] for each in test])
-        minutes = trained.checkpoint().trained.get("minutes")
-        entrant.minutes.extend([minutes] if minutes is not None else [])
-    return list(found.values())
+        answers.setdefault(name, []).append([known[_text(each)] for each in test])
+        spent = trained.checkpoint().trained.get("minutes")
+        minutes.setdefault(name, []).extend([] if spent is None else [spent])
+    return [Entrant(name, "ours", found, minutes[name]) for name, found in answers.items()]
 
 
 def _completed(dataset: Dataset, entrant: Entrant, test: Sequence[Example]) -> Entrant:
     names = [each.executions[0] for each in test]
     answers = []
     for answer in entrant.answers:
-        done = dict(completed(dataset, zip(names, answer, strict=True)))
+        done = dict(completed(dataset, ((name, steps or ()) for name, steps in zip(names, answer, strict=True))))
         answers.append([done[name] for name in names])
     return Entrant(f"{entrant.method}, repaired", "ours", answers, entrant.minutes)
-
-
-def _scored(dataset: Dataset, test: Sequence[Example], entrants: Sequence[Entrant], seed: int) -> Iterator[Row]:
-    every = [answer for each in entrants for answer in each.answers]
-    pairs = ((each.executions[0], answer[place]) for place, each in enumerate(test) for answer in every)
-    scored = score_steps(dataset, pairs)
-    groups = [each.activity for each in test]
-    first = 0
-    for each in entrants:
-        count = len(each.answers)
-        columns: dict[str, list[float | None]] = {}
-        for column, metric in COLUMNS.items():
-            found = [[METRICS[metric](scored[row * len(every) + first + k]) for k in range(count)]
-                     for row in range(len(test))]  # fmt: skip
-            columns[column] = [_mean(values) for values in found]
-        if each.method.startswith("Another"):
-            missing = [not answer for answer in each.answers[0]]
-            columns = {name: [None if gone else value for value, gone in zip(values, missing, strict=True)]
-                       for name, values in columns.items()}  # fmt: skip
-        first += count
-        minutes = sum(each.minutes) / len(each.minutes) if each.minutes else None
-        scores: dict[str, Any] = dict(by_group(columns, groups, seed))
-        yield Row(each.method, each.of, scores, count if each.of == "ours" else 0, minutes)
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    given = [float(value) for value in values if value is not None]
-    return sum(given) / len(given) if given else None
