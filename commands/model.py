@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
 from hearth.commands import output
-
-if TYPE_CHECKING:
-    from hearth.models.showing import Shown
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -209,63 +206,38 @@ def _score(value: Any) -> str:
 @app.command("show")
 def show(
     model: str,
-    text: str,
+    text: str = "",
     *,
-    home: str = "maple",
+    sketch: Path | None = None,
+    writer: str = "",
+    home: list[str] | None = None,
     homes: Path | None = None,
     kb: Path | None = None,
     beam: int = 1,
+    film: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Write a program for a text, and run it in a home: the words, the sketch, the program, each step shown.
+    """Write a program for a text or a sketch and run it in a home: the words, the sketch, the program, each step shown.
 
-    The sketch is what the model writes. Its objects are bound to the home's, steps that it lacks are inserted as in
-    `repair`, and those that cannot run there are left out. The status is 1 if nothing is left.
+    The sketch is what a model of texts writes, or the file of --sketch for a model of sketches. Its objects are bound
+    to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
+    two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
 
     \b
     Example:
       python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
+      python cli.py model show planner --sketch sketch.txt --home maple --home birch
     """
-    from hearth.commands.inputs import read_knowledge
-    from hearth.grounding.environments.default_state import prepared
-    from hearth.homes import library
-    from hearth.models import showing
-    from hearth.models.model_registry import restore
-    from hearth.simulation.world.home import Home
-    from hearth.simulation.world.world import World
+    from hearth.commands import model_shown
 
-    known = read_knowledge(kb)
-    place = Home.from_graph(library.load_graph(home, known, homes), home, known)
-    _, trained = restore(model)
-    shown = showing.show(trained, text, World.start(prepared(place).home), known, beam)
+    shown = model_shown.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
+    films = model_shown.filmed(shown, film, homes, kb) if film else {}
     if as_json:
-        output.emit(_document(shown))
+        documents = [model_shown.document(each) | films.get(name, {}) for name, each in shown.items()]
+        named = [{"home": name, **each} for name, each in zip(shown, documents, strict=True)]
+        output.emit(documents[0] if len(named) == 1 else {"homes": named})
     else:
-        _print(shown, home)
-    output.status(shown.failure is not None, strict=True)
-
-
-def _document(shown: Shown) -> dict[str, Any]:
-    from hearth.schemas.syntax import print_step
-
-    execution, left_out, _ = shown.completion
-    return {
-        "words": shown.words,
-        "sketch": [print_step(step) for step in shown.sketch],
-        "program": [print_step(step) for step in execution.program.steps],
-        "executable": execution.executable and shown.failure is None,
-        "failure": shown.failure,
-        "left_out": [{"step": print_step(step), "failure": failure} for step, failure in left_out],
-    }
-
-
-def _print(shown: Shown, home: str) -> None:
-    from hearth.schemas.syntax import print_step
-
-    document = _document(shown)
-    print(f"Words: {output.shown(' '.join(shown.words)) or 'none'}")
-    print("Sketch:", *(f"  {line}" for line in document["sketch"]), sep="\n")
-    for step, failure in shown.completion.left_out:
-        print(f"  left out: {print_step(step)}: {failure.message()}")
-    print(f"Program in {home}:", *(f"  {line}" for line in document["program"]), sep="\n")
-    print("It runs." if document["executable"] else f"Nothing runs: {shown.failure and shown.failure.message()}")
+        model_shown.printed(shown)
+        for name, made in films.items():
+            print(f"Film in {name}: {', '.join(made['pages'])}")
+    output.status(sum(each.failure is not None for each in shown.values()), strict=True)

@@ -55,7 +55,7 @@ def program(
     title, size = f"{execution.program.title}, in {home}", (width, width * 3 // 4)
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
     if mode == "video":
-        made = _videos(shooting, _split(cameras), fps)
+        made = videos(shooting, _split(cameras), fps)
     else:
         made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities))
     failure = execution.failure.message() if execution.failure else None
@@ -109,7 +109,8 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
     return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
 
 
-def _videos(shooting: Shooting, names: list[str], fps: float) -> dict[str, Any]:
+def videos(shooting: Shooting, names: list[str], fps: float) -> dict[str, Any]:
+    """Film what is to be pictured by some cameras; files, pages and steps."""
     import orjson
 
     from hearth.rendering.film.contact import caption

@@ -143,7 +143,7 @@ def predict_part(
         split, part: of the dataset; `part` is a prefix.
         beam: as in `Trained.predict`.
         repaired: bind and repair each program in its environment, and leave out what can't run there.
-        is_constrained: decode with the engine in the loop.
+        is_constrained: decode with the engine in the loop; models of sketches always do.
         originals: leave out executions of augmented programs.
         sketches: `annotated` or `inferred`: which go before the others.
         seen: reports progress.
@@ -155,7 +155,7 @@ def predict_part(
     name, trained = restore(model)
     names = _asked(dataset, split, part, originals)
     text = MODELS[name].input == "text"
-    if is_constrained:
+    if is_constrained and text:  # models of sketches do so by themselves
         found = constrained(trained, dataset, names, beam, sketches, seen)
     else:
         found = predict(trained, dataset, names, beam, text=text, sketches=sketches, seen=seen)

@@ -18,6 +18,7 @@ import torch
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 
+from hearth.models.devices import device
 from hearth.models.interface import Training
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -88,6 +89,7 @@ def train(task: Task[B], how: Training, seen: Seen = unseen) -> Outcome:
     Raises:
         HearthError: BAD_ARGUMENT, if the loss is not a number.
     """
+    device()  # one thread: sums are the same on any number of cores, and small networks are faster
     optimiser = torch.optim.AdamW([each for each in task.module.parameters() if each.requires_grad], lr=how.rate)
     state = _State(task, how, optimiser)
     epochs = state.restore()

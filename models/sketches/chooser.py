@@ -19,6 +19,7 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import Corpus, Example
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
+from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.sketches.choices import Choice, Packed, joined, packed
@@ -122,6 +123,7 @@ class Chooser(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedChooser:
         """The model of a checkpoint."""
+        device()
         settings, content = cls.of(dict(checkpoint.settings)), checkpoint.content
         words = Words(content["classes"], content["actions"], content["words"])
         tools = {name: tuple(each) for name, each in content["tools"].items()}

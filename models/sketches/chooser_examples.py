@@ -16,6 +16,7 @@ from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import Habits, Offer
 from hearth.models.sketches.text_clues import NO_CLUES, Clues
 from hearth.schemas.failures import Failure
+from hearth.schemas.rng import rng
 from hearth.simulation.engine import act
 
 
@@ -34,15 +35,26 @@ def node_choices(examples: Iterable[Grounded], words: Words) -> Iterator[Choice]
             bound[use.key] = nodes[use.key]
 
 
-def step_choices(examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False) -> Iterator[Choice]:
-    """The choice of each step of each program, and of its end; those that are not offered are left out."""
+def step_choices(
+    examples: Iterable[Grounded], habits: Habits, words: Words, *, text: bool = False, most: int = 24
+) -> Iterator[Choice]:
+    """The choice of each step of each program, and of its end; those that are not offered are left out.
+
+    Args:
+        examples: programs with their sketches.
+        habits: what programs do beside their sketches.
+        words: numbers of names.
+        text: whether the title and the description are looked at.
+        most: candidates of a choice, the right one and random others.
+    """
     for each in examples:
         grammar = Grammar(each.world.home, each.rules)
         clues = Clues.of(each.request, each.world.home.knowledge) if text else NO_CLUES
+        random = rng(0, "offered steps", each.id)
         progress = Progress.start(each.sketch, each.world, each.rules, clues)
         for step in (*each.steps, None):
             offer = Offer(progress, grammar.options(progress.world), habits, words)
-            if (choice := offer.choice(step, known=True)).right >= 0:
+            if (choice := offer.known_choice(step, most, random)) is not None:
                 yield choice
             if step is None:
                 break

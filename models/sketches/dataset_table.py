@@ -14,14 +14,14 @@ class DatasetRow(NamedTuple):
     Attributes:
         programs: of which.
         of: `thesis` or `ours`.
-        count: of programs.
+        number: of programs.
         length: mean number of steps.
         nodes, edges: of the graphs at their start; ours have all relations in the home's graph.
     """
 
     programs: str
     of: str
-    count: int
+    number: int
     length: float | None
     nodes: float | None
     edges: float | None

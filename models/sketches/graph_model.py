@@ -14,6 +14,7 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.data import Corpus, Example
 from hearth.models.decoding.scorers import Asked, Part, Scores
 from hearth.models.decoding.search import Search, Start, decode
+from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.sketches.graph_inputs import NO_NODE, Batch, GraphInput, batched, graph_input, targets
@@ -85,6 +86,7 @@ class GraphModel(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedGraphModel:
         """The model of a checkpoint."""
+        device()
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         words = Words(content["classes"], content["actions"])
         network = filled(lambda: settings.network(words, content["written"]), checkpoint.weights)

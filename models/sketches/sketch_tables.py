@@ -217,7 +217,7 @@ def _texts(
     models: Sequence[Path | str], beam: int, dataset: Dataset, names: Sequence[str]
 ) -> list[tuple[str, Mapping[str, Steps]]]:
     """The models that write sketches, and their sketches by execution."""
-    made = []
+    made: list[tuple[str, Mapping[str, Steps]]] = []
     for name, trained, _ in _restored(models):
         if MODELS[name].output == "sketch":
             written = predict(trained, dataset, names, beam, text=True)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 from random import Random
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import hearth
@@ -27,6 +30,22 @@ def torch_is_there():
 @pytest.fixture(scope="session")
 def dataset(made):
     return hearth.load(made.out)
+
+
+@pytest.fixture(scope="session")
+def parted(made, tmp_path_factory):
+    """The same dataset with every third activity in `test`, and every third in `validation`."""
+    folder = shutil.copytree(made.out, tmp_path_factory.mktemp("parted") / "out")
+    (path,) = (folder / "publish/splits").glob("*.parquet")
+    table = pq.read_table(path)
+    activities = hearth.load(made.out).rows("SELECT program_id, activity_id FROM programs")[1]
+    order = {name: number for number, name in enumerate(sorted({activity for _, activity in activities}))}
+    number = {program: order[activity] for program, activity in activities}
+    parts = pa.array([("train", "test", "validation")[number[row] % 3] for row in table["program_id"].to_pylist()])
+    place = table.schema.get_field_index("part")
+    table = table.set_column(place, table.schema.field(place), parts.cast(table.schema.field(place).type))
+    pq.write_table(table, path)
+    return hearth.load(folder)
 
 
 def steps_of(*lines):

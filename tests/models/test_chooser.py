@@ -24,6 +24,7 @@ from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_ch
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress, plain
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
+from hearth.models.sketches.text_clues import AROUND
 from hearth.repair.sketch_plan import plan, planned_program
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
@@ -61,7 +62,7 @@ def untrained(knowledge):
     habits = Habits(frozenset({"Walk", "Find", "Grab", "Release", "Open", "Close", "StandUp", "LookAt"}), (), {})
     rankers = {
         "nodes": settings.ranker(words, (7, 1, KINDS, NUMBERS)),
-        "steps": settings.ranker(words, (15, 22, 3, CANDIDATE_NUMBERS)),
+        "steps": settings.ranker(words, (15, 25, 3 + AROUND, CANDIDATE_NUMBERS)),
     }
     for ranker in rankers.values():
         torch.nn.init.normal_(ranker.rest[-1].weight)

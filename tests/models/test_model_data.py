@@ -8,20 +8,39 @@ from pathlib import Path
 import pytest
 
 import hearth
+from hearth.datasets.format.sketch_choice import sketches_query
 from hearth.models.data import carved, corpus, examples, requests, shared
 from hearth.models.interface import Request
 from hearth.schemas.diagnostics import HearthError
 from hearth.scoring.dataset_scores import chosen
 
+OWN = Path(__file__).resolve().parents[2] / "data_out"
+"""The dataset that `make` builds, where it did."""
 
-def test_no_title_text_or_step_list_of_test_is_in_train():
-    """On the dataset that `make` builds."""
-    folder = Path(__file__).resolve().parents[2] / "data_out"
-    if not (folder / "publish/manifest.json").exists():
-        pytest.skip("run `make` first")
-    found = corpus(hearth.load(folder), "activities")
-    assert len(found.train) > 1_000
-    assert set(found.shared.values()) == {0}
+
+def test_no_title_text_or_step_list_of_test_is_in_train(parted):
+    for dataset in (parted, *([hearth.load(OWN)] if (OWN / "publish/manifest.json").exists() else [])):
+        found, test = corpus(dataset, "activities"), examples(dataset, "activities", "test", originals=True)
+        assert found.train and found.validation and test
+        assert set(found.shared.values()) == {0} == set(shared(found.train, test).values())
+
+
+def test_corpora_of_sketches_have_sketches_for_programs(parted):
+    found = corpus(parted, "activities", originals=False)
+    some = {each.program_id: each.sketch for each in (*found.train, *found.validation) if each.sketch}
+    of = found.of_sketches()
+    assert {each.program_id: each.steps for each in (*of.train, *of.validation)} == some and some
+
+
+def test_which_sketches_are_taken(parted):
+    """Those of people go before inferred ones, or the other way round."""
+    query = "SELECT program_id, origin, keep FROM sketches WHERE keep IS NOT NULL"
+    rows = parted.rows(query)[1]
+    of = {kind: dict(parted.rows(sketches_query(kind))[1]) for kind in ("annotated", "inferred")}
+    assert of["inferred"] == {name: keep for name, origin, keep in rows if origin not in ("people", "written")}
+    assert set(of["annotated"]) >= set(of["inferred"])
+    with pytest.raises(HearthError, match="no sketches are `drawn`"):
+        sketches_query("drawn")
 
 
 def test_what_train_and_test_share_is_counted_and_recorded(dataset, eight):

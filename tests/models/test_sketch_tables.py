@@ -1,0 +1,82 @@
+"""Tables of chapter 5: rows beside the thesis's, what is tested, and sketches that models of texts write."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth import cli
+from hearth.models.fit_model import fit
+from hearth.models.sketches.dataset_table import dataset_table
+from hearth.models.sketches.sketch_tables import COLUMNS, table
+from hearth.schemas.diagnostics import HearthError
+
+HOW = {"epochs": 1, "minutes": 0.0, "rate": 1e-3, "seed": 0}
+
+
+SPLIT = "activities"
+
+
+@pytest.fixture(scope="module")
+def models(parted, tmp_path_factory):
+    """Models that have hardly learned anything."""
+    folder = tmp_path_factory.mktemp("models")
+    for name, settings in (
+        ("resactgraph", ("programs=8", "hidden=16")),
+        ("retrieve-sketch", ()),
+        ("unaries", ("programs=8", "hidden=16")),
+    ):
+        fit(name, parted.folder, folder / name, SPLIT, settings, how=HOW)
+    return folder
+
+
+def test_5_2(parted, models):
+    rows = table("5.2", parted, SPLIT, [models / "resactgraph", models / "resactgraph", "planner"], most=6)
+    by_name = {row.method: row for row in rows}
+    assert by_name["ResActGraph"].scores["lcs_instances"] == 0.516 and by_name["ResActGraph"].of == "thesis"
+    ours = by_name["resactgraph (K=2)"]
+    assert ours.seeds == 2 and ours.scores["executable"].mean == ours.scores["parsable"].mean == 1
+    assert by_name["planner"].scores["executable"].mean == 1
+    assert by_name["empty program"].scores["f1"].mean < by_name["planner"].scores["f1"].mean
+    assert {"random legal steps", "sketch alone", "nearest sketch", "resactgraph (K=2), free"} <= set(by_name)
+    assert set(ours.scores) <= set(COLUMNS)
+
+
+def test_5_3_has_models_by_rounds(parted, models):
+    rows = table("5.3", parted, SPLIT, [models / "resactgraph", models / "unaries"], most=4)
+    names = [row.method for row in rows if row.of != "thesis"]
+    assert names == ["planner", "resactgraph (K=2)", "resactgraph (K=2), free", "unaries (K=0)", "unaries (K=0), free"]
+
+
+def test_5_4_runs_after_a_model_of_texts(parted, models):
+    rows = table("5.4", parted, SPLIT, [models / "retrieve-sketch", models / "resactgraph"], most=4)
+    by_name = {row.method: row for row in rows}
+    written = by_name["retrieve-sketch, planner"]
+    assert 0 <= written.scores["sketch"].mean <= 1 and written.scores["executable"].mean == 1
+    assert "sketch" not in by_name["planner, given sketches"].scores
+    with pytest.raises(HearthError, match="writes sketches"):
+        table("5.4", parted, SPLIT, ["planner"], most=4)
+
+
+def test_5_1_counts_programs(parted):
+    rows = {row.programs: row for row in dataset_table(parted)}
+    ((programs,),) = parted.rows("SELECT count(*) FROM programs WHERE parent_id IS NULL")[1]
+    assert rows["Original"].number == programs and rows["VirtualHome"].number == 2807
+    assert rows["Executable"].nodes > 100 and rows["Executable"].edges > rows["Executable"].nodes
+
+
+def test_the_command(parted, models):
+    words = ["model", "table", "5.2", str(parted.folder), "--model", "planner", "--most", "2", "--json"]
+    result = CliRunner().invoke(cli.app, words)
+    assert result.exit_code == 0, result.output
+    assert {row["of"] for row in json.loads(result.stdout)} == {"thesis", "yardstick"}
+    assert CliRunner().invoke(cli.app, ["model", "table", "5.1", str(parted.folder)]).exit_code == 0
+    result = CliRunner().invoke(cli.app, ["model", "table", "5.9", str(parted.folder)])
+    assert result.exit_code == 1 and "there are 5.2" in result.output
+
+
+def test_kinds_of_sketches(parted):
+    with pytest.raises(HearthError, match="annotated, inferred"):
+        table("5.2", parted, SPLIT, ["planner"], most=2, sketches="drawn")
