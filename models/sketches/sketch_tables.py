@@ -13,7 +13,7 @@ from hearth.models.evaluation import by_group
 from hearth.models.interface import Request, Steps
 from hearth.models.model_registry import MODELS, restore
 from hearth.models.predicting import predict
-from hearth.models.table_rows import Entrant, Row, scored_rows
+from hearth.models.scored_rows import Entrant, Row, scored_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng

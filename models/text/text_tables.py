@@ -10,7 +10,7 @@ from hearth.models.data import Example, examples
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore
 from hearth.models.predicting import completed
-from hearth.models.table_rows import Entrant, Row, scored_rows
+from hearth.models.scored_rows import Entrant, Row, scored_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
