@@ -26,11 +26,11 @@ from hearth.models.sketches.choices import Choice, Packed, joined, packed
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
-from hearth.models.sketches.node_features import Places, node_choice
+from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress
-from hearth.models.sketches.step_features import Habits, Offer
-from hearth.models.sketches.text_clues import NO_CLUES, Clues, frequent
+from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
+from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, frequent
 from hearth.models.training import Outcome, Task, train
 from hearth.repair.sketch_plan import bound_to_nearest, complete_steps
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -40,6 +40,9 @@ from hearth.storage.parallel import Seen, unseen
 NO_HABITS = Habits(frozenset(), (), {})
 
 PARTS = ("train", "validation")
+
+SIZES = {"nodes": (7, 1, KINDS, NUMBERS), "steps": (15, 25, 3 + AROUND, CANDIDATE_NUMBERS)}
+"""Numbers of names and numbers, of a choice and of a candidate."""
 
 PACK = 3_000
 """Choices whose features are packed at once: as lists they take ten times the memory."""
@@ -130,6 +133,8 @@ class Chooser(Settings):
         habits = Habits(frozenset(content["optional"]), tuple(content["style"]), tools)
         rankers = {}
         for name, sizes in content["sizes"].items():
+            if tuple(sizes) != SIZES[name]:
+                raise ValueError(f"choices of {name} have other features in this version")
             named = checkpoint.weights.items()
             own = {key.removeprefix(f"{name}."): value for key, value in named if key.startswith(f"{name}.")}
             rankers[name] = filled(partial(settings.ranker, words, sizes), own)

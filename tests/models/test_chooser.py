@@ -16,16 +16,16 @@ from hearth.models.decoding.options import Grammar
 from hearth.models.interface import Request, Training
 from hearth.models.model_registry import restore
 from hearth.models.sketches.choices import Candidate, Choice, joined, packed
-from hearth.models.sketches.chooser import NO_HABITS, Chooser, TrainedChooser
+from hearth.models.sketches.chooser import NO_HABITS, SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.chooser_examples import step_choices
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress, plain
-from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
-from hearth.models.sketches.text_clues import AROUND
+from hearth.models.sketches.step_features import Habits, Offer
 from hearth.repair.sketch_plan import plan, planned_program
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_steps
@@ -61,8 +61,8 @@ def untrained(knowledge):
     settings, words = Chooser(), Words.of(knowledge)
     habits = Habits(frozenset({"Walk", "Find", "Grab", "Release", "Open", "Close", "StandUp", "LookAt"}), (), {})
     rankers = {
-        "nodes": settings.ranker(words, (7, 1, KINDS, NUMBERS)),
-        "steps": settings.ranker(words, (15, 25, 3 + AROUND, CANDIDATE_NUMBERS)),
+        "nodes": settings.ranker(words, SIZES["nodes"]),
+        "steps": settings.ranker(words, SIZES["steps"]),
     }
     for ranker in rankers.values():
         torch.nn.init.normal_(ranker.rest[-1].weight)
@@ -232,3 +232,12 @@ def test_the_planner_is_a_model(asked):
     name, model = restore("planner")
     assert name == "planner"
     assert model.predict(asked) == [planned_program(each.sketch, each.world) for each in asked]
+
+
+def test_a_checkpoint_with_other_features_is_refused(untrained, tmp_path):
+    """As those of older versions."""
+    whole = untrained.checkpoint()
+    sizes = {**whole.content["sizes"], "steps": [15, 22, 3, 44]}
+    save(dataclasses.replace(whole, content={**whole.content, "sizes": sizes}), tmp_path)
+    with pytest.raises(HearthError, match="other features"):
+        restore(tmp_path)

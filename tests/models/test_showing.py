@@ -55,6 +55,13 @@ def test_from_a_text_to_a_sketch_to_a_program():
     assert found["executable"] and found["program"] and found["sketch"]
 
 
+def test_the_chooser_that_comes_with_hearth_writes_at_once(sketch):
+    found = json.loads(call("chooser", "--sketch", sketch, "--home", "cedar", "--json").stdout)
+    program = " ".join(found["program"])
+    assert found["executable"] and "[SwitchOn] <television>" in program and "[Sit] <couch>" in program
+    assert len(found["program"]) > len(found["sketch"])
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -9,9 +9,8 @@ import torch
 
 from hearth.models.decoding.options import Grammar
 from hearth.models.interface import Request
-from hearth.models.sketches.chooser import Chooser, TrainedChooser
+from hearth.models.sketches.chooser import SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.name_numbers import Words
-from hearth.models.sketches.node_features import KINDS, NUMBERS
 from hearth.models.sketches.sketch_progress import Progress
 from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, NO_NODE, ROLES, Habits, Offer
 from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, TextState, frequent
@@ -94,8 +93,8 @@ def test_a_chooser_reads_the_text_only_if_it_is_to(environments, knowledge):
     settings, words = Chooser(text=True), Words.of(knowledge, ("light", "on", "sit", "take", "the"))
     habits = Habits(frozenset({"Walk", "Find", "SwitchOn", "LookAt", "TurnTo", "Sit"}), (), {})
     rankers = {
-        "nodes": settings.ranker(words, (7, 1, KINDS, NUMBERS)),
-        "steps": settings.ranker(words, (15, 25, 3 + AROUND, CANDIDATE_NUMBERS)),
+        "nodes": settings.ranker(words, SIZES["nodes"]),
+        "steps": settings.ranker(words, SIZES["steps"]),
     }
     for ranker in rankers.values():
         torch.nn.init.normal_(ranker.rest[-1].weight)
