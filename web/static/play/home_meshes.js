@@ -79,16 +79,16 @@ class Pile {
   }
 }
 
-const shader = (attribute) => new THREE.RawShaderMaterial({
+const shader = (attribute, between) => new THREE.RawShaderMaterial({
   glslVersion: THREE.GLSL3,
   side: THREE.DoubleSide,
-  vertexShader: `in vec3 position; in vec4 ${attribute}; uniform mat4 modelViewMatrix; uniform mat4 projectionMatrix; flat out lowp vec4 value;
+  vertexShader: `in vec3 position; in vec4 ${attribute}; uniform mat4 modelViewMatrix; uniform mat4 projectionMatrix; ${between} out lowp vec4 value;
     void main() { value = ${attribute}; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-  fragmentShader: "precision lowp float; flat in lowp vec4 value; out vec4 colour; void main() { colour = value; }",
+  fragmentShader: `precision lowp float; ${between} in lowp vec4 value; out vec4 colour; void main() { colour = value; }`,
 });
 
-export const SHOWN = shader("shade"); // what one sees
-export const NUMBERED = shader("thing"); // ids as colours, for what is under the cursor
+export const SHOWN = shader("shade", "smooth"); // what one sees
+export const NUMBERED = shader("thing", "flat"); // ids as colours, for what is under the cursor
 
 const own = (node) => {
   for (let each = node; each; each = each.parent) if (each.userData.id !== undefined) return each;
