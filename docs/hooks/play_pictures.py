@@ -70,7 +70,7 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
         try:
             for name, how in PICTURES.items():
-                size = {"width": how["width"], "height": 1000 if how["width"] > 400 else 780}
+                size: Any = {"width": how["width"], "height": 1000 if how["width"] > 400 else 780}
                 page = browser.new_context(viewport=size, color_scheme=how["scheme"]).new_page()
                 take(page, address, how, asked.out / f"{name}.png")
         finally:
