@@ -204,6 +204,7 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
       python cli.py study report build/studies/people-with-helpers --out report
       python cli.py study report collected --study people-alone --json
     """
+    from hearth.studies.study_figures import names_of
     from hearth.studies.study_findings import findings
     from hearth.studies.study_report import as_json as for_machines
     from hearth.studies.study_report import test_row, write_report
@@ -218,8 +219,9 @@ def report(source: Path, *, out: Path | None = None, store: str = "", study: str
         return
     marked = "simulated: agents in people's places" if found.simulated else "people"
     print(f"{found.study.title} ({marked}): {found.people} finished, {found.left} left before the end\n")
+    who_in_words = names_of(found)
     rows = [
-        [group, who, metric, each.count, each.mean, each.error]
+        [group, who_in_words[who], metric, each.count, each.mean, each.error]
         for who, group, metric in found.values
         if (each := found.figure(who, group, metric)) is not None
     ]

@@ -16,8 +16,8 @@ from hearth.studies.study_findings import AGENT, PEOPLE, Findings, scales
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-STUDIES = {"6-8": "people-with-helpers", "7-6b": "online", "4-9": "programs-by-lcs", "B.4.3": "likeness-of-films"}
-"""The study of each figure; B.4.3 has its numbers in the text."""
+STUDIES = {"6-8": "people-with-helpers", "7-6b": "online", "4-9": "programs-by-lcs", "likeness": "likeness-of-films"}
+"""The study of each figure; the likeness of films has no figure in the thesis, but numbers in B.4.3."""
 
 BLUE, ORANGE, GREY = "#1b4f72", "#d68910", "#7f8c8d"
 COLOURS = {PEOPLE: BLUE, AGENT: ORANGE}
@@ -176,6 +176,6 @@ FIGURES: dict[str, Callable[[Findings, Findings | None], Any]] = {
     "6-8": with_helpers,
     "7-6b": online,
     "4-9": by_band,
-    "B.4.3": likeness,
+    "likeness": likeness,
 }
 """How each figure is drawn."""
