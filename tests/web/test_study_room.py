@@ -91,7 +91,8 @@ def finish(server, client, acts=()):
     cookie = {"cookie": f"hearth={client.cookies['hearth']}"}
     with client.websocket_connect(f"ws://127.0.0.1{address}/live", headers=cookie) as link:
         link.send_json({"type": "hello", "n": 1, "tab": "t"})
-        link.receive_json()
+        begun = link.receive_json()
+        assert begun["helper"] in ("none", "somebody"), "which helper it is, people do not know"
         number = 2
         for tick, act in enumerate(acts):
             link.send_json({"type": "act", "n": number, "tick": tick, "act": act})
@@ -100,6 +101,8 @@ def finish(server, client, acts=()):
             number += 1
         link.send_json({"type": "finish", "n": number})
         link.receive_json()
+    assert client.get(f"{address}/episode.jsonl").status_code == 403
+    assert address not in client.get("/play/").text
     return client.get("/study/").text
 
 

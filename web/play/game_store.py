@@ -39,6 +39,11 @@ class Stored(NamedTuple):
     end: dict[str, Any] | None
     result: dict[str, Any] | None
 
+    @property
+    def blind(self) -> bool:
+        """Whether it is of a study, whose people do not know which helper they have (thesis 7.5)."""
+        return not self.go_on.startswith("/play/")
+
 
 class Decided(NamedTuple):
     """A decision as the store has it."""

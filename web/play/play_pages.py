@@ -41,7 +41,7 @@ def start_page(visit: Visit) -> Response:
         helpers=helpers(),
         interfaces=SHOWN,
         lacking=missing(),
-        games=[_line(each) for each in mine[:30]],
+        games=[_line(each) for each in mine[:30] if not each.blind],
     )
 
 
@@ -119,6 +119,8 @@ def join(visit: Visit) -> Response:
 def record(visit: Visit) -> Response:
     """The episode as a file of results, for `challenge verify`, `score`, `film` and `build`."""
     live, _ = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
+    if live.stored.blind:
+        raise WebError(Code.NOT_ALLOWED, "episode", "a game that is not of a study", "its helper is not to be known")
     with live.lock:
         (found,) = results([live.sync()]).values()
     return _file(as_bytes(found), f"{live.game.trial.task.id}.jsonl")

@@ -81,7 +81,13 @@ class Page:
             self.telling.game = self.live.sync()
             port = self.live.listen() if self.live.game.trial.helper == PROGRAM else 0
             self._told = self._state()
-            return {**self.telling.begin(), "port": port, "code": self._code(), **self._waiting(), **self._scene()}
+            begun = {**self.telling.begin(), **self._unnamed()}
+            return {**begun, "port": port, "code": self._code(), **self._waiting(), **self._scene()}
+
+    def _unnamed(self) -> dict[str, str]:
+        """The helper of a study's trial, without its name."""
+        helped = "somebody" if self.live.stored.trial.helped else "none"
+        return {"helper": helped} if self.live.stored.blind else {}
 
     def _scene(self) -> dict[str, Any]:
         """What is different in 3D, for pages that draw it."""

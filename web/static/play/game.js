@@ -173,7 +173,9 @@ function lastActions() {
 
 function showEnd() {
   const text = state.success ? `Done: the goal is reached after ${state.tick} ticks. ` : `This is over after ${state.tick} ticks. `;
-  tell(state.success ? "good" : "note", text, link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · ", link(state.go_on, "Go on"));
+  const studied = !state.go_on.startsWith("/play/"); // whose helper is not to be known
+  const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · "];
+  tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, "Go on"));
 }
 
 function showCode() {

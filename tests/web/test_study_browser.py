@@ -1,0 +1,111 @@
+"""Studies in a Chromium: a person's whole way, by mouse and by keyboard; the desk; accessible, and 360 px wide."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+from studies.small import SMALL
+from web.people import accessibility, watched
+from web.test_study_room import JUDGE
+
+from hearth.storage.files import write_json
+from hearth.studies.judged_films import JudgedFilm
+
+pytestmark = pytest.mark.tools
+
+
+@pytest.fixture
+def page(browser):
+    faults = []
+    made = watched(browser.new_context(viewport={"width": 1400, "height": 1000}).new_page(), faults)
+    made.set_default_timeout(60_000)
+    yield made
+    assert faults == []
+
+
+def seen(page):
+    """What must hold of every page: nothing wider than a telephone, nothing that readers of screens stumble over."""
+    page.set_viewport_size({"width": 360, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    page.set_viewport_size({"width": 1400, "height": 1000})
+    return accessibility(page)
+
+
+def agree(page, server):
+    page.goto(f"{server.address}/")
+    page.get_by_role("button", name="Begin with Study").click()
+    assert seen(page) == []
+    page.get_by_role("button", name="agree to take part").click()
+
+
+def films(folder):
+    pytest.importorskip("cv2")
+    from hearth.rendering.film.video import Writer
+
+    (folder / "films").mkdir(parents=True)
+    made = [
+        JudgedFilm(n, "written", f"{n:03d}-{b}", b, f"Title: Text {n}", "maple", 1 - n, []) for n, b in enumerate("ab")
+    ]
+    write_json(folder / "films.json", [asdict(film) for film in made])
+    for film in made:
+        writer = Writer(folder / "films" / f"{film.name}.webm", 320, 240, 5.0)
+        for number in range(10):
+            writer.add(np.full((240, 320, 3), 20 * number, np.uint8))
+        writer.close()
+
+
+def test_films_are_watched_and_judged_by_keyboard_alone(serving, page, tmp_path):
+    (tmp_path / "study.yaml").write_text(JUDGE)
+    films(tmp_path / "served" / "studies" / "judging")
+    server = serving("--study", str(tmp_path / "study.yaml"))
+    agree(page, server)
+    for number in range(2):
+        page.wait_for_selector("video")
+        page.wait_for_function("document.querySelector('video').readyState > 1")
+        assert page.locator("h1").inner_text() == f"Film {number + 1} of 2"
+        assert page.evaluate("document.querySelector('video').videoWidth") == 320
+        assert seen(page) == []
+        page.locator("input[type=radio]").first.focus()
+        page.keyboard.press("ArrowRight")
+        page.keyboard.press("Enter")
+        page.wait_for_function(f"!document.querySelector('h1').innerText.startsWith('Film {number + 1}')")
+    page.get_by_label("What else?").fill("Nothing.")
+    page.get_by_role("button", name="Finish").click()
+    assert page.locator("h1").inner_text() == "Thank you"
+    page.goto(server.desk)
+    page.goto(f"{server.address}/desk/study/")
+    assert "2 of 2" in page.locator("table").inner_text()
+    assert seen(page) == []
+    page.get_by_role("button", name="Delete").click()
+    assert "deleted" in page.locator("table").inner_text()
+    page.goto(f"{server.address}/study/")
+    assert "Begin" in page.inner_text("main"), "the session is gone"
+
+
+def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, tmp_path):
+    (tmp_path / "study.yaml").write_text(SMALL)
+    server = serving("--study", str(tmp_path / "study.yaml"))
+    agree(page, server)
+    page.get_by_role("button", name="I have read this").click()
+    rated = 0
+    page.on("dialog", lambda dialog: dialog.accept())
+    for name in ("Practise", "Begin", "Begin"):
+        assert seen(page) == []
+        page.get_by_role("button", name=name, exact=True).click()
+        page.wait_for_selector("#game[data-tick]")
+        page.locator('[data-move="Turnleft"]').click()
+        page.wait_for_selector('#game[data-tick="1"]')
+        assert "hp_random" not in page.inner_text("main")
+        page.locator("#finish").click()
+        page.get_by_role("link", name="Go on").click()
+        if page.locator("legend").count() and "Last" not in page.locator("h1").inner_text():
+            assert seen(page) == []
+            page.get_by_text("6", exact=True).click()
+            page.get_by_role("button", name="Go on").click()
+            rated += 1
+    assert rated == 1
+    assert page.locator("h1").inner_text() == "Last questions"
+    page.get_by_role("button", name="Finish").click()
+    assert page.locator("h1").inner_text() == "Thank you"
