@@ -33,11 +33,17 @@ def seen(page):
     return accessibility(page)
 
 
+def go(page, name, role="button", **how):
+    """Press a button, or follow a link, and wait for the page it leads to."""
+    with page.expect_navigation():
+        page.get_by_role(role, name=name, **how).click()
+
+
 def agree(page, server):
     page.goto(f"{server.address}/")
-    page.get_by_role("button", name="Begin with Study").click()
+    go(page, "Begin with Study")
     assert seen(page) == []
-    page.get_by_role("button", name="agree to take part").click()
+    go(page, "agree to take part")
 
 
 def films(folder):
@@ -75,13 +81,13 @@ def test_films_are_watched_and_judged_by_keyboard_alone(serving, page, tmp_path)
         with page.expect_navigation():
             page.keyboard.press("Enter")
     page.get_by_label("What else?").fill("Nothing.")
-    page.get_by_role("button", name="Finish").click()
+    go(page, "Finish")
     assert page.locator("h1").inner_text() == "Thank you"
     page.goto(server.desk)
     page.goto(f"{server.address}/desk/study/")
     assert "2 of 2" in page.locator("table").inner_text()
     assert seen(page) == []
-    page.get_by_role("button", name="Delete").click()
+    go(page, "Delete")
     assert "deleted" in page.locator("table").inner_text()
     session = page.context.request.get(f"{server.address}/study/")
     assert session.status == 401, "the session is gone"
@@ -91,24 +97,24 @@ def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, 
     (tmp_path / "study.yaml").write_text(SMALL)
     server = serving("--study", str(tmp_path / "study.yaml"))
     agree(page, server)
-    page.get_by_role("button", name="I have read this").click()
+    go(page, "I have read this")
     rated = 0
     page.on("dialog", lambda dialog: dialog.accept())
     for name in ("Practise", "Begin", "Begin"):
         assert seen(page) == []
-        page.get_by_role("button", name=name, exact=True).click()
+        go(page, name, exact=True)
         page.wait_for_selector("#game[data-tick]")
         page.locator('[data-move="Turnleft"]').click()
         page.wait_for_selector('#game[data-tick="1"]')
         assert "hp_random" not in page.inner_text("main")
         page.locator("#finish").click()
-        page.get_by_role("link", name="Go on").click()
+        go(page, "Go on", "link")
         if page.locator("legend").count() and "Last" not in page.locator("h1").inner_text():
             assert seen(page) == []
             page.get_by_text("6", exact=True).click()
-            page.get_by_role("button", name="Go on").click()
+            go(page, "Go on")
             rated += 1
     assert rated == 1
     assert page.locator("h1").inner_text() == "Last questions"
-    page.get_by_role("button", name="Finish").click()
+    go(page, "Finish")
     assert page.locator("h1").inner_text() == "Thank you"
