@@ -28,7 +28,7 @@ from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
 from hearth.rendering.people.figure import BODIES, figure_mesh
 from hearth.rendering.people.figure import Figure as Person
-from hearth.rendering.people.skeleton import BodyPose
+from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.rays import threads
 from hearth.rendering.rays.incremental import incremental_frame
 from hearth.rendering.scene.instances import Thing, placed

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera, point_of
-from hearth.rendering.models.looks import draw
-from hearth.rendering.people.figure import Figure, figure_mesh
+from hearth.rendering.people.figure import Figure
 from hearth.rendering.rays.maps import extents
 from hearth.rendering.rays.shot import Shot
-from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.instances import Thing, own_mesh
 from hearth.schemas.graph import Point
 
 
@@ -89,7 +88,7 @@ class WorldBox(NamedTuple):
 @lru_cache(maxsize=4096)
 def world_box(thing: Thing) -> WorldBox:
     """The box around a thing's mesh, oriented as the thing is."""
-    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
+    mesh = own_mesh(thing)
     low, high = (bound.astype(np.float64) for bound in mesh.bounds())
     corners = np.array([_placed(thing, (x, y, z)) for x, y, z in _corners(low, high)])
     return WorldBox(_placed(thing, point_of((low + high) / 2)), point_of(high - low), corners)

@@ -8,9 +8,10 @@ from hearth.homes.forms import form
 from hearth.kb.modifiers import value
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import recipe_of
-from hearth.rendering.people.figure import BODIES, Body, Figure
+from hearth.rendering.people.figure import Body, Figure
 from hearth.rendering.people.gestures import Gesture, gesture_of
-from hearth.rendering.people.skeleton import BodyPose
+from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.variety import person
 from hearth.rendering.scene.places import HANDS, Places, Pose
 from hearth.rendering.scene.prepared import local_size
 from hearth.rendering.scene.standing_places import FreeFloor
@@ -74,17 +75,16 @@ class Actor:
         return Figure(self.body, self.body_pose)
 
     def hand(self, side: str) -> Point:
-        """Position of its `right` or `left` hand, in the world."""
-        joint = self.figure().joints()[f"hand_{side[0]}"]
+        """Position of its `right` or `left` palm, in the world."""
+        joint = self.figure().joints()[f"palm_{side[0]}"]
         return self.world((float(joint[0]), float(joint[1]), float(joint[2])))
 
 
 def initial_actors(graph: EnvironmentGraph, floor: FreeFloor, places: Places, seed: int) -> tuple[Actor, ...]:
     """The characters of a graph before the first tick, sorted by id."""
-    names = sorted(BODIES)
     actors: list[Actor] = []
     for number, node in enumerate(n for n in graph.nodes if n.category == CHARACTER_CATEGORY):
-        body = BODIES[names[(derive(seed, "body") + number) % len(names)]]
+        body = person(derive(seed, "body", number))
         room = room_of(graph, node.id)
         spot = _initial(node, room, floor, [a.spot for a in actors])
         actors.append(Actor(node, body, spot, floor.level, node.yaw or 0.0, BodyPose(), room))
@@ -169,8 +169,6 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
     look = _target(step, gesture.gaze, places, actor) if gesture.gaze else None
     gaze = actor.local(look) if look else None
     body_pose = replace(actor.body_pose, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
-    if body_pose.posture == "standing":
-        body_pose = replace(body_pose, stride=gesture.stride)
     return replace(actor, body_pose=body_pose, body=_dressed(actor.body, graph, actor.node.id))
 
 

@@ -1,177 +1,241 @@
 """Joints of a body pose: forward kinematics, and two-bone inverse kinematics."""
 
-from dataclasses import dataclass
-from math import acos, cos, radians, sin, sqrt
-from typing import Any
+from math import acos, cos, hypot, radians, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hearth.rendering.people.body_pose import BodyPose, Foot
+from hearth.rendering.people.proportions import Proportions
+from hearth.rendering.people.rotations import Vector, about, leaning, unit, yawed
 from hearth.schemas.graph import Point
 
-Vector = NDArray[np.floating[Any]]
 Joints = dict[str, Vector]
 
-POSTURES = ("standing", "sitting", "lying")
+PELVIS_ON_SEAT = 0.05
+"""Metres from a seat to the hip joints of a sitting body, for a height of one metre."""
 
-# Lengths as shares of the body's height (common anthropometric tables).
-HIP, SHOULDER, NECK, HEAD = 0.525, 0.815, 0.85, 0.93
-HIP_HALF, SHOULDER_HALF = 0.055, 0.115
-THIGH, SHIN, ANKLE, FOOT = 0.245, 0.235, 0.045, 0.13
-UPPER_ARM, FOREARM, HAND = 0.172, 0.155, 0.05
-PELVIS_ON_SEAT = 0.055
-"""Metres from a seat to the hip joints of a sitting body."""
+LYING = np.array(((1, 0, 0), (0, 0, 1), (0, -1, 0)), np.float64)
+"""The rotation of a standing body onto its back, head towards -z."""
 
+MATTRESS = 0.06
+"""Metres from a mattress to the hip joints of a lying body, for a height of one metre."""
 
-@dataclass(frozen=True, slots=True)
-class BodyPose:
-    """Posture, hands and gaze in the body's frame: feet at the origin (sitting: hips above it), front +z, right +x.
+STEP = 0.16
+"""Distance of each foot from the hips at full stride, as a share of the height."""
 
-    Attributes:
-        posture: one of `POSTURES`.
-        seat: height of the seat or bed, metres.
-        stride: -1 to 1, distance of the right leg in front of the left.
-        swing: -1 to 1, height of the right (below 0: left) foot while it swings forward; 0 lifts the hind foot.
-        right, left: targets of the hands; None lets the arm hang.
-        gaze: point to look at; None looks ahead.
-        asleep: whether the eyes are closed.
-    """
-
-    posture: str = "standing"
-    seat: float = 0.0
-    stride: float = 0.0
-    swing: float = 0.0
-    right: Point | None = None
-    left: Point | None = None
-    gaze: Point | None = None
-    asleep: bool = False
+NOD, TURN = (-0.75, 0.6), 1.15
+"""Limits of nodding and turning the head, radians."""
 
 
-def joints(body_pose: BodyPose, height: float) -> Joints:
+def joints(body_pose: BodyPose, body: Proportions) -> Joints:
     """Positions of the joints, in metres: pelvis, spine, neck, head; hip, knee, ankle, toe, shoulder, elbow, wrist,
-    hand of `r` and `l`; `face` is a point in front of the head, in the direction of the gaze.
+    hand and palm of `r` and `l`; `face` is a point in front of the head, in the direction of the gaze.
     """
-    if body_pose.posture == "lying":
-        return _lying(body_pose, height)
-    drop, lean = _bend(body_pose, height)
-    found = _legs(body_pose, height, drop)
-    _torso(found, height, lean)
+    found = upright(body_pose, body)
+    turn, offset = laid(body_pose, body)
+    if turn is not None:
+        found = {name: turn @ point + offset for name, point in found.items()}
+    if body_pose.between is None:
+        return found
+    former, share = body_pose.between, body_pose.between.share
+    other, at = joints(former.pose, body), yawed(former.turn)
+    return {
+        name: (at @ other[name] + former.offset) * (1 - share) + point * share for name, point in found.items()
+    }  # fmt: skip
+
+
+def laid(body_pose: BodyPose, body: Proportions) -> tuple[Vector | None, Vector]:
+    """Rotation and translation of a lying body from the upright one; no rotation for other postures."""
+    if body_pose.posture != "lying":
+        return None, np.zeros(3)
+    return LYING, np.array((0, body_pose.seat + MATTRESS * body.height, body.height * 0.5))
+
+
+def upright(body_pose: BodyPose, body: Proportions) -> Joints:
+    """The joints, a lying body's as if it stood."""
+    drop, lean = bend(body_pose, body)
+    found = _legs(body_pose, body, drop)
+    _torso(found, body, lean)
     for side, sign in (("r", 1.0), ("l", -1.0)):
-        target = body_pose.right if side == "r" else body_pose.left
-        _arm(found, side, sign, height, None if target is None else np.array(target, np.float64), body_pose)
-    _head(found, height, body_pose.gaze)
+        _arm(found, side, sign, body, body_pose)
+    _head(found, body, body_pose.gaze, lean)
     return found
 
 
-def _bend(body_pose: BodyPose, height: float) -> tuple[float, float]:
-    """(metres by which the hips sink, degrees by which the back leans): the least with which the hands reach."""
+def bend(body_pose: BodyPose, body: Proportions) -> tuple[float, float]:
+    """(metres by which the hips sink, degrees by which the back leans)."""
+    return _stooping(effort_of(body_pose, body), body_pose, body)
+
+
+def effort_of(body_pose: BodyPose, body: Proportions) -> float:
+    """How far a body stoops: as its pose says, else the least with which the hands reach their targets."""
+    if body_pose.effort is not None:
+        return body_pose.effort
     targets = [np.array(t) for t in (body_pose.right, body_pose.left) if t is not None]
-    base = -4.0 if body_pose.posture == "sitting" else 0.0
     if not targets:
-        return 0.0, base
-    reach = (UPPER_ARM + FOREARM + HAND) * height * 0.98
-    drops = (0.0,) if body_pose.posture == "sitting" else (0.0, 0.12, 0.25, 0.4)
-    best = (1e9, 0.0, base)
-    for drop in drops:
-        for lean in range(0, 75, 6):
-            hips = _hips(body_pose, height, drop)
-            shoulder = hips + _leaning(lean) @ np.array((0, (SHOULDER - HIP) * height, 0))
-            short = max(max(float(np.linalg.norm(t - shoulder)) - reach, 0.0) for t in targets)
-            cost = short * 40 + drop * 1.6 + lean / 60
-            best = min(best, (cost, drop, float(lean) or base))
-    return best[1], best[2]
+        return 0.0
+    reach = body.arm * REACH
+
+    def short(effort: float) -> float:
+        drop, lean = _stooping(effort, body_pose, body)
+        shoulder = _shoulders(_hips(body_pose, body, drop), body, lean)
+        return max(0.0, *(float(np.linalg.norm(t - shoulder)) - reach for t in targets))
+
+    best = min((short(k / EFFORTS) * 40 + k / EFFORTS, k) for k in range(EFFORTS + 1))[1]
+    low, high = max(best - 1, 0) / EFFORTS, best / EFFORTS
+    # Between two efforts the least that suffices.
+    for _ in range(6 if best and short(high) <= 0 else 0):
+        middle = (low + high) / 2
+        low, high = (middle, high) if short(middle) > 0 else (low, middle)
+    return high
 
 
-def _leaning(degrees: float) -> Vector:
-    c, s = cos(radians(degrees)), sin(radians(degrees))
-    return np.array(((1, 0, 0), (0, c, -s), (0, s, c)))
+EFFORTS = 10
+"""Number of steps in which stooping is tried."""
+
+REACH = 0.985
+"""Share of an arm's length to which it is stretched."""
 
 
-def _hips(body_pose: BodyPose, height: float, drop: float) -> Vector:
-    if body_pose.posture == "sitting":
-        return np.array((0.0, body_pose.seat + PELVIS_ON_SEAT, 0.0))
-    return np.array((0.0, HIP * height - drop - 0.03 * abs(body_pose.stride) * height, -drop * 0.35))
+def _stooping(effort: float, body_pose: BodyPose, body: Proportions) -> tuple[float, float]:
+    """Drop of the hips and lean of the back by an effort from 0 to 1: first the back, then the knees too."""
+    base = -4.0 * seated(body_pose, body)
+    if body_pose.posture != "standing":
+        return 0.0, base + (62.0 - base) * effort
+    lean = 36.0 * min(effort / 0.4, 1.0) + 26.0 * max((effort - 0.4) / 0.6, 0.0)
+    return 0.30 * body.height * max((effort - 0.4) / 0.6, 0.0), lean
 
 
-def _legs(body_pose: BodyPose, height: float, drop: float) -> Joints:
-    found: Joints = {"pelvis": _hips(body_pose, height, drop)}
-    thigh, shin, ankle = THIGH * height, SHIN * height, ANKLE * height
-    for side, sign in (("r", 1.0), ("l", -1.0)):
-        hip = found["pelvis"] + (sign * HIP_HALF * height, 0, 0)
-        if body_pose.posture == "sitting":
-            forward = min(thigh + 0.03, sqrt(max((thigh + shin) ** 2 - (hip[1] - ankle) ** 2, 0.02)))
-            foot = np.array((sign * 0.075 * height, ankle, forward))
-        else:
-            step = sign * body_pose.stride * 0.16 * height
-            lift = 0.05 * height * max(sign * body_pose.swing if body_pose.swing else -sign * body_pose.stride, 0.0)
-            foot = np.array((sign * HIP_HALF * height * 0.95, ankle + lift, step))
-        knee, end = two_bones(hip, foot, thigh, shin, np.array((sign * 0.08, 0.25, 1.0)))
-        found |= {f"hip_{side}": hip, f"knee_{side}": knee, f"ankle_{side}": end}
-        down = -0.35 if end[1] > ankle * 1.6 else 0.0
-        found[f"toe_{side}"] = end + np.array((sign * 0.15, down, 1.0)) * FOOT * height - (0, ankle * 0.55, 0)
+def seated(body_pose: BodyPose, body: Proportions) -> float:
+    """0 for a body that stands to 1 for one that sits; between them while it sits down."""
+    if body_pose.posture != "sitting":
+        return 0.0
+    sunk = body.pelvis - body_pose.seat - PELVIS_ON_SEAT * body.height
+    return min(max(sunk / (0.2 * body.height), 0.0), 1.0)
+
+
+def _shoulders(hips: Vector, body: Proportions, lean: float) -> Vector:
+    """The point between the shoulders of a body that leans by some degrees."""
+    found: Vector = hips + leaning(lean * 0.67) @ body.spine + leaning(lean) @ body.chest
     return found
 
 
-def _torso(found: Joints, height: float, lean: float) -> None:
-    turn = _leaning(lean)
-    pelvis = found["pelvis"]
-    # The back bends: the lower half leans by two thirds of the upper half's angle.
-    spine = pelvis + _leaning(lean * 0.67) @ np.array((0, (SHOULDER - HIP) * 0.5 * height, 0))
-    found["spine"] = spine
-    found["chest"] = spine + turn @ np.array((0, (SHOULDER - HIP) * 0.5 * height, 0))
-    found["neck"] = found["chest"] + _leaning(lean * 0.7) @ np.array((0, (NECK - SHOULDER) * height, 0.0))
-    for side, sign in (("r", 1.0), ("l", -1.0)):
-        found[f"shoulder_{side}"] = found["chest"] + (sign * SHOULDER_HALF * height, -0.012 * height, 0)
-
-
-def _arm(found: Joints, side: str, sign: float, height: float, target: Vector | None, body_pose: BodyPose) -> None:
-    shoulder = found[f"shoulder_{side}"]
-    upper, fore = UPPER_ARM * height, FOREARM * height
-    if target is None:
-        target = _relaxed_hand(found, side, sign, height, body_pose)
-    wrist_goal = target - _unit(target - shoulder) * HAND * height
-    elbow, wrist = two_bones(shoulder, wrist_goal, upper, fore, np.array((sign * 0.45, -1.0, -0.55)))
-    found |= {
-        f"elbow_{side}": elbow,
-        f"wrist_{side}": wrist,
-        f"hand_{side}": wrist + _unit(target - wrist) * HAND * height,
-    }
-
-
-def _relaxed_hand(found: Joints, side: str, sign: float, height: float, body_pose: BodyPose) -> Vector:
-    shoulder = found[f"shoulder_{side}"]
+def feet_of(body_pose: BodyPose, body: Proportions) -> tuple[Foot, Foot]:
+    """The right and the left foot of a pose."""
+    if body_pose.feet is not None:
+        return body_pose.feet
     if body_pose.posture == "sitting":
-        knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
-        on_thigh: Vector = hip + (knee - hip) * 0.62 + np.array((0, 0.075, 0))
-        return on_thigh
-    swing = -sign * body_pose.stride * 0.13 * height
-    hanging: Vector = shoulder + np.array(
-        (sign * 0.035 * height, -(UPPER_ARM + FOREARM + HAND) * height * 0.97, 0.02 * height + swing)
-    )
-    return hanging
+        high = body_pose.seat + PELVIS_ON_SEAT * body.height - body.ankle
+        legs = body.thigh + body.shin
+        forward = min(body.thigh + 0.03, sqrt(max(legs**2 - high**2, 0.02)))
+        lift = max(0.0, high - 0.985 * body.shin) if high > 1.2 * body.shin else 0.0
+        return Foot(0.075 * body.height, forward, lift, 6.0), Foot(-0.075 * body.height, forward, lift, -6.0)
+    step = body_pose.stride * STEP * body.height
+    across = body.hip * 0.95
+    return Foot(across, step, 0.0, 6.0), Foot(-across, -step, 0.0, -6.0)
 
 
-def _head(found: Joints, height: float, gaze: Point | None) -> None:
+def _hips(body_pose: BodyPose, body: Proportions, drop: float) -> Vector:
+    if body_pose.posture == "sitting":
+        return np.array((0.0, body_pose.seat + PELVIS_ON_SEAT * body.height, 0.0))
+    high = body.pelvis - drop
+    # Both feet are reached with knees that are never quite straight.
+    legs = (body.thigh + body.shin) * 0.995
+    for foot, sign in zip(feet_of(body_pose, body), (1.0, -1.0), strict=True):
+        ankle = ankle_of(foot, body)
+        far = hypot(ankle[0] - sign * body.hip, ankle[2] + drop * 0.35)
+        high = min(high, float(ankle[1]) + sqrt(max(legs**2 - far**2, 0.01)))
+    return np.array((0.0, high, -drop * 0.35))
+
+
+def ankle_of(foot: Foot, body: Proportions) -> Vector:
+    """The position of a foot's ankle."""
+    turn = yawed(foot.yaw)
+    at = np.array((foot.x, foot.lift, foot.z))
+    pitch = radians(abs(foot.pitch))
+    if foot.pitch > 0:
+        b, h = body.ball, body.ankle
+        up, forward = h * cos(pitch) + b * sin(pitch), b * (1 - cos(pitch)) + h * sin(pitch)
+    else:
+        up, forward = body.ankle * cos(pitch), -body.ankle * sin(pitch)
+    found: Vector = at + turn @ np.array((0.0, up, forward))
+    return found
+
+
+def _toe(foot: Foot, ankle: Vector, body: Proportions) -> Vector:
+    low = 0.012 * body.height
+    if foot.pitch >= 0:
+        return np.array((foot.x, foot.lift + low, foot.z)) + yawed(foot.yaw) @ np.array((0.0, 0.0, body.toe))
+    found: Vector = ankle + yawed(foot.yaw) @ leaning(foot.pitch) @ np.array((0.0, low - body.ankle, body.toe))
+    return found
+
+
+def _legs(body_pose: BodyPose, body: Proportions, drop: float) -> Joints:
+    found: Joints = {"pelvis": _hips(body_pose, body, drop)}
+    for side, sign, foot in zip("rl", (1.0, -1.0), feet_of(body_pose, body), strict=True):
+        hip = found["pelvis"] + (sign * body.hip, 0, 0)
+        ankle = ankle_of(foot, body)
+        ahead = yawed(foot.yaw * 0.6) @ np.array((sign * 0.06, 0.25, 1.0))
+        knee, end = two_bones(hip, ankle, body.thigh, body.shin, ahead)
+        found |= {f"hip_{side}": hip, f"knee_{side}": knee, f"ankle_{side}": end}
+        found[f"toe_{side}"] = _toe(foot, ankle, body) + end - ankle
+    return found
+
+
+def _torso(found: Joints, body: Proportions, lean: float) -> None:
+    # The back bends: the lower half leans by two thirds of the upper half's angle.
+    found["spine"] = found["pelvis"] + leaning(lean * 0.67) @ body.spine
+    found["chest"] = found["spine"] + leaning(lean) @ body.chest
+    found["neck"] = found["chest"] + leaning(lean * 0.85) @ body.neck
+    for side, sign in (("r", 1.0), ("l", -1.0)):
+        found[f"shoulder_{side}"] = found["chest"] + leaning(lean) @ (np.array(body.shoulder) * (sign, 1, 1))
+
+
+def _arm(found: Joints, side: str, sign: float, body: Proportions, body_pose: BodyPose) -> None:
+    shoulder, hand = found[f"shoulder_{side}"], body_pose.hand(side)
+    given = body_pose.target(side)
+    target = _relaxed_hand(found, side, sign, body, body_pose) if given is None else np.array(given, np.float64)
+    ahead = unit(target - shoulder)
+    if hand.palm is not None:
+        palm = unit(np.array(hand.palm, np.float64))
+        # The hand is a straight continuation of the forearm as far as the palm's direction allows.
+        along = ahead - palm * float(ahead @ palm)
+        along = unit(along if np.linalg.norm(along) > 0.25 else along + 0.3 * np.array((0.0, 0.0, 1.0)))
+        middle = target - palm * body.palm
+    else:
+        along, palm, middle = ahead, np.zeros(3), target
+    pole = np.array((sign * 0.45, -1.0, -0.55))
+    if hand.swivel:
+        pole = about(ahead, -sign * hand.swivel) @ pole
+    goal = middle - along * body.hand
+    elbow, wrist = two_bones(shoulder, goal, body.upper_arm, body.forearm, pole)
+    found |= {f"elbow_{side}": elbow, f"wrist_{side}": wrist, f"hand_{side}": wrist + along * body.hand}
+    found[f"palm_{side}"] = found[f"hand_{side}"] + palm * body.palm
+
+
+def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body_pose: BodyPose) -> Vector:
+    shoulder, h = found[f"shoulder_{side}"], body.height
+    swing = -sign * body_pose.stride * 0.085 * h
+    out = 0.035 * h
+    hanging: Vector = shoulder + np.array((sign * out, -body.arm * 0.955, 0.03 * h + swing))
+    knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
+    share = seated(body_pose, body)
+    on_thigh: Vector = hip + (knee - hip) * 0.62 + np.array((0, 0.05 * h, 0))
+    return hanging * (1 - share) + on_thigh * share
+
+
+def _head(found: Joints, body: Proportions, gaze: Point | None, lean: float) -> None:
     ahead = np.array((0.0, 0.0, 1.0))
-    up = _unit(found["neck"] - found["chest"])
-    center = found["neck"] + (HEAD - NECK) * height * _unit(up + np.array((0, 0.6, 0)))
+    # The head stays more upright than the back.
+    center = found["neck"] + leaning(lean * 0.4) @ body.head
     if gaze is not None:
-        way = _unit(np.array(gaze) - center)
+        way = unit(np.array(gaze) - center)
         # Turning and nodding of the head are limited.
-        flat = max(float(np.hypot(way[0], way[2])), 1e-6)
-        side = float(np.clip(np.arctan2(way[0], way[2]), -1.15, 1.15))
-        nod = float(np.clip(np.arctan2(way[1], flat), -0.75, 0.6))
+        flat = max(hypot(way[0], way[2]), 1e-6)
+        side = float(np.clip(np.arctan2(way[0], way[2]), -TURN, TURN))
+        nod = float(np.clip(np.arctan2(way[1], flat), *NOD))
         ahead = np.array((sin(side) * cos(nod), sin(nod), cos(side) * cos(nod)))
     found["head"], found["face"] = center, center + ahead * 0.1
-
-
-def _lying(body_pose: BodyPose, height: float) -> Joints:
-    """Joints lying on the back in the middle of the bed, head towards -z."""
-    rest = BodyPose(right=body_pose.right, left=body_pose.left)
-    found = joints(rest, height)
-    turn = np.array(((1, 0, 0), (0, 0, 1), (0, -1, 0)), np.float64)
-    offset = np.array((0, body_pose.seat + 0.12, height * 0.5))
-    return {name: turn @ point + offset for name, point in found.items()}
 
 
 def two_bones(root: Vector, goal: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
@@ -184,11 +248,7 @@ def two_bones(root: Vector, goal: Vector, first: float, second: float, pole: Vec
     along = way / length if length > 1e-9 else np.array((0.0, -1.0, 0.0))
     reach = min(max(length, abs(first - second) + 1e-4), (first + second) * 0.999)
     side = pole - along * float(pole @ along)
-    bend = _unit(side) if np.linalg.norm(side) > 1e-9 else np.array((0.0, 0.0, 1.0))
+    bend_ = unit(side) if np.linalg.norm(side) > 1e-9 else np.array((0.0, 0.0, 1.0))
     angle = acos(min(max((first * first + reach * reach - second * second) / (2 * first * reach), -1.0), 1.0))
-    middle = root + along * first * cos(angle) + bend * first * sin(angle)
+    middle = root + along * first * cos(angle) + bend_ * first * sin(angle)
     return middle, root + along * reach
-
-
-def _unit(vector: Vector) -> Vector:
-    return vector / max(float(np.linalg.norm(vector)), 1e-9)

@@ -22,6 +22,7 @@ class Thing:
         model: its mesh.
         position: of its foot's middle, metres.
         yaw: its direction, degrees from +z towards +x.
+        tilt: pitch, roll and turn in degrees about its own x, z and y, before `yaw`: turned first, then tilted.
         above: whether views from above leave it out (ceilings and hanging things).
         structural: whether it is part of the building: texture in world coordinates, inside never seen.
         lamp: whether it is a lamp that is on, which casts no shadow.
@@ -35,12 +36,26 @@ class Thing:
     above: bool = False
     structural: bool = False
     lamp: bool = False
+    tilt: Point = (0.0, 0.0, 0.0)
 
 
-@lru_cache(maxsize=4096)
+def tilted(tilt: Point) -> Floats:
+    """The rotation of a `Thing.tilt`."""
+    pitch, roll, turn = tilt
+    found: Floats = rotation("z", -roll) @ rotation("x", -pitch) @ rotation("y", turn)
+    return found
+
+
+def own_mesh(thing: Thing) -> Mesh:
+    """A thing's mesh in its own frame, tilted."""
+    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
+    return transform(mesh, tilted(thing.tilt)) if any(thing.tilt) else mesh
+
+
+@lru_cache(maxsize=1024)
 def placed(thing: Thing) -> Mesh:
     """A thing's mesh in world coordinates."""
-    mesh = figure_mesh(thing.model) if isinstance(thing.model, Figure) else draw(thing.model)
+    mesh = own_mesh(thing)
     mesh = transform(mesh, rotation("y", thing.yaw), thing.position)
     return replace(mesh, uvs=_world_uvs(mesh, thing)) if thing.structural else mesh
 

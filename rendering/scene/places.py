@@ -67,6 +67,15 @@ class Places:
         """Floors, walls and the like: supports that actors do not walk to."""
         return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
 
+    @cached_property
+    def holds(self) -> Mapping[int, Mapping[int, str]]:
+        """Character id -> id of each thing that it holds -> `right` or `left`."""
+        found: dict[int, dict[int, str]] = {}
+        for edge in self.graph.edges:
+            if edge.relation in HANDS:
+                found.setdefault(edge.source, {})[edge.target] = HANDS[edge.relation]
+        return found
+
     @classmethod
     def start(cls, home: EnvironmentGraph, knowledge: Knowledge) -> Places:
         """The places of a home as it was built, with its boxes."""

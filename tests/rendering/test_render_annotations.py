@@ -13,7 +13,7 @@ from hearth.rendering.film import png
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
 from hearth.rendering.people.figure import BODIES, Figure
-from hearth.rendering.people.skeleton import BodyPose
+from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.rays.flow import flow, flow_of
 from hearth.rendering.rays.shot import shoot
 from hearth.rendering.scene.instances import Thing

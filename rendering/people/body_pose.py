@@ -1,0 +1,122 @@
+"""Body poses: posture, feet, hands and gaze."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from hearth.schemas.graph import Point
+
+POSTURES = ("standing", "sitting", "lying")
+
+
+class Foot(NamedTuple):
+    """A foot in the body's frame.
+
+    Attributes:
+        x, z: the point below its ankle when it is flat, metres.
+        lift: of its sole above the floor, metres.
+        yaw: degrees from +z towards +x.
+        pitch: degrees; above 0 its heel is raised and its toes stay, below 0 its toes are raised.
+    """
+
+    x: float
+    z: float
+    lift: float = 0.0
+    yaw: float = 0.0
+    pitch: float = 0.0
+
+
+class Held(NamedTuple):
+    """How a held thing differs from the way in which it is usually held.
+
+    Attributes:
+        turn: degrees about y by which it is turned further.
+        pitch, roll: degrees by which its top is tilted backwards, towards the person, and to the right.
+        gap: from the palm to its grip point, in the body's frame, metres.
+        stream: where what is poured from it ends, in the body's frame; None pours nothing.
+        opens: whether it is held open.
+    """
+
+    turn: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
+    gap: Point = (0.0, 0.0, 0.0)
+    stream: Point | None = None
+    opens: bool = False
+
+
+AS_USUAL = Held()
+
+
+class Hand(NamedTuple):
+    """A hand's form and direction.
+
+    Attributes:
+        grip: one of `GRIPS` (grips.py), the form of the fingers.
+        palm: direction in which the palm looks; None follows the forearm.
+        swivel: degrees by which the elbow is turned outwards about the line from shoulder to wrist.
+        held: how it holds what it holds.
+    """
+
+    grip: str = "relaxed"
+    palm: Point | None = None
+    swivel: float = 0.0
+    held: Held = AS_USUAL
+
+
+class Between(NamedTuple):
+    """A pose that another is changing from.
+
+    Attributes:
+        pose: the former pose.
+        offset, turn: position and yaw of the former body's frame in the present one's; metres, degrees.
+        share: of the present pose, 0 to 1.
+    """
+
+    pose: BodyPose
+    offset: Point
+    turn: float
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class BodyPose:
+    """Posture, hands and gaze in the body's frame: feet at the origin (sitting: hips above it), front +z, right +x.
+
+    Attributes:
+        posture: one of `POSTURES`.
+        seat: height of the seat or bed, metres.
+        stride: -1 to 1, distance of the right leg in front of the left; arms swing against it.
+        right, left: targets of the palms; None lets the arm hang.
+        gaze: point to look at; None looks ahead.
+        asleep: whether the eyes are closed.
+        feet: the right and the left foot; None has them side by side, or `stride` apart.
+        right_hand, left_hand: form and direction of the hands.
+        effort: 0 to 1, how far the body stoops; None is the least with which the hands reach.
+        between: the pose that this one is changing from; None if it has.
+    """
+
+    posture: str = "standing"
+    seat: float = 0.0
+    stride: float = 0.0
+    right: Point | None = None
+    left: Point | None = None
+    gaze: Point | None = None
+    asleep: bool = False
+    feet: tuple[Foot, Foot] | None = None
+    right_hand: Hand = Hand()
+    left_hand: Hand = Hand()
+    effort: float | None = None
+    between: Between | None = None
+
+    def target(self, side: str) -> Point | None:
+        """The target of the `r` or `l` palm."""
+        return self.right if side == "r" else self.left
+
+    def hand(self, side: str) -> Hand:
+        """The `r` or `l` hand."""
+        return self.right_hand if side == "r" else self.left_hand
+
+
+STILL = BodyPose()

@@ -1,0 +1,287 @@
+"""Walking and turning on feet that stay where they are put, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import atan2, ceil, cos, degrees, hypot, pi, sin
+from typing import NamedTuple
+
+from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.body_pose import Foot
+from hearth.rendering.people.skeleton import STEP, effort_of, feet_of
+from hearth.schemas.graph import Spot
+
+STEP_TIME = 0.52
+"""Seconds of a walking step."""
+
+STARTING = 0.35
+"""Seconds in which walking speed is reached, and lost."""
+
+TURNING = 130.0
+"""Degrees per second."""
+
+ROUNDED = 0.16
+"""Metres on either side over which the corners of a route are rounded."""
+
+SWING = (0.08, 0.92)
+"""The part of a step's time in which a foot is in the air."""
+
+LIFT, HEEL, TOE = 0.045, 38.0, -14.0
+"""Height of a swinging foot as a share of the body's height; pitches in degrees with which it leaves and lands."""
+
+
+class Place(NamedTuple):
+    """A position and direction on the floor."""
+
+    x: float
+    z: float
+    yaw: float
+
+
+class Print(NamedTuple):
+    """A foot's place from one moment until its next step begins."""
+
+    start: float
+    place: Place
+
+
+def angle(start: float, end: float) -> float:
+    """The smaller angle from one direction to another, degrees."""
+    return (end - start + 180) % 360 - 180
+
+
+def between(a: Spot, b: Spot, share: float) -> Spot:
+    """A point of a line."""
+    return a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
+
+
+def eased(share: float) -> float:
+    """0 to 1, slow at both ends."""
+    return (1 - cos(pi * min(max(share, 0.0), 1.0))) / 2
+
+
+class Route:
+    """A polyline with rounded corners, walked at a speed."""
+
+    def __init__(self, points: Sequence[Spot], speed: float) -> None:
+        self.points = [p for k, p in enumerate(points) if k == 0 or hypot(p[0] - points[k - 1][0], p[1] - points[k - 1][1]) > 1e-6]
+        self.marks = [0.0]
+        for a, b in pairwise(self.points):
+            self.marks.append(self.marks[-1] + hypot(b[0] - a[0], b[1] - a[1]))
+        self.length = self.marks[-1]
+        self.starting = min(STARTING, self.length / speed)
+        self.speed = speed
+        self.seconds = self.length / speed + self.starting
+
+    def _on_line(self, way: float) -> Spot:
+        way = min(max(way, 0.0), self.length)
+        for k, (a, b) in enumerate(pairwise(self.points)):
+            if way <= self.marks[k + 1] or k == len(self.points) - 2:
+                return between(a, b, (way - self.marks[k]) / max(self.marks[k + 1] - self.marks[k], 1e-9))
+        return self.points[-1]
+
+    def spot(self, way: float) -> Spot:
+        """The point after some metres."""
+        near = min(ROUNDED, way, self.length - way)
+        if near <= 1e-6:
+            return self._on_line(way)
+        marks = [self._on_line(way + near * share) for share in (-1.0, -0.5, 0.0, 0.5, 1.0)]
+        return sum(m[0] for m in marks) / 5, sum(m[1] for m in marks) / 5
+
+    def heading(self, way: float) -> float:
+        """The direction of walking after some metres, degrees."""
+        a, b = self.spot(max(way - 0.2, 0.0)), self.spot(min(way + 0.2, self.length))
+        return degrees(atan2(b[0] - a[0], b[1] - a[1]))
+
+    def way(self, time: float) -> float:
+        """Metres after some seconds, with soft start and stop."""
+        ramp, top = self.starting, self.speed
+        if ramp <= 0:
+            return self.length
+        time = min(max(time, 0.0), self.seconds)
+        if time < ramp:
+            return top * time * time / (2 * ramp)
+        if time > self.seconds - ramp:
+            left = self.seconds - time
+            return self.length - top * left * left / (2 * ramp)
+        return top * (time - ramp / 2)
+
+
+class Movement(NamedTuple):
+    """A movement of a body over the floor: its length in seconds, and place at a time."""
+
+    seconds: float
+    at: Callable[[float], Place]
+
+
+def turning(place: Place, yaw: float) -> Movement:
+    """A turn on the spot."""
+    turn = angle(place.yaw, yaw)
+    seconds = max(abs(turn) / TURNING, 0.4)
+    return Movement(seconds, lambda time: Place(place.x, place.z, place.yaw + turn * eased(time / seconds)))
+
+
+def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> Movement:
+    """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`."""
+    route = Route(points, speed)
+
+    def at(time: float) -> Place:
+        way = route.way(time)
+        ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * min(1.0, route.length / 0.6)
+        straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
+        return Place(*route.spot(way), straight + angle(straight, route.heading(way)) * ends)
+
+    return Movement(route.seconds, at)
+
+
+def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> list[Movement]:
+    """Turns and a walk from a place along a route, at the end of which the body has the direction `yaw`."""
+    route = Route(points, speed)
+    if route.length < 0.01:
+        return [turning(place, yaw)] if abs(angle(place.yaw, yaw)) > 1 else []
+    found = []
+    first, last = route.heading(0.0), route.heading(route.length)
+    if route.length > SIDEWAYS and abs(angle(place.yaw, first)) > ASIDE:
+        found.append(turning(place, first))
+        place = place._replace(yaw=first)
+    ends = last if route.length > SIDEWAYS and abs(angle(last, yaw)) > ASIDE else yaw
+    found.append(walking(place, points, speed, ends))
+    if ends != yaw:
+        found.append(turning(Place(*route.points[-1], ends), yaw))
+    return found
+
+
+SIDEWAYS, ASIDE = 0.6, 50.0
+"""Metres up to which one walks without turning that way, and degrees up to which one turns while walking."""
+
+
+class Gait:
+    """The motion of a body and its feet over the floor.
+
+    Args:
+        actor: who moves, standing; its feet begin where they are.
+        moves: what its body does.
+    """
+
+    def __init__(self, actor: Actor, moves: Sequence[Movement], step_time: float = STEP_TIME) -> None:
+        self.actor, self.moves = actor, moves
+        self.effort = effort_of(actor.body_pose, actor.body.proportions)
+        self.moving = sum(move.seconds for move in moves)
+        self.count = max(1, ceil(self.moving / step_time))
+        self.step = self.moving / self.count
+        self.seconds = self.moving + self.step
+        self.prints = self._prints()
+
+    def place(self, time: float) -> Place:
+        """The body's place."""
+        for move in self.moves:
+            if time < move.seconds:
+                return move.at(time)
+            time -= move.seconds
+        return self.moves[-1].at(self.moves[-1].seconds)
+
+    def _prints(self) -> tuple[list[Print], list[Print]]:
+        """Where the right and the left foot stand, and from when."""
+        own = self.actor.body.proportions
+        start = Place(*self.actor.spot, self.actor.yaw)
+        rest = feet_of(replace(self.actor.body_pose, posture="standing", stride=0.0, feet=None), own)
+        found = tuple([Print(-1.0, _in_world(start, foot))] for foot in feet_of(self.actor.body_pose, own))
+        first = 0 if self._first_turn() > 0 else 1
+        for number in range(self.count + 1):
+            side = (number + first) % 2
+            # A foot lands where the body is in the middle of the time for which it stands there.
+            middle = self.place(min((number + 1.5) * self.step, self.moving))
+            found[side].append(Print(number * self.step, _in_world(middle, rest[side])))
+        return found[0], found[1]
+
+    def _first_turn(self) -> float:
+        return angle(self.actor.yaw, self.place(min(self.step * 1.5, self.moving)).yaw)
+
+    def feet(self, time: float, place: Place) -> tuple[Foot, Foot]:
+        """Both feet in the body's frame."""
+        right, left = (self._foot(prints, time, place) for prints in self.prints)
+        return right, left
+
+    def _foot(self, prints: list[Print], time: float, place: Place) -> Foot:
+        number = max(k for k, mark in enumerate(prints) if mark.start <= time)
+        here = prints[number]
+        before = prints[number - 1] if number else here
+        far = hypot(here.place.x - before.place.x, here.place.z - before.place.z)
+        share = (time - here.start) / self.step
+        low, high = SWING
+        length = self.actor.body.height
+        vigour = min(far / (0.35 * length), 1.0)
+        if number and share < high:
+            swing = min(max((share - low) / (high - low), 0.0), 1.0)
+            # The foot moves while it is well above the floor.
+            part = eased((swing - 0.14) / 0.72)
+            turn = before.place.yaw + angle(before.place.yaw, here.place.yaw) * part
+            x, z = between((before.place.x, before.place.z), (here.place.x, here.place.z), part)
+            lift = LIFT * length * (0.45 + 0.55 * vigour) * sin(pi * swing) ** 0.7
+            heel = HEEL * vigour * max(1 - 2.2 * swing, 0.0) + TOE * vigour * sin(pi * min(max(swing - 0.5, 0.0) / 0.44, 1.0))
+            if share < low:
+                heel = HEEL * vigour
+            return _local(place, Place(x, z, turn), lift, heel)
+        pitch = 0.0
+        later = prints[number + 1] if number + 1 < len(prints) else None
+        if later is not None and time > later.start - 0.45 * self.step:
+            ahead = hypot(later.place.x - here.place.x, later.place.z - here.place.z)
+            pitch = HEEL * min(ahead / (0.35 * length), 1.0) * eased(1 - (later.start - time) / (0.45 * self.step))
+        return _local(place, here.place, 0.0, pitch)
+
+    def at(self, time: float) -> Actor:
+        """The actor after some seconds."""
+        if time >= self.seconds:
+            place, feet = self.place(self.moving), None
+        else:
+            place = self.place(min(time, self.moving))
+            feet = self.feet(time, place)
+        stride = (feet[0].z - feet[1].z) / (2 * STEP * self.actor.body.height) if feet else 0.0
+        pose = replace(self.actor.body_pose, feet=feet, stride=min(max(stride, -1.3), 1.3), effort=self.effort)
+        return replace(self.actor, spot=(place.x, place.z), yaw=place.yaw, body_pose=pose)
+
+
+def _in_world(place: Place, foot: Foot) -> Place:
+    c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
+    return Place(place.x + foot.x * c + foot.z * s, place.z - foot.x * s + foot.z * c, place.yaw + foot.yaw)
+
+
+def _local(place: Place, foot: Place, lift: float, pitch: float) -> Foot:
+    c, s = cos(place.yaw * pi / 180), sin(place.yaw * pi / 180)
+    dx, dz = foot.x - place.x, foot.z - place.z
+    return Foot(dx * c - dz * s, dx * s + dz * c, lift, angle(place.yaw, foot.yaw), pitch)
+
+
+def planted(actor: Actor, feet: Actor) -> Actor:
+    """An actor whose feet are where another's are."""
+    pair = feet_of(feet.body_pose, feet.body.proportions)
+    places = [_in_world(Place(*feet.spot, feet.yaw), foot) for foot in pair]
+    here = Place(*actor.spot, actor.yaw)
+    right, left = (_local(here, at, foot.lift, foot.pitch) for at, foot in zip(places, pair, strict=True))
+    return replace(actor, body_pose=replace(actor.body_pose, feet=(right, left)))
+
+
+def stepping(one: Actor, other: Actor, share: float) -> tuple[Foot, Foot]:
+    """The feet, in the frame of `one` at present, of a body whose feet step to where another's are, one by one.
+
+    Args:
+        one: the actor now, anywhere between the start and `other`; its feet are those at the start.
+        other: the actor at the end.
+        share: of the whole motion.
+    """
+    here = Place(*one.spot, one.yaw)
+    starts = feet_of(one.body_pose, one.body.proportions)
+    ends = feet_of(other.body_pose, other.body.proportions)
+    there = Place(*other.spot, other.yaw)
+    found = []
+    for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        a, b = _in_world(here, start), _in_world(there, end)
+        lifted = min(max((share - 0.06 - 0.44 * number) / 0.42, 0.0), 1.0)
+        part = min(max((lifted - 0.15) / 0.7, 0.0), 1.0)
+        x, z = between((a.x, a.z), (b.x, b.z), eased(part))
+        far = hypot(b.x - a.x, b.z - a.z) + abs(angle(a.yaw, b.yaw)) / 300
+        lift = min(0.06, 0.3 * far + 0.004) * sin(pi * lifted) ** 0.7 + start.lift + (end.lift - start.lift) * eased(part)
+        found.append(_local(here, Place(x, z, a.yaw + angle(a.yaw, b.yaw) * eased(part)), lift, 0.0))
+    return found[0], found[1]
