@@ -5,8 +5,8 @@ pictures, at ten poses a second. Printed are: how fast feet on the floor slide; 
 hand or a thing jumps; how often bodies and arms are in solids; how far held things are from the palm that holds them.
 
 An ankle or a tip of toes is on the floor if it is as low as when standing, within 6 mm, in both of two poses. A jump is a displacement between
-two poses that differs from the one before by more than 15 cm. A joint is in a solid if rays from it leave more closed
-surfaces than they enter; the middle of a trunk, thigh or shin is at least 5 cm below its skin. What is sat or lain on,
+two poses that differs from the one before by more than 15 cm. A joint is in a solid if four of five rays from it leave
+its surfaces more often than they enter; the middle of a trunk, thigh or shin is at least 5 cm below its skin. What is sat or lain on,
 held, worn, soft or hung is no solid.
 """
 
@@ -49,8 +49,12 @@ SOFT = ("curtain", "blinds", "pillow", "duvet", "blanket", "sheets", "towel", "c
 """Parts of the names of classes that give way or hang."""
 TRUNK = ("pelvis", "spine", "chest", "neck", "head", "hip", "knee")
 ARM = ("elbow", "wrist")
-WAYS = np.array(((0.31, 0.13, 0.94), (-0.87, 0.21, 0.45), (0.42, 0.17, -0.89)), np.float32)
+WAYS = np.array(
+    ((0.31, 0.13, 0.94), (-0.87, 0.21, 0.45), (0.42, 0.17, -0.89), (-0.51, -0.23, -0.83), (0.77, 0.55, 0.32)), np.float32
+)
 """Directions of rays, none along the walls."""
+MOST = 4
+"""Rays that must agree: the library drops one of two surfaces that coincide."""
 
 
 class Found(NamedTuple):
@@ -179,33 +183,33 @@ def _solids(trajectory: Trajectory, tick: int, shown: list[Frame], found: Found)
     if not points:
         return
     number = np.array(points).shape[0] // sum(len(frame.actors) for frame in shown)
-    inside, owner = _inside(corners, np.array(points, np.float32))
-    for row, arms, which in zip(
-        inside.reshape(-1, number), np.array(names).reshape(-1, number), owner.reshape(-1, number), strict=True
-    ):
-        found.body.append(bool(row[~arms].any()))
-        found.arms.append(bool(row[arms].any()))
-        for part, kind in ((~arms, "body"), (arms, "arm")):
-            for triangle in which[row & part][:1]:
-                found.places[f"{kind} in {solid[owners[triangle]].class_name}"] += 1
+    inside = _inside(corners, owners, np.array(points, np.float32))
+    for row, arms in zip(inside.reshape(-1, number), np.array(names).reshape(-1, number), strict=True):
+        for part, kind, into in ((~arms, "body", found.body), (arms, "arm", found.arms)):
+            within = row[part & (row >= 0)]
+            into.append(len(within) > 0)
+            for owner in within[:1]:
+                found.places[f"{kind} in {solid[owner].class_name}"] += 1
 
 
-def _inside(corners: NDArray[Any], points: NDArray[Any]) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-    """Whether each point is in a solid, and the triangle through which its first ray leaves one."""
+def _inside(corners: NDArray[Any], owners: NDArray[Any], points: NDArray[Any]) -> NDArray[np.int64]:
+    """The thing whose surfaces most rays from each point leave more often than they enter; -1 for none."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    scene = Caster.of(corners).scene
-    votes, leaves = np.zeros(len(points), np.int64), np.zeros(len(points), np.int64)
+    scene, count = Caster.of(corners).scene, int(owners.max()) + 1
+    votes: Counter[int] = Counter()
     for way in WAYS:
         rays = np.concatenate([points, np.tile(way, (len(points), 1))], axis=1)
         hits = {name: value.numpy() for name, value in scene.list_intersections(_tensor(rays)).items()}
-        ray, triangle = hits["ray_ids"].astype(np.int64), hits["primitive_ids"].astype(np.int64)
-        near = hits["t_hit"] < 8.0
-        signs = np.sign(normals[triangle] @ way) * near
-        wound = np.bincount(ray, signs, len(points))
-        votes += wound > 0.5
-        out = signs > 0
-        leaves[ray[out][::-1]] = triangle[out][::-1]
-    return votes >= 2, leaves
+        triangle = hits["primitive_ids"].astype(np.int64)
+        keys = hits["ray_ids"].astype(np.int64) * count + owners[triangle]
+        known, of = np.unique(keys, return_inverse=True)
+        wound = np.bincount(of, np.sign(normals[triangle] @ way), len(known))
+        votes.update(known[wound > 0.5].tolist())
+    found = np.full(len(points), -1)
+    for key, number in votes.items():
+        if number >= MOST:
+            found[key // count] = key % count
+    return found
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ from hearth.rendering.models.mesh import Mesh, rotation
 from hearth.rendering.models.textures import OFFSETS, SLOTS, atlas, decode
 from hearth.rendering.models.weave import SIDE
 from hearth.rendering.people.figure import Figure
-from hearth.rendering.scene.instances import Thing, placed
+from hearth.rendering.scene.instances import Thing, placed, tilted
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
