@@ -10,7 +10,8 @@ from hearth.rendering.cameras.viewpoints import home_box
 from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, standing
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
-from hearth.rendering.people.acting import Actor, initial_actors, posed
+from hearth.rendering.people.acting import Actor, initial_actors
+from hearth.rendering.people.hands import posed
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
@@ -54,7 +55,7 @@ class CameraSensor:
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
         self.prepared = prepared_scene(home, knowledge, seed=seed, hour=hour)
         self.floors = Floors(self.prepared)
-        self.places = Places.start(home, self.prepared.knowledge)
+        self.places = Places.start(home, self.prepared.knowledge, self.prepared)
         self.actors: tuple[Actor, ...] = ()
         self._scene: Scene | None = None
         self._ticks = 0
@@ -96,7 +97,7 @@ class CameraSensor:
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
-        self.places = Places.start(self.home, self.prepared.knowledge).settled(graph)
+        self.places = Places.start(self.home, self.prepared.knowledge, self.prepared).settled(graph)
         actors = initial_actors(graph, self.floors.at(self.places.nodes()), self.places, self.seed)
         self.actors = standing((posed(actor, graph, self.places, None) for actor in actors), env.world)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

@@ -11,7 +11,9 @@ from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor, carried, initial_actors, moved, posed
+from hearth.rendering.people.acting import Actor, initial_actors, moved
+from hearth.rendering.people.hands import posed
+from hearth.rendering.people.holding import held_things
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.history import graphs
@@ -27,6 +29,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.program import Step
+from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.engine import Execution
 from hearth.simulation.world.world import World
@@ -178,13 +181,13 @@ def _keyframes(
     """The keyframes of an execution, each scene with all of its things."""
     floors = Floors(prepared)
     ticks: list[tuple[Step, ...]] = [(), *execution.program.ticks()]
-    places = Places.start(home, prepared.knowledge)
+    places = Places.start(home, prepared.knowledge, prepared)
     actors: tuple[Actor, ...] = ()
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
             places = places.settled(graph)
             floor = floors.at(places.nodes())
-            actors = initial_actors(graph, floor, places, variation.seed)
+            actors = initial_actors(graph, floor, places, people_seed(execution, variation.seed))
             actors = _wandered(actors, floor, variation) if variation.wander else actors
             actors = tuple(posed(actor, graph, places, None) for actor in actors)
             actors = standing(actors, execution.worlds[0])
@@ -192,6 +195,11 @@ def _keyframes(
             actors, places = advanced(actors, places, graph, floor, steps, execution.worlds[tick])
             floor = floors.at(places.nodes())
         yield Keyframe(tick, steps, scene_at(prepared, places, actors), actors, places, floor)
+
+
+def people_seed(execution: Execution, seed: int) -> int:
+    """The seed of who performs an execution: other programs and homes have other people."""
+    return derive(seed, "people", execution.worlds[0].home.name, execution.program.title)
 
 
 def _wandered(actors: tuple[Actor, ...], floor: FreeFloor, variation: Variation) -> tuple[Actor, ...]:
@@ -240,10 +248,11 @@ def advanced(
 
 def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> Scene:
     """The scene of one keyframe; held objects are drawn in the hands."""
-    held = carried(actors, places)
-    nodes = [replace(n, box=held[n.id].box, yaw=held[n.id].yaw) if n.id in held else n for n in places.nodes()]
+    held = held_things(prepared, places, actors)
+    nodes = [node for node in places.nodes() if node.id not in held]
     figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
-    return prepared.scene(nodes, figures)
+    scene = prepared.scene(nodes, figures)
+    return replace(scene, things=(*scene.things, *(thing for things in held.values() for thing in things)))
 
 
 def snapshots(

@@ -1,18 +1,16 @@
 """Characters through a program: position, posture and body pose after each tick."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
 from hearth.homes.forms import form
-from hearth.kb.modifiers import value
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import recipe_of
-from hearth.rendering.people.figure import Body, Figure
-from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.figure import Body, Figure
+from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.variety import person
-from hearth.rendering.scene.places import HANDS, Places, Pose
+from hearth.rendering.scene.places import Places, Pose
 from hearth.rendering.scene.prepared import local_size
 from hearth.rendering.scene.standing_places import FreeFloor
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
@@ -148,55 +146,6 @@ def _risen(actor: Actor, places: Places, floor: FreeFloor, others: list[Spot]) -
     return replace(actor, spot=spot or actor.spot)
 
 
-def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | None) -> Actor:
-    """The character with hands and gaze on the step's targets."""
-    held = _held(graph, actor.node.id)
-    height = actor.body.height
-    low = actor.body_pose.seat + 0.3 if actor.body_pose.posture == "sitting" else 0.6 * height
-    carry = {side: (sign * 0.16, low, 0.34) for side, sign in (("right", 1.0), ("left", -1.0)) if side in held}
-    hands: dict[str, Point | None] = {"right": carry.get("right"), "left": carry.get("left")}
-    gesture = gesture_of(step)
-    target = _target(step, gesture.hand, places, actor)
-    acting = _acting_side(step, graph, actor.node.id, held)
-    wanted = _hand_target(gesture, target, actor, acting)
-    if wanted is not None and actor.body_pose.posture != "lying":
-        for side, sign in (("right", 1.0), ("left", -1.0)):
-            if side == acting or gesture.both:
-                spread = 0.12 * sign if gesture.both else 0.0
-                hands[side] = (wanted[0] + spread, wanted[1], wanted[2])
-    if actor.body_pose.posture == "lying":
-        hands = {"right": None, "left": None}
-    look = _target(step, gesture.gaze, places, actor) if gesture.gaze else None
-    gaze = actor.local(look) if look else None
-    body_pose = replace(actor.body_pose, right=hands["right"], left=hands["left"], gaze=gaze, asleep=gesture.asleep)
-    return replace(actor, body_pose=body_pose, body=_dressed(actor.body, graph, actor.node.id))
-
-
-def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
-    """The character at the moment its hand reaches the object, before the world changes.
-
-    Args:
-        here: at its acting position, hands in default pose.
-        there: after the step.
-        places: before the step.
-        step: the step.
-    """
-    if step.action != "Grab" or there.body_pose.posture == "lying":
-        return there
-    target = _target(step, "object", places, here)
-    if target is None:
-        return there
-    # An object out of reach is approached as far as the body bends.
-    side = _acting_side(step, places.graph, here.node.id, _held(places.graph, here.node.id))
-    at = here.local(target)
-    hands = {"right": here.body_pose.right, "left": here.body_pose.left} | {side: at}
-    return replace(there, body_pose=replace(there.body_pose, right=hands["right"], left=hands["left"], gaze=at))
-
-
-def _held(graph: EnvironmentGraph, me: int) -> set[str]:
-    return {HANDS[e.relation] for e in graph.edges if e.source == me and e.relation in HANDS}
-
-
 def reachable(node_id: int, places: Places) -> tuple[Pose | None, float | None]:
     """The pose of a thing, and the direction of its front, or of its container's front."""
     pose = places.poses.get(node_id)
@@ -298,50 +247,7 @@ def _towards(spot: Spot, point: Point, usual: float) -> float:
     return degrees(atan2(dx, dz)) if abs(dx) + abs(dz) > 1e-3 else usual
 
 
-def _target(step: Step | None, which: str, places: Places, actor: Actor) -> Point | None:
-    """The target point of hands or gaze in the world: the point of the object's box nearest to the chest."""
-    if step is None or not step.objects:
-        return None
-    ref = step.objects[-1 if which == "second" else 0]
-    pose = places.poses.get(ref.node or -1) or reachable(ref.node or -1, places)[0]
-    if pose is None:
-        return None
-    chest = actor.world((0.15, actor.body.height * 0.75, 0.1))
-    x, y, z = (min(max(p, c - s / 2), c + s / 2) for p, c, s in zip(chest, pose.box.center, pose.box.size, strict=True))
-    return x, y, z
-
-
-def _acting_side(step: Step | None, graph: EnvironmentGraph, me: int, held: set[str]) -> str:
-    """The acting hand: the one that holds the object, else a free one, preferring the right."""
-    if step is not None and (asked := value(step, "hand")):
-        return asked
-    for edge in graph.edges:
-        if (
-            step
-            and edge.source == me
-            and edge.relation in HANDS
-            and any(ref.node == edge.target for ref in step.objects)
-        ):
-            return HANDS[edge.relation]
-    return "left" if "right" in held and "left" not in held else "right"
-
-
-def _hand_target(gesture: Gesture, target: Point | None, actor: Actor, side: str) -> Point | None:
-    """Target of the acting hand, in the figure's frame."""
-    height, sign = actor.body.height, 1.0 if side == "right" else -1.0
-    base = actor.body_pose.seat - 0.44 * height * 1.1 if actor.body_pose.posture == "sitting" else 0.0
-    fixed: dict[str, Point] = {
-        "mouth": (sign * 0.05, 0.87 * height + base, 0.2),
-        "chest": (0.0, 0.68 * height + base, 0.33),
-        "carry": (sign * 0.14, 0.66 * height + base, 0.34),
-        "wave": (sign * 0.34, 1.0 * height + base, 0.15),
-    }
-    if gesture.hand in fixed:
-        return fixed[gesture.hand]
-    return actor.local(target) if gesture.hand in ("object", "second") and target else None
-
-
-def _dressed(body: Body, graph: EnvironmentGraph, me: int) -> Body:
+def dressed_for(body: Body, graph: EnvironmentGraph, me: int) -> Body:
     """The body in the colours of its worn clothes."""
     classes = {node.id: node.class_name for node in graph.nodes}
     for edge in sorted(e for e in graph.edges if e.target == me and e.relation == "ON"):
@@ -354,31 +260,3 @@ def _dressed(body: Body, graph: EnvironmentGraph, me: int) -> Body:
         elif "shoes" in name or "slippers" in name:
             body = replace(body, shoes=color)
     return body
-
-
-def carried(actors: tuple[Actor, ...], places: Places) -> Mapping[int, Pose]:
-    """Poses of the held objects and of worn hats, by node id."""
-    found: dict[int, Pose] = {}
-    nodes = {node.id: node for node in places.graph.nodes}
-    for actor in actors:
-        for edge in places.graph.edges:
-            if edge.source == actor.node.id and edge.relation in HANDS:
-                size = places.size_of(nodes[edge.target])
-                found[edge.target] = _in_hand(actor, actor.hand(HANDS[edge.relation]), size)
-            elif edge.target == actor.node.id and edge.relation == "ON" and "hat" in nodes[edge.source].class_name:
-                head = actor.figure().joints()["head"]
-                size = places.size_of(nodes[edge.source])
-                x, y, z = actor.world((float(head[0]), float(head[1]) + 0.05 + size[1] / 2, float(head[2])))
-                found[edge.source] = Pose(Box((x, y, z), size), 0.0)
-    return found
-
-
-def _in_hand(actor: Actor, hand: Point, size: Point) -> Pose:
-    """The pose of a held thing: gripped slightly above its foot, in front of the palm."""
-    x, y, z = actor.local(hand)
-    lift = size[1] * 0.5 - min(size[1] * 0.4, 0.06)
-    center = actor.world((x, y + lift, z + min(size[2] * 0.3, 0.1) + 0.02))
-    turned = round(actor.yaw / 90) * 90
-    w, h, d = size
-    box = (w, h, d) if turned % 180 == 0 else (d, h, w)
-    return Pose(Box(center, box), float(turned))

@@ -13,8 +13,8 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import ATTRIBUTES, Mesh
 from hearth.rendering.models.paint import Paint, linear
 from hearth.rendering.models.textures import SLOTS
-from hearth.rendering.people.bones import matrices
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.bones import matrices
 from hearth.rendering.people.shape import BodyData, Shape, body_data, shaped
 
 if TYPE_CHECKING:

@@ -11,10 +11,14 @@ class Gesture:
     """The gesture of an action.
 
     Attributes:
-        hand: target of the acting hand: `object`, `second`, `mouth`, `chest`, `carry`, `wave`, or "" (none).
+        hand: what the hands do (hands.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`, `push`, `chest`,
+            `wave`, or "" (nothing but carrying).
+        grip: form of the hand that touches an object, of `GRIPS`.
+        motion: of the hands while they act: `rub`, `keys`, or "" (none).
+        seconds: for which they act.
         both: whether both hands go to the target.
         gaze: `object`, `second`, or "" (ahead).
-        stride: as in `BodyPose`.
+        stride: above 0 if the actor walks there.
         near: whether the actor must be within arm's reach of the object.
         about: index of the object that hands or gaze go to.
         rests: whether the object is a seat or bed to sit or lie on.
@@ -29,6 +33,9 @@ class Gesture:
     about: int = 0
     rests: bool = False
     asleep: bool = False
+    grip: str = ""
+    motion: str = ""
+    seconds: float = 0.0
 
 
 LOOK = Gesture()

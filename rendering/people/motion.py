@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
-from hearth.rendering.people.acting import Actor, carried
+from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.holding import held_things
 from hearth.rendering.people.tracks import HOLD, Track, motionless, track
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
@@ -111,20 +112,15 @@ class _SceneCache:
     def scene(self, keyframe: Keyframe, actors: tuple[Actor, ...], ajar: Mapping[int, float]) -> Scene:
         """A keyframe's scene with actors as in a frame, and some things partly open."""
         prepared, places = self.trajectory.prepared, keyframe.places
-        held = carried(actors, places)
+        held = held_things(prepared, places, actors)
         things, base = self._rest(keyframe, frozenset(held), frozenset(ajar))
-        nodes = {node.id: node for node in places.graph.nodes if node.id in held}
         swung = [
             thing
             for node in (places.nodes() if ajar else ())
             if node.id in ajar and node.id not in held
             for thing in prepared.things(_opened(node), ajar[node.id])
         ]
-        hands = [
-            thing
-            for number, pose in held.items()
-            for thing in prepared.things(replace(nodes[number], box=pose.box, yaw=pose.yaw))
-        ]
+        hands = [thing for things in held.values() for thing in things]
         people = [Thing(a.node.id, a.node.class_name, a.figure(), a.position, a.yaw) for a in actors]
         return replace(base, things=(*things, *hands, *swung, *people), static=self.trajectory.static)
 

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hearth.kb.modifiers import SPEEDS, value
-from hearth.rendering.people.acting import Actor, posed, reach_for
-from hearth.rendering.people.body_pose import Between, BodyPose, Hand
+from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.body_pose import Between, BodyPose, Hand, Held
 from hearth.rendering.people.gait import Gait, Place, angle, between, eased, movements, planted, stepping
+from hearth.rendering.people.gestures import Gesture, gesture_of
+from hearth.rendering.people.hands import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.scene.routes import WalkableFloor, path
 from hearth.schemas.graph import Point, Spot
@@ -82,11 +84,37 @@ def track(one: Actor, other: Actor, before: Keyframe, step: Step | None) -> Trac
     change = sum(segment.seconds for segment in segments)
     if here != other:
         segments.append(blended(here, other, BACK))
+    if step is not None and gesture_of(step).seconds:
+        segments.append(acted(other, gesture_of(step)))
     segments.append(motionless(other, HOLD))
     rate = SPEEDS.get(value(step, "speed"), 1.0) if step is not None else 1.0
     if rate != 1.0:
         segments = [segment._replace(seconds=segment.seconds / rate) for segment in segments]
     return Track(tuple(segments), change / rate)
+
+
+def acted(actor: Actor, gesture: Gesture) -> Segment:
+    """The hands at work: what they do once they have arrived."""
+
+    def at(share: float) -> Actor:
+        time, soft = share * gesture.seconds, sin(pi * min(max(share, 0.0), 1.0)) ** 0.5 if 0 < share < 1 else 0.0
+        pose = actor.body_pose
+        if not gesture.motion or not soft:
+            return actor
+        effort = effort_of(pose, actor.body.proportions)
+        right, left = (_at_work(pose.target(side), gesture.motion, time, soft, side) for side in "rl")
+        return replace(actor, body_pose=replace(pose, right=right, left=left, effort=effort))
+
+    return Segment(gesture.seconds, at)
+
+
+def _at_work(at: Point | None, motion: str, time: float, soft: float, side: str) -> Point | None:
+    if at is None:
+        return None
+    x, y, z = at
+    if motion == "keys":
+        return x, y + 0.016 * soft * sin(2 * pi * (2.2 * time + (0.5 if side == "l" else 0.0))), z
+    return x + 0.06 * soft * sin(2 * pi * 0.9 * time), y, z + 0.025 * soft * sin(4 * pi * 0.9 * time)
 
 
 def motionless(actor: Actor, seconds: float) -> Segment:
@@ -280,7 +308,15 @@ def _turned(one: Actor, other: Actor, side: str, share: float) -> Hand:
     starts, ends = (hand.palm or _palm(actor, side) for hand, actor in ((a, one), (b, other)))
     x, y, z = (p + (q - p) * share for p, q in zip(starts, ends, strict=True))
     grip = a.grip if share < 0.6 else b.grip
-    return Hand(grip, (x, y, z), a.swivel + (b.swivel - a.swivel) * share)
+    return Hand(grip, (x, y, z), a.swivel + (b.swivel - a.swivel) * share, _held(a.held, b.held, share))
+
+
+def _held(a: Held, b: Held, share: float) -> Held:
+    """How a thing is held between two poses; what is poured flows while it is nearly tilted."""
+    x, y, z = (p + (q - p) * share for p, q in zip(a.gap, b.gap, strict=True))
+    turn, pitch, roll = (p + (q - p) * share for p, q in ((a.turn, b.turn), (a.pitch, b.pitch), (a.roll, b.roll)))
+    stream = b.stream if share > 0.8 else (a.stream if share < 0.2 else None)
+    return Held(turn, pitch, roll, (x, y, z), stream, b.opens if share > 0.5 else a.opens)
 
 
 def _palm(actor: Actor, side: str) -> Point:

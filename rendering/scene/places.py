@@ -13,7 +13,7 @@ from hearth.homes.forms import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Region
 from hearth.rendering.models.looks import recipe_of
-from hearth.rendering.scene.prepared import LIQUIDS, liquid, local_size
+from hearth.rendering.scene.prepared import LIQUIDS, PreparedScene, liquid, local_size
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
@@ -55,12 +55,14 @@ class Places:
         locations: node id -> its location in the graph.
         poses: node id -> box and yaw; held and worn things, and those without a location, are absent.
         knowledge: for recipes and sizes.
+        prepared: for the shapes of things; None if they are not known.
     """
 
     graph: EnvironmentGraph
     locations: Mapping[int, Location]
     poses: Mapping[int, Pose]
     knowledge: Knowledge
+    prepared: PreparedScene | None = None
 
     @cached_property
     def building(self) -> frozenset[int]:
@@ -77,10 +79,10 @@ class Places:
         return found
 
     @classmethod
-    def start(cls, home: EnvironmentGraph, knowledge: Knowledge) -> Places:
+    def start(cls, home: EnvironmentGraph, knowledge: Knowledge, prepared: PreparedScene | None = None) -> Places:
         """The places of a home as it was built, with its boxes."""
         poses = {node.id: Pose(node.box, node.yaw) for node in home.nodes if node.box}
-        return cls(home, locations_of(home), poses, knowledge)
+        return cls(home, locations_of(home), poses, knowledge, prepared)
 
     def settled(
         self, graph: EnvironmentGraph, near: Mapping[int, Point] | None = None, at: Mapping[int, Spot] = NOWHERE
@@ -107,7 +109,7 @@ class Places:
                 pose = Pose(Box((x, y, z), pose.box.size), pose.yaw)
             if pose is not None:
                 poses[node_id] = pose
-        return Places(graph, locations, poses, self.knowledge)
+        return Places(graph, locations, poses, self.knowledge, self.prepared)
 
     def nodes(self) -> list[Node]:
         """The graph's nodes with their current boxes."""
