@@ -239,7 +239,10 @@ def _folds(points: Array, faces: dict[int, list[int]], around: dict[int, set[int
             continue
         before = points[face]
         after = points[[stays if v == gone else v for v in face]]
-        m, n = np.cross(before[1] - before[0], before[2] - before[0]), np.cross(after[1] - after[0], after[2] - after[0])
+        m, n = (
+            np.cross(before[1] - before[0], before[2] - before[0]),
+            np.cross(after[1] - after[0], after[2] - after[0]),
+        )
         if m @ n < 0.3 * np.linalg.norm(m) * np.linalg.norm(n):
             return True
     return False
@@ -308,8 +311,7 @@ SLOTS = ("skin", "lips", "white", "iris", "pupil", "brow", "hair", "top", "botto
 
 def parts_of(source: Source, fields: Fields) -> dict[str, Part]:
     """All surfaces by name."""
-    found = {**_skin(source, fields), **_eyes(source), **_garments(source, fields), **_hair(source, fields)}
-    return found
+    return {**_skin(source, fields), **_eyes(source), **_garments(source, fields), **_hair(source, fields)}
 
 
 def _single(count: int) -> list[dict[int, float]]:
@@ -321,7 +323,10 @@ def _skin(source: Source, fields: Fields) -> dict[str, Part]:
     v, quads = source.mean, source.quads
     body = source.groups == "body"
     inner, lips, face = source.mask("inside-mouth") > 0.5, source.mask("lips") > 0.5, source.mask("face")
-    middle = {name: getattr(fields, name)[quads].mean(axis=1) for name in ("arm", "arm_share", "leg", "head", "collar", "hand")}
+    middle = {
+        name: getattr(fields, name)[quads].mean(axis=1)
+        for name in ("arm", "arm_share", "leg", "head", "collar", "hand")
+    }
     head = body & ~inner & (middle["collar"] > -0.11) & (middle["arm"] < 0.35)
     regions = {
         "head": (head, 2600), "hands": (body & (middle["arm"] > 1.86), 1500),
@@ -335,7 +340,6 @@ def _skin(source: Source, fields: Fields) -> dict[str, Part]:
     np.maximum.at(dear, quads[lips].ravel(), 30.0)
     eye = source.mask("eyelids") > 0.2
     np.maximum.at(dear, quads[eye].ravel(), 40.0)
-    of_lips = set(map(tuple, np.sort(triangles_of(quads[lips & body]), axis=1).tolist()))
     lip_points = set(quads[lips & body].ravel().tolist())
     found = {}
     for name, (chosen, keep) in regions.items():
@@ -344,7 +348,6 @@ def _skin(source: Source, fields: Fields) -> dict[str, Part]:
         if name == "head":
             slots[[all(p in lip_points for p in t) for t in kept.tolist()]] = SLOTS.index("lips")
         found[name] = _compact(Part(_single(len(v)), kept, np.zeros(len(v)), slots))
-    assert of_lips
     return found
 
 
@@ -357,7 +360,9 @@ def _eyes(source: Source) -> dict[str, Part]:
         way = v[triangles_of(quads)].mean(axis=1) - middle
         angle = np.degrees(np.arccos(way[:, 2] / np.linalg.norm(way, axis=1)))
         front = angle < 100
-        slots = np.where(angle < 15, SLOTS.index("pupil"), np.where(angle < 34, SLOTS.index("iris"), SLOTS.index("white")))
+        slots = np.where(
+            angle < 15, SLOTS.index("pupil"), np.where(angle < 34, SLOTS.index("iris"), SLOTS.index("white"))
+        )
         found.append((triangles_of(quads)[front], slots[front]))
         for lash in ("1", "2"):
             lashes = triangles_of(source.quads[source.groups == f"helper-{side}-eyelashes-{lash}"])
@@ -392,7 +397,9 @@ def _garments(source: Source, fields: Fields) -> dict[str, Part]:
         low = fields.hips - hem
         cover = np.where(arm > -0.5, (arm - sleeve) * 0.27, -0.1)
         edge = np.maximum(np.maximum(neck + (0.02 if name == "tank" else 0.0), cover), np.where(trunk, low - y, -0.1))
-        found[name] = cut(smooth, tri, loose + (0.004 if name == "tshirt" else 0.0) * (arm > 0.1), edge, SLOTS.index("top"))
+        found[name] = cut(
+            smooth, tri, loose + (0.004 if name == "tshirt" else 0.0) * (arm > 0.1), edge, SLOTS.index("top")
+        )
     straight = _straight(source, fields, x)
     for name, length in (("trousers", 1.97), ("shorts", 0.92)):
         edge = np.maximum(np.where(trunk, y - fields.waist - 0.02, 1.0), (leg - length) * 0.4)
@@ -458,9 +465,7 @@ def _hair(source: Source, fields: Fields) -> dict[str, Part]:
     return found
 
 
-def _falling(
-    v: Array, quads: Array, at: tuple[Array, Array], cap: Array, low: float, wide: float
-) -> Part:
+def _falling(v: Array, quads: Array, at: tuple[Array, Array], cap: Array, low: float, wide: float) -> Part:
     """Hair behind the ears down to a height: a sheet over nape and back, as straight as hair hangs."""
     up, back = at
     here = quads[(v[quads][:, :, 1].min(axis=1) > low - 0.05) & (v[quads][:, :, 2].mean(axis=1) < v[:, 2].max() - 0.11)]
@@ -558,7 +563,10 @@ def main() -> None:
         targets=np.ascontiguousarray(differences).view(np.uint8).reshape(-1, 2).T.copy(),
         target_names=np.array(list(targets)),
         bones=np.array(source.bones),
-        parents=np.array([source.bones.index(p) if (p := source.rig[b]["parent"]) in source.bones else -1 for b in source.bones], np.int8),
+        parents=np.array(
+            [source.bones.index(p) if (p := source.rig[b]["parent"]) in source.bones else -1 for b in source.bones],
+            np.int8,
+        ),
         weight_bones=best.astype(np.uint8),
         weights=np.round(values * 255).astype(np.uint8),
         triangles=joined.astype(np.uint16),

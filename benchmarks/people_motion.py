@@ -4,10 +4,10 @@ Executable programs of our corpus are drawn by the seed, each in the next of the
 pictures, at ten poses a second. Printed are: how fast feet on the floor slide; how fast heads move; how often a body, a
 hand or a thing jumps; how often bodies and arms are in solids; how far held things are from the palm that holds them.
 
-An ankle or a tip of toes is on the floor if it is as low as when standing, within 6 mm, in both of two poses. A jump is a displacement between
-two poses that differs from the one before by more than 15 cm. A joint is in a solid if four of five rays from it leave
-its surfaces more often than they enter; the middle of a trunk, thigh or shin is at least 5 cm below its skin. What is sat or lain on,
-held, worn, soft or hung is no solid.
+An ankle or a tip of toes is on the floor if it is as low as when standing, within 6 mm, in both of two poses. A jump is
+a displacement between two poses that differs from the one before by more than 15 cm; of a thing, twice that. A joint is
+in a solid if four of five rays from it leave its surfaces more often than they enter; the middle of a trunk, thigh or
+shin is at least 5 cm below its skin. What is sat or lain on, held, worn, soft or hung is not counted.
 """
 
 from __future__ import annotations
@@ -45,12 +45,26 @@ LIFTED = 0.006
 """Metres by which the ankle or toe of a lifted foot is above where it is when standing."""
 SOLE = 0.012
 """Height of the tip of the toes of who stands, as a share of the body's."""
-SOFT = ("curtain", "blinds", "pillow", "duvet", "blanket", "sheets", "towel", "carpet", "mat", "rug", "clothes", "plant")
+SOFT = (
+    "curtain",
+    "blinds",
+    "pillow",
+    "duvet",
+    "blanket",
+    "sheets",
+    "towel",
+    "carpet",
+    "mat",
+    "rug",
+    "clothes",
+    "plant",
+)
 """Parts of the names of classes that give way or hang."""
 TRUNK = ("pelvis", "spine", "chest", "neck", "head", "hip", "knee")
 ARM = ("elbow", "wrist")
 WAYS = np.array(
-    ((0.31, 0.13, 0.94), (-0.87, 0.21, 0.45), (0.42, 0.17, -0.89), (-0.51, -0.23, -0.83), (0.77, 0.55, 0.32)), np.float32
+    ((0.31, 0.13, 0.94), (-0.87, 0.21, 0.45), (0.42, 0.17, -0.89), (-0.51, -0.23, -0.83), (0.77, 0.55, 0.32)),
+    np.float32,
 )
 """Directions of rays, none along the walls."""
 MOST = 4

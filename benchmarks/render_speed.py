@@ -26,9 +26,10 @@ from hearth.rendering.cameras.viewpoints import home_box, room_views
 from hearth.rendering.modalities import MODALITIES, pictures_of, render
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
-from hearth.rendering.people.figure import BODIES, figure_mesh
-from hearth.rendering.people.figure import Figure as Person
+from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.figure import Figure as Person
+from hearth.rendering.people.figure import figure_mesh
 from hearth.rendering.rays import threads
 from hearth.rendering.rays.incremental import incremental_frame
 from hearth.rendering.scene.instances import Thing, placed

@@ -11,7 +11,7 @@ from hearth.rendering.film.snapshots import advanced, check_geometry, scene_at, 
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.acting import Actor, initial_actors
-from hearth.rendering.people.hands import posed
+from hearth.rendering.people.reaching import posed
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene

@@ -12,8 +12,8 @@ from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.acting import Actor, initial_actors, moved
-from hearth.rendering.people.hands import posed
 from hearth.rendering.people.holding import held_things
+from hearth.rendering.people.reaching import posed
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.history import graphs

@@ -6,8 +6,9 @@ from math import atan2, cos, degrees, radians, sin
 from hearth.homes.forms import form
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
-from hearth.rendering.people.figure import Body, Figure
+from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.variety import person
 from hearth.rendering.scene.places import Places, Pose

@@ -80,6 +80,9 @@ class Between(NamedTuple):
     share: float
 
 
+HANGING = Hand()
+
+
 @dataclass(frozen=True, slots=True)
 class BodyPose:
     """Posture, hands and gaze in the body's frame: feet at the origin (sitting: hips above it), front +z, right +x.
@@ -105,8 +108,8 @@ class BodyPose:
     gaze: Point | None = None
     asleep: bool = False
     feet: tuple[Foot, Foot] | None = None
-    right_hand: Hand = Hand()
-    left_hand: Hand = Hand()
+    right_hand: Hand = HANGING
+    left_hand: Hand = HANGING
     effort: float | None = None
     between: Between | None = None
 

@@ -18,7 +18,7 @@ RIG_SIDE = {"r": "l", "l": "r"}
 FINGERS = ("index", "middle", "ring", "pinky")
 
 Motions = dict[str, tuple[Floats, Vector, Vector]]
-"""Bone -> rotation, pivot at rest, pivot in the pose."""
+"""Bone -> rotation, pivot in the rest pose, pivot in the pose."""
 
 
 def matrices(body_pose: BodyPose, shape: Shape, height: float) -> Floats:
@@ -40,7 +40,7 @@ def matrices(body_pose: BodyPose, shape: Shape, height: float) -> Floats:
 
 
 def _motions(body_pose: BodyPose, shape: Shape, height: float, body: Proportions) -> tuple[Floats, Floats, Floats]:
-    """Rotations (B, 3, 3), pivots at rest and in the pose (B, 3) of all bones."""
+    """Rotations (B, 3, 3), pivots in the rest pose and in the pose (B, 3) of all bones."""
     found = upright(body_pose, body)
     rest = _rest(shape, height)
     moves = _trunk(body_pose, body, found, rest)
@@ -57,7 +57,7 @@ def _motions(body_pose: BodyPose, shape: Shape, height: float, body: Proportions
 
 @lru_cache(maxsize=64)
 def _rest(shape: Shape, height: float) -> Joints:
-    """Joints and ends of bones at rest; Hearth's names, and those of the rig for what only it has."""
+    """Joints and ends of bones in the rest pose; Hearth's names, and those of the rig for what only it has."""
     data, person, body = body_data(), shaped(shape, height), proportions(shape, height)
     found: Joints = {name: person.heads[number] for number, name in enumerate(data.bones)}
     found |= {f"{name}_end": person.tails[number] for number, name in enumerate(data.bones)}
@@ -148,7 +148,7 @@ def _natural(side: str, elbow: Vector, wrist: Vector) -> Vector:
 
 @lru_cache(maxsize=128)
 def _palm_frame(shape: Shape, height: float, side: str) -> tuple[Vector, Vector]:
-    """Directions from the wrist to the knuckles, and in which the palm looks, at rest."""
+    """Directions from the wrist to the knuckles, and in which the palm looks, in the rest pose."""
     rest, rig = _rest(shape, height), RIG_SIDE[side]
     wrist, knuckle, tip = rest[f"hand_{rig}"], rest[f"middle_01_{rig}"], rest[f"middle_03_{rig}_end"]
     along = unit(knuckle - wrist)
@@ -161,7 +161,7 @@ def _palm_frame(shape: Shape, height: float, side: str) -> tuple[Vector, Vector]
 
 @lru_cache(maxsize=512)
 def _fingers(shape: Shape, height: float, side: str, grip: str) -> Motions:
-    """The motions of the finger bones in the frame of a hand at rest."""
+    """The motions of the finger bones in the frame of a hand in the rest pose."""
     rest, rig, bends = _rest(shape, height), RIG_SIDE[side], GRIPS[grip]
     along, palm = _palm_frame(shape, height, side)
     axis = unit(np.cross(along, palm))
@@ -204,7 +204,8 @@ def _swing(a: Vector, b: Vector) -> Floats:
     a, b = unit(a), unit(b)
     cross, cosine = np.cross(a, b), float(a @ b)
     if cosine < -0.9999:
-        return about(unit(np.cross(a, (0.0, 0.0, 1.0)) + (0.0, 1e-9, 0.0)), 180.0)
+        side = np.cross(a, (0.0, 0.0, 1.0))
+        return about(unit(side + np.array((0.0, 1e-9, 0.0))), 180.0)
     x, y, z = cross
     skew = np.array(((0, -z, y), (z, 0, -x), (-y, x, 0)))
     found: Floats = np.eye(3) + skew + skew @ skew / (1 + cosine)

@@ -1,10 +1,9 @@
-"""Dressed people at rest: surfaces of body, hair and clothes with colours, and their skinning to a pose."""
+"""Dressed people in the rest pose: surfaces of body, hair and clothes with colours, and their skinning to a pose."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +12,10 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import ATTRIBUTES, Mesh
 from hearth.rendering.models.paint import Paint, linear
 from hearth.rendering.models.textures import SLOTS
+from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.bones import matrices
 from hearth.rendering.people.shape import BodyData, Shape, body_data, shaped
-
-if TYPE_CHECKING:
-    from hearth.rendering.people.figure import Body
 
 SIZE = 1.7
 """Height in metres for which offsets of clothes are stored."""
@@ -48,10 +45,10 @@ HAIR = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Dressed:
-    """A dressed person at rest.
+    """A dressed person in the rest pose.
 
     Attributes:
-        points, normals: (P, 3) at rest.
+        points, normals: (P, 3) in the rest pose.
         bone_of, weights: (P, 4) bones of each point, and their weights.
         triangles: (T, 3) points.
         uvs, surface, textures: as in `Mesh`.
@@ -76,7 +73,7 @@ def parts_worn(body: Body) -> tuple[str, ...]:
 
 @lru_cache(maxsize=32)
 def dressed(body: Body, asleep: bool = False) -> Dressed:
-    """A body's surfaces at rest; with its eyes closed if it is asleep."""
+    """A body's surfaces in the rest pose; with its eyes closed if it is asleep."""
     assert body.shape is not None
     data = body_data()
     shape = body.shape._replace(face=(*body.shape.face, ("closed", 1.0))) if asleep else body.shape

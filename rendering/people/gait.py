@@ -66,7 +66,7 @@ class Route:
     """A polyline with rounded corners, walked at a speed."""
 
     def __init__(self, points: Sequence[Spot], speed: float) -> None:
-        self.points = [p for k, p in enumerate(points) if k == 0 or hypot(p[0] - points[k - 1][0], p[1] - points[k - 1][1]) > 1e-6]
+        self.points = [points[0], *(b for a, b in pairwise(points) if hypot(b[0] - a[0], b[1] - a[1]) > 1e-6)]
         self.marks = [0.0]
         for a, b in pairwise(self.points):
             self.marks.append(self.marks[-1] + hypot(b[0] - a[0], b[1] - a[1]))
@@ -220,7 +220,8 @@ class Gait:
             turn = before.place.yaw + angle(before.place.yaw, here.place.yaw) * part
             x, z = between((before.place.x, before.place.z), (here.place.x, here.place.z), part)
             lift = LIFT * length * (0.45 + 0.55 * vigour) * sin(pi * swing) ** 0.7
-            heel = HEEL * vigour * max(1 - 2.2 * swing, 0.0) + TOE * vigour * sin(pi * min(max(swing - 0.5, 0.0) / 0.44, 1.0))
+            raised = sin(pi * min(max(swing - 0.5, 0.0) / 0.44, 1.0))
+            heel = vigour * (HEEL * max(1 - 2.2 * swing, 0.0) + TOE * raised)
             if share < low:
                 heel = HEEL * vigour
             return _local(place, Place(x, z, turn), lift, heel)
@@ -282,6 +283,7 @@ def stepping(one: Actor, other: Actor, share: float) -> tuple[Foot, Foot]:
         part = min(max((lifted - 0.15) / 0.7, 0.0), 1.0)
         x, z = between((a.x, a.z), (b.x, b.z), eased(part))
         far = hypot(b.x - a.x, b.z - a.z) + abs(angle(a.yaw, b.yaw)) / 300
-        lift = min(0.06, 0.3 * far + 0.004) * sin(pi * lifted) ** 0.7 + start.lift + (end.lift - start.lift) * eased(part)
+        raised = min(0.06, 0.3 * far + 0.004) * sin(pi * lifted) ** 0.7
+        lift = raised + start.lift + (end.lift - start.lift) * eased(part)
         found.append(_local(here, Place(x, z, a.yaw + angle(a.yaw, b.yaw) * eased(part)), lift, 0.0))
     return found[0], found[1]

@@ -8,20 +8,20 @@ class Bends(NamedTuple):
 
     Attributes:
         fingers: of the three joints of each finger.
-        index: of those of the index finger; None as the others.
+        forefinger: of those of the index finger; None as the others.
         thumb: how far the thumb is turned towards the palm, and the bends of its two outer joints.
         spread: degrees between neighbouring fingers.
     """
 
     fingers: tuple[float, float, float]
-    index: tuple[float, float, float] | None = None
+    forefinger: tuple[float, float, float] | None = None
     thumb: tuple[float, float, float] = (8.0, 8.0, 10.0)
     spread: float = 0.0
 
     @property
     def of_index(self) -> tuple[float, float, float]:
         """The bends of the index finger."""
-        return self.index or self.fingers
+        return self.forefinger or self.fingers
 
 
 GRIPS: dict[str, Bends] = {

@@ -34,8 +34,8 @@ PALMS: Mapping[str, Point] = {
 """Direction of the right palm by grip."""
 
 CARRIED: Mapping[str, Point] = {
-    "handle": (0.13, 0.62, 0.21), "body": (0.12, 0.63, 0.2), "rim": (0.13, 0.6, 0.21), "pinch": (0.12, 0.63, 0.21),
-    "sheet": (0.13, 0.61, 0.2), "two hands": (0.0, 0.58, 0.15),
+    "handle": (0.12, 0.665, 0.235), "body": (0.11, 0.67, 0.235), "rim": (0.12, 0.64, 0.23),
+    "pinch": (0.11, 0.67, 0.235), "sheet": (0.12, 0.655, 0.225), "two hands": (0.0, 0.6, 0.15),
 }  # fmt: skip
 """Where the right palm is while a thing is carried, by grip, as shares of the person's height."""
 
@@ -192,4 +192,3 @@ def _on_head(prepared: PreparedScene, places: Places, actor: Actor, node: Node) 
     x, y, z = (float(value) for value in head)
     for thing in _at_origin(prepared, node, size):
         yield replace(thing, position=actor.world((x, y + 0.035 * actor.body.height, z)), yaw=actor.yaw)
-

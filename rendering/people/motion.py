@@ -16,6 +16,7 @@ from hearth.schemas.program import Step
 OPENING = 0.5
 """Seconds in which doors, lids and drawers open or close."""
 
+
 class Frame(NamedTuple):
     """The scene of one picture of a film.
 

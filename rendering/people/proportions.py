@@ -1,4 +1,4 @@
-"""Proportions of a body: where its joints are when it stands at rest."""
+"""Proportions of a body: where its joints are when it stands in the rest pose."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -14,7 +14,7 @@ PALM = 0.008
 
 
 class Proportions(NamedTuple):
-    """Joints at rest and lengths of bones, in metres; feet on y = 0, front +z, right +x.
+    """Joints in the rest pose and lengths of bones, in metres; feet on y = 0, front +z, right +x.
 
     Attributes:
         height: of the body.

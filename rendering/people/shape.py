@@ -26,11 +26,11 @@ GROWN, AGED = 25.0, 85.0
 SMALL = 10.0
 """Age of the target `child`."""
 
-Numbers = NDArray[np.integer[Any]]
+Whole = NDArray[np.integer[Any]]
 
 
 LOWERED = 9.0
-"""Degrees by which shoulders are lower than at rest."""
+"""Degrees by which shoulders are lower than in the rest pose."""
 FORWARD = np.array((0.0, 0.0, 1.0))
 
 
@@ -73,14 +73,14 @@ class BodyData(NamedTuple):
     """
 
     base: Floats
-    moves: Numbers
+    moves: Whole
     targets: dict[str, int]
     bones: tuple[str, ...]
     parents: tuple[int, ...]
-    bone_of: Numbers
+    bone_of: Whole
     weights: Floats
-    triangles: Numbers
-    slots: Numbers
+    triangles: Whole
+    slots: Whole
     slot_names: tuple[str, ...]
     offsets: Floats
     parts: dict[str, tuple[int, int, int, int]]
@@ -146,7 +146,7 @@ def _levels(value: float) -> Point:
 
 
 class Shaped(NamedTuple):
-    """A person's points and bones at rest, in metres; feet on y = 0.
+    """A person's points and bones in the rest pose, in metres; feet on y = 0.
 
     Attributes:
         points: (P, 3).
@@ -191,7 +191,7 @@ def proportions(shape: Shape, height: float) -> Proportions:
     pelvis = np.array((0.0, head["thigh_l"][1], 0.0))
     chest = np.array((0.0, head["upperarm_l"][1], head["spine_03"][2] * 0.5))
     middle = (head["head"] + tail["head"]) / 2
-    # Arms are half raised at rest; shoulders of arms that hang are lower.
+    # Arms are half raised in the rest pose; shoulders of arms that hang are lower.
     root = head["clavicle_l"]
     shoulder = root + about(FORWARD, -LOWERED) @ (head["upperarm_l"] - root) - chest
     knuckles = head["middle_01_l"] - head["hand_l"]

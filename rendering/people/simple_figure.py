@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hearth.rendering.models.mesh import Mesh, join, transform
 from hearth.rendering.models.paint import Paint
 from hearth.rendering.models.shapes import ball, cushion, rod, upright_to
+from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.rotations import Vector
 from hearth.rendering.people.skeleton import Joints
 from hearth.schemas.graph import Point
-
-if TYPE_CHECKING:
-    from hearth.rendering.people.figure import Body
 
 
 def simple_mesh(body: Body, body_pose: BodyPose, found: Joints) -> Mesh:

@@ -165,7 +165,8 @@ def ankle_of(foot: Foot, body: Proportions) -> Vector:
 def _toe(foot: Foot, ankle: Vector, body: Proportions) -> Vector:
     low = 0.012 * body.height
     if foot.pitch >= 0:
-        return np.array((foot.x, foot.lift + low, foot.z)) + yawed(foot.yaw) @ np.array((0.0, 0.0, body.toe))
+        flat: Vector = np.array((foot.x, foot.lift + low, foot.z)) + yawed(foot.yaw) @ np.array((0.0, 0.0, body.toe))
+        return flat
     found: Vector = ankle + yawed(foot.yaw) @ leaning(foot.pitch) @ np.array((0.0, low - body.ankle, body.toe))
     return found
 

@@ -14,7 +14,7 @@ from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import Between, BodyPose, Hand, Held
 from hearth.rendering.people.gait import Gait, Place, angle, between, eased, movements, planted, stepping
 from hearth.rendering.people.gestures import Gesture, gesture_of
-from hearth.rendering.people.hands import posed, reach_for
+from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.scene.routes import WalkableFloor, path
 from hearth.schemas.graph import Point, Spot
@@ -249,7 +249,7 @@ def _seconds(one: Actor, other: Actor) -> float:
     a, b = one.figure().joints(), other.figure().joints()
     least = 0.0
     for name, speed in (("head", HEADS), ("hand_r", HANDS), ("hand_l", HANDS)):
-        start, end = (np.array(actor.world(tuple(found[name]))) for actor, found in ((one, a), (other, b)))  # type: ignore[arg-type]
+        start, end = (np.array(actor.world(tuple(found[name]))) for actor, found in ((one, a), (other, b)))
         least = max(least, float(np.linalg.norm(end - start)) * pi / 2 / speed)
     return least
 
@@ -341,4 +341,3 @@ def _gaze(one: Actor, other: Actor, share: float) -> Point | None:
     ahead = (0.0, 0.88 * other.body.height, 2.0)
     x, y, z = (p + (q - p) * share for p, q in zip(a or ahead, b or ahead, strict=True))
     return x, y, z
-

@@ -6,7 +6,7 @@ import random
 from functools import lru_cache
 from typing import Any
 
-from hearth.rendering.people.figure import BODIES, Body
+from hearth.rendering.people.body import BODIES, Body
 from hearth.rendering.people.shape import Shape, is_present
 from hearth.schemas.rng import derive
 from hearth.schemas.yaml_extent import packaged

@@ -140,7 +140,7 @@ def _matrix(thing: Thing) -> Floats:
     """(4, 4) from the model's frame to the home's; parts of the building are in the home's already."""
     matrix = np.eye(4, dtype=np.float32)
     if not thing.structural:
-        matrix[:3, :3] = rotation("y", thing.yaw) @ tilted(thing.tilt)
+        matrix[:3, :3] = rotation("y", thing.yaw) @ tilted(thing.tilt) if any(thing.tilt) else rotation("y", thing.yaw)
         matrix[:3, 3] = thing.position
     return matrix
 

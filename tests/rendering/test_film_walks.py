@@ -9,7 +9,7 @@ from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.walks import solids_of, walks
-from hearth.rendering.people import motion
+from hearth.rendering.people import tracks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.world.home import Home
@@ -32,7 +32,7 @@ def test_a_film_has_no_walk_through_solids(trajectory):
 
 
 def test_straight_lines_are_found_out(trajectory, monkeypatch):
-    monkeypatch.setattr(motion, "path", lambda floor, start, goal: (start, goal))
+    monkeypatch.setattr(tracks, "path", lambda floor, start, goal: (start, goal))
     found = walks(trajectory.prepared, trajectory.keyframes, frames(trajectory, 10.0))
     assert any(name == "wall" for walk in found for _, name in walk.through)
 

@@ -12,8 +12,9 @@ from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.film import png
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
-from hearth.rendering.people.figure import BODIES, Figure
+from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.figure import Figure
 from hearth.rendering.rays.flow import flow, flow_of
 from hearth.rendering.rays.shot import shoot
 from hearth.rendering.scene.instances import Thing

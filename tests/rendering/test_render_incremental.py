@@ -12,8 +12,9 @@ from hearth.rendering.cameras.camera import look_at, top_view
 from hearth.rendering.modalities import render
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
-from hearth.rendering.people.figure import BODIES, Figure
+from hearth.rendering.people.body import BODIES
 from hearth.rendering.people.body_pose import BodyPose
+from hearth.rendering.people.figure import Figure
 from hearth.rendering.rays.incremental import incremental_frame, pictures_of
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.prepared import scene_of

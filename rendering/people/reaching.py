@@ -159,7 +159,7 @@ def acting_side(step: Step, graph: EnvironmentGraph, me: int, held: Mapping[str,
 
 
 def thing_aim(actor: Actor, hold: Hold, pose: Pose, side: str) -> Aim:
-    """The palm at a thing that stands somewhere, as it holds it: at its handle, else on the side nearest to the chest."""
+    """The palm at a thing that stands somewhere: at its handle, else on the side nearest to the chest."""
     yaw = pose.yaw or 0.0
     grip = np.array(actor.local(grip_point(hold, pose.box, yaw)))
     if hold.fixed:
@@ -211,7 +211,8 @@ def _to_mouth(
     head = joints["head"]
     mouth = (float(head[0]), float(head[1]) - 0.035 * h, float(head[2]) + 0.085 * h / 1.7)
     if side not in held:
-        return {side: Aim((mouth[0] + sign * 0.02, mouth[1] - 0.02, mouth[2] + 0.03), Hand("pinch", (-sign, 0.2, -0.6)))}
+        before = (mouth[0] + sign * 0.02, mouth[1] - 0.02, mouth[2] + 0.03)
+        return {side: Aim(before, Hand("pinch", (-sign, 0.2, -0.6)))}
     node = _node(graph, held[side])
     hold, size = hold_of_node(node, places, side), places.size_of(node)
     lift = min(size[1], 0.3)
@@ -233,8 +234,9 @@ def _typing(actor: Actor, target: int, places: Places) -> dict[str, Aim]:
     near = z - 0.04 if flat else z - 0.1
     top = y + pose.box.size[1] / 2 + 0.03 if flat else y - pose.box.size[1] / 2 + 0.06
     return {
-        side: Aim((x + sign * 0.09, top, near), Hand("typing", (-0.1 * sign, -1.0, 0.1))) for side, sign in SIDES.items()
-    }  # fmt: skip
+        side: Aim((x + sign * 0.09, top, near), Hand("typing", (-0.1 * sign, -1.0, 0.1)))
+        for side, sign in SIDES.items()
+    }
 
 
 def _reading(
@@ -248,8 +250,7 @@ def _reading(
     half = min(max(abs(hold.point[0]) * 1.35, 0.09), 0.2)
     palm = (sign * half, 0.665 * h + lower, 0.32)
     opens = "CAN_OPEN" in node.properties or size[1] < 0.06
-    gap = (sign * (half - abs(hold.point[0])) * 0.0, 0.0, 0.0)
-    found = {side: Aim(palm, Hand("sheet", (-0.4 * sign, 0.6, -0.5), held=Held(pitch=48.0, opens=opens, gap=gap)))}
+    found = {side: Aim(palm, Hand("sheet", (-0.4 * sign, 0.6, -0.5), held=Held(pitch=48.0, opens=opens)))}
     if OTHER[side] not in held:
         found[OTHER[side]] = Aim((-palm[0], palm[1], palm[2]), Hand("sheet", (0.4 * sign, 0.6, -0.5)))
     return found
@@ -272,14 +273,16 @@ def _rubbing(
     if pose is None:
         return {}
     x, y, z = actor.local(nearest_point(actor, pose))
-    way = unit(np.array(actor.local(pose.box.center)) - (x, y, z) + (0.0, -1e-3, 0.0))
-    facing = (0.0, -1.0, 0.15) if y >= actor.local(pose.box.center)[1] else (float(way[0]), float(way[1]), float(way[2]))
+    center = actor.local(pose.box.center)
+    way = unit(np.array(center) - (x, y, z) + np.array((0.0, -1e-3, 0.0)))
+    facing = (0.0, -1.0, 0.15) if y >= center[1] else (float(way[0]), float(way[1]), float(way[2]))
     if side not in held:
         return {side: Aim((x, y, z), Hand("flat", facing))}
     node = _node(graph, held[side])
     hold, size = hold_of_node(node, places, side), places.size_of(node)
     tall = size[1] > 0.6
-    return {side: Aim((x, y + (hold.point[1] if tall else 0.5 * size[1] + 0.01), z), Hand(hold.grip, hold.palm if tall else facing))}
+    above = hold.point[1] if tall else 0.5 * size[1] + 0.01
+    return {side: Aim((x, y + above, z), Hand(hold.grip, hold.palm if tall else facing))}
 
 
 def _pushing(actor: Actor, held: Mapping[str, int], target: int, places: Places) -> dict[str, Aim]:
