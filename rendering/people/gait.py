@@ -146,6 +146,9 @@ def movements(place: Place, points: Sequence[Spot], speed: float, yaw: float) ->
     if route.length > SIDEWAYS and abs(angle(place.yaw, first)) > ASIDE:
         found.append(turning(place, first))
         place = place._replace(yaw=first)
+    if route.length <= SIDEWAYS and abs(angle(place.yaw, yaw)) > ASIDE:
+        found.append(turning(place, yaw))
+        place = place._replace(yaw=yaw)
     ends = last if route.length > SIDEWAYS and abs(angle(last, yaw)) > ASIDE else yaw
     found.append(walking(place, points, speed, ends))
     if ends != yaw:
