@@ -103,7 +103,8 @@ def _jobs(header: Header, known: Known, workers: int) -> list[Job]:
         guessed = dict(zip(tasks, inferred(header.suite.tasks, reader, known, workers=workers), strict=True))
     jobs = []
     for key, seed, helped in header.keys:
-        goal = (guessed.get(key) or helper_goal(header.lineup.goal, tasks[key], seed, header.suite.tasks)) if helped else None
+        asked = helper_goal(header.lineup.goal, tasks[key], seed, header.suite.tasks) if helped else None
+        goal = (guessed.get(key) or asked) if helped else None
         jobs.append(Job(tasks[key], seed, header.lineup, helped, goal, known))
     return jobs
 
