@@ -81,7 +81,7 @@ class Pile {
 
 const shader = (attribute, between) => new THREE.RawShaderMaterial({
   glslVersion: THREE.GLSL3,
-  side: THREE.DoubleSide,
+  side: THREE.FrontSide,
   vertexShader: `in vec3 position; in vec4 ${attribute}; uniform mat4 modelViewMatrix; uniform mat4 projectionMatrix; ${between} out lowp vec4 value;
     void main() { value = ${attribute}; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
   fragmentShader: `precision lowp float; ${between} in lowp vec4 value; out vec4 colour; void main() { colour = value; }`,
