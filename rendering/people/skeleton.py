@@ -205,7 +205,7 @@ def _arm(found: Joints, side: str, sign: float, body: Proportions, body_pose: Bo
         middle = target - palm * body.palm
     else:
         along, palm, middle = ahead, np.zeros(3), target
-    pole = np.array((sign * 0.45, -1.0, -0.55))
+    pole = np.array((sign * 0.28, -1.0, -0.65))
     if hand.swivel:
         pole = about(ahead, -sign * hand.swivel) @ pole
     goal = middle - along * body.hand
@@ -217,7 +217,7 @@ def _arm(found: Joints, side: str, sign: float, body: Proportions, body_pose: Bo
 def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body_pose: BodyPose) -> Vector:
     shoulder, h = found[f"shoulder_{side}"], body.height
     swing = -sign * body_pose.stride * 0.085 * h
-    out = 0.035 * h
+    out = 0.022 * h
     hanging: Vector = shoulder + np.array((sign * out, -body.arm * 0.955, 0.03 * h + swing))
     knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
     share = seated(body_pose, body)
