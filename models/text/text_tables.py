@@ -13,8 +13,7 @@ from hearth.models.predicting import completed
 from hearth.models.scored_rows import Entrant, Row, scored_rows
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.rng import rng
-from hearth.scoring.baselines import THESIS
+from hearth.scoring import baselines
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -62,7 +61,7 @@ def table(
 
 
 def _of_thesis(number: str) -> Iterator[Row]:
-    for each in THESIS:
+    for each in baselines.THESIS:
         name, _, place = each.baseline.partition(", table ")
         if place == number:
             values = {column: getattr(each, column) for column in COLUMNS}
@@ -73,11 +72,16 @@ def _yardsticks(dataset: Dataset, split: str, test: Sequence[Example], seed: int
     """What needs no training, and another person's program for the same text, where there is one."""
     train = examples(dataset, split, "train", originals=True)
     yield Entrant("Empty program", "yardstick", [[()] * len(test)])
-    drawn = [rng(seed, "random retrieval", each.program_id).choice(train).steps for each in test]
-    yield Entrant("Random retrieval", "yardstick", [drawn])
+    given, asked = ([_plain(each) for each in part] for part in (train, test))
+    for name, make in baselines.BASELINES.items():
+        yield Entrant(name.capitalize(), "yardstick", [make(given, asked, seed, dataset.knowledge)])
     others = [_sibling(each, test) for each in test]
     if any(each is not None for each in others):
         yield Entrant("Another person, same text", "yardstick", [others])
+
+
+def _plain(each: Example) -> baselines.Example:
+    return baselines.Example(each.executions[0], f"{each.title} {each.description}", each.steps)
 
 
 def _sibling(one: Example, test: Sequence[Example]) -> Steps | None:
