@@ -88,7 +88,8 @@ class Chooser(Settings):
                     continue
                 rankers[name], outcome = self._trained(name, learn, check, how, words, seen)
                 learned[name] = {"choices": len(learn), **outcome.record()}
-        return TrainedChooser(self, words, habits, rankers, learned)
+        minutes = round(sum(each["minutes"] for each in learned.values()), 2)
+        return TrainedChooser(self, words, habits, rankers, {"minutes": minutes, **learned})
 
     def _choices(self, name: str, corpus: Corpus, part: str, seed: int, habits: Habits, words: Words) -> Packed | None:
         examples: Sequence[Example] = corpus.train if part == "train" else corpus.validation
@@ -138,7 +139,7 @@ class Chooser(Settings):
             named = checkpoint.weights.items()
             own = {key.removeprefix(f"{name}."): value for key, value in named if key.startswith(f"{name}.")}
             rankers[name] = filled(partial(settings.ranker, words, sizes), own)
-        return TrainedChooser(settings, words, habits, rankers, {})
+        return TrainedChooser(settings, words, habits, rankers, dict(checkpoint.trained))
 
 
 def _packed(choices: Iterable[Choice]) -> Packed | None:
@@ -209,8 +210,7 @@ class TrainedChooser:
             "tools": {name: list(found) for name, found in sorted(self.habits.tools.items())},
             "sizes": {name: list(ranker.sizes) for name, ranker in self.rankers.items()},
         }
-        minutes = round(sum(each["minutes"] for each in self.learned.values()), 2)
-        return Checkpoint("chooser", asdict(self.settings), content, weights, {"minutes": minutes, **self.learned})
+        return Checkpoint("chooser", asdict(self.settings), content, weights, dict(self.learned))
 
 
 def _world(request: Request) -> World:

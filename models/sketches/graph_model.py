@@ -90,7 +90,7 @@ class GraphModel(Settings):
         settings, content = cls.of(checkpoint.settings), checkpoint.content
         words = Words(content["classes"], content["actions"])
         network = filled(lambda: settings.network(words, content["written"]), checkpoint.weights)
-        return TrainedGraphModel(settings, words, tuple(content["written"]), network, {})
+        return TrainedGraphModel(settings, words, tuple(content["written"]), network, dict(checkpoint.trained))
 
 
 def _batches(rows: Sequence[Row], size: int) -> Iterator[Batch]:
