@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 from hearth.commands import inputs, output
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from hearth.kb.knowledge import Knowledge
     from hearth.rendering.cameras.visibility import TickVisibility
@@ -31,7 +31,7 @@ def program(
     fps: float = 15.0,
     fine: bool = False,
     vary: bool = False,
-    modalities: str = "rgb,instance_ids",
+    modalities: str = "",
     which: int = 1,
     columns: str = "",
     strict: bool = False,
@@ -43,6 +43,7 @@ def program(
     Examples:
       python cli.py render-program watch_tv.txt --home maple --out pictures
       python cli.py render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
+      python cli.py render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
     from hearth.homes import library
     from hearth.kb.loading.load import default
@@ -55,9 +56,9 @@ def program(
     title, size = f"{execution.program.title}, in {home}", (width, width * 3 // 4)
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
     if mode == "video":
-        made = videos(shooting, _split(cameras), fps)
+        made = videos(shooting, _split(cameras), fps, "fine" if fine else "draft", _split(modalities or "rgb"))
     else:
-        made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities))
+        made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities or "rgb,instance_ids"))
     failure = execution.failure.message() if execution.failure else None
     if as_json:
         facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
@@ -109,7 +110,9 @@ def _snapshots(shooting: Shooting, quality: str, modalities: list[str]) -> dict[
     return {"pictures": len(files), "files": files, "visible": found, "sheet": _sheet(shooting, frames)}
 
 
-def videos(shooting: Shooting, names: list[str], fps: float) -> dict[str, Any]:
+def videos(
+    shooting: Shooting, names: list[str], fps: float, quality: str = "draft", modalities: Sequence[str] = ("rgb",)
+) -> dict[str, Any]:
     """Film what is to be pictured by some cameras; files, pages and steps."""
     import orjson
 
@@ -125,11 +128,14 @@ def videos(shooting: Shooting, names: list[str], fps: float) -> dict[str, Any]:
     out = shooting.out
     videos, frames, pages = [], [], []
     for name in names:
-        done = record(trajectory, shooting.graph, out, name, size=shooting.size, fps=fps)
+        how: dict[str, Any] = {"size": shooting.size, "fps": fps, "quality": quality, "modalities": modalities}
+        done = record(trajectory, shooting.graph, out, name, **how)
         files = [path.name for path in done.files]
         pages.append(str(inside(out, f"{name}.html")))
         Path(pages[-1]).write_text(page(shooting.title, files, done.steps), encoding="utf-8")
         made = {"camera": name, "files": files, "fps": fps, "frames": done.frames, "steps": done.steps}
+        if done.further:
+            made["further"] = [path.name for path in done.further]
         videos.append({**made, "variation": trajectory.variation.row()})
         frames += [(picture, caption(span.tick, span.steps)) for picture, span in done.keyframes]
     (out / "steps.json").write_bytes(orjson.dumps(videos, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
@@ -164,7 +170,9 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
 
 
 def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, as_json: bool = False) -> None:
-    """Count the steps with all named objects visible in the chosen picture, over programs drawn from a corpus.
+    """Count the steps that the chosen picture shows, over programs drawn from a corpus.
+
+    A step is shown if the person and the objects that it names can be recognised.
 
     \b
     Example:
@@ -188,7 +196,11 @@ def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, a
     if as_json:
         output.emit({"programs": programs, **share._asdict(), "unseen": missed})
         return
-    print(f"{share.steps} steps of {programs} programs name objects. All of these are visible to the chosen camera in")
+    print(
+        f"{share.shown:.1%} of the steps of {programs} programs are shown: one recognises the person and the objects,"
+    )
+    print("which cover at least 1.5 % and 0.1 % of the chosen picture and are less than half hidden.")
+    print(f"{share.steps} steps name objects. All of these are visible to the chosen camera in")
     print(
         f"{share.chosen:.1%} of the steps, to it or from above in {share.either:.1%}; and in {share.open_:.1%} of the"
     )

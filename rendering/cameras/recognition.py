@@ -42,9 +42,8 @@ def recognition(shot: Shot, node: int) -> Recognition:
         return Recognition(0.0, 0.0)
     seen = int(np.isin(shot.owner, numbers).sum())
     alone, first = Canvas(shot.camera, "alone"), len(shot.geometry.static.things)
-    static, moving = (np.array([n - low for n in numbers if (n >= first) == (low > 0)], np.int64) for low in (0, first))
-    alone.draw(shot.geometry.static, static)
-    alone.draw(shot.geometry.moving, moving)
+    alone.draw(shot.geometry.static, np.array([number for number in numbers if number < first], np.int64))
+    alone.draw(shot.geometry.moving, np.array([number - first for number in numbers if number >= first], np.int64))
     whole = int((alone.triangle >= 0).sum())
     return Recognition(seen / len(shot.owner), seen / whole if whole else 0.0)
 

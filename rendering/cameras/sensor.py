@@ -12,6 +12,7 @@ from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.acting import Actor, initial_actors
 from hearth.rendering.people.reaching import posed
+from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.places import Places
 from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
@@ -97,7 +98,8 @@ class CameraSensor:
 
     def _begin(self, env: Env) -> None:
         graph = env.world.graph()
-        self.places = Places.start(self.home, self.prepared.knowledge, self.prepared).settled(graph)
+        start = Places.start(self.home, self.prepared.knowledge, self.prepared)
+        self.places = furnished(start, graph, self.floors).settled(graph)
         actors = initial_actors(graph, self.floors.at(self.places.nodes()), self.places, self.seed)
         self.actors = standing((posed(actor, graph, self.places, None) for actor in actors), env.world)
         self._ticks, self._world, self._scene = len(env.ticks), env.world, None

@@ -1,11 +1,12 @@
 """Visibility of the objects that steps name: by the camera chosen for each step, and from above."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.recognition import shows
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.film.snapshots import TOP, Keyframe, Trajectory, named_nodes
 from hearth.rendering.rays.shot import shoot
@@ -27,6 +28,8 @@ class TickVisibility(NamedTuple):
         missed: those of `named` that the chosen camera's picture does not show.
         unseen: those of `missed` that the picture from above does not show either.
         in_closed: those of `unseen` in a closed container, where no camera could see them.
+        shown: whether the person and what the objects are seen by (see `seen_as`) can be recognised in the chosen
+            camera's picture: 1.5 % and 0.1 % of it, and less than half hidden.
     """
 
     tick: int
@@ -36,6 +39,7 @@ class TickVisibility(NamedTuple):
     missed: tuple[int, ...]
     unseen: tuple[int, ...]
     in_closed: tuple[int, ...]
+    shown: bool = False
 
 
 def tick_visibilities(
@@ -45,15 +49,17 @@ def tick_visibilities(
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
     above = top_view(home_box(home), TOP, *size)
-    last: Camera | None = None
     for keyframe in trajectory.keyframes[1:]:
         named = named_nodes(keyframe.steps, rooms)
         actor, shown = keyframe.acting, tuple(dict.fromkeys(_shown_as(node, keyframe) for node in named))
-        last = best_view(keyframe.scene, views, actor, named, last, rooms.get(actor.room))
-        missed = _missed(keyframe, last, shown)
+        others = [other for other in keyframe.actors if other is not actor]
+        objects = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named))
+        camera = best_view(keyframe.scene, views, actor, objects, rooms.get(actor.room), others)
+        missed = _missed(keyframe, camera, shown)
         unseen = _missed(keyframe, above, missed)
         in_closed = tuple(node for node in unseen if _is_in_closed(node, keyframe.places))
-        yield TickVisibility(keyframe.tick, keyframe.steps, last.name, named, missed, unseen, in_closed)
+        seen = shows(shoot(keyframe.scene, camera), actor.node.id, objects)
+        yield TickVisibility(keyframe.tick, keyframe.steps, camera.name, named, missed, unseen, in_closed, seen)
 
 
 def _shown_as(node: int, keyframe: Keyframe) -> int:
@@ -63,6 +69,25 @@ def _shown_as(node: int, keyframe: Keyframe) -> int:
     if part:
         return keyframe.acting.node.id
     return location.holder if location is not None and location.kind == "worn" else node
+
+
+def seen_as(node: int, places: Places) -> int:
+    """The node by which an onlooker sees a node.
+
+    Body parts and worn clothes are drawn with their wearer, and what is in a closed container is seen by that.
+    """
+    states: Mapping[int, tuple[str, ...]] = {known.id: known.states for known in places.graph.nodes}
+    if any(known.id == node and known.category == "BodyParts" for known in places.graph.nodes):
+        return next((known.id for known in places.graph.nodes if known.category == "Characters"), node)
+    found = node
+    for _ in range(8):
+        location = places.locations.get(node)
+        if location is None or location.kind not in ("on", "inside", "worn"):
+            break
+        node = location.holder
+        if location.kind == "worn" or (location.kind == "inside" and "CLOSED" in states.get(node, ())):
+            found = node
+    return found
 
 
 def _missed(keyframe: Keyframe, camera: Camera, named: tuple[int, ...]) -> tuple[int, ...]:
@@ -96,23 +121,27 @@ class Shares(NamedTuple):
         chosen: share with all objects in the chosen camera's picture.
         either: share with all objects in that picture or in the one from above.
         open_: as `either`, over the steps whose objects are outside closed containers.
+        shown: share of all ticks that show the person and the objects recognisably.
     """
 
     steps: int
     chosen: float
     either: float
     open_: float
+    shown: float
 
 
 def shares(found: Iterable[TickVisibility]) -> Shares:
     """Shares over all ticks that name an object; 1 where there are none."""
-    known = [look for look in found if look.named]
+    every = list(found)
+    known = [look for look in every if look.named]
     free = [look for look in known if not look.in_closed]
     return Shares(
         len(known),
         _share([not look.missed for look in known]),
         _share([not look.unseen for look in known]),
         _share([not look.unseen for look in free]),
+        _share([look.shown for look in every]),
     )
 
 

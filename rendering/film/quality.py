@@ -1,17 +1,17 @@
 """Measures of a film's cameras: which steps it shows, how long its shots are, and whether something is in their way."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.recognition import in_the_way, shows
+from hearth.rendering.cameras.visibility import seen_as
 from hearth.rendering.film.snapshots import AUTO, Keyframe, Trajectory, named_nodes
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.people.motion import frames
 from hearth.rendering.rays.shot import shoot
-from hearth.rendering.scene.places import Places
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 
@@ -52,7 +52,7 @@ class FilmQuality(NamedTuple):
 
 def film_quality(trajectory: Trajectory, home: EnvironmentGraph, view: str = AUTO) -> FilmQuality:
     """Judge the pictures of a film by one camera (see `RATE` and `SIZE`)."""
-    selector = CameraSelector(home, view, SIZE, trajectory.variation)
+    selector = CameraSelector(trajectory, home, view, SIZE)
     keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
     shown: dict[tuple[int, int], bool] = {}
     cameras: list[Camera] = []
@@ -79,25 +79,6 @@ def objects_of(step: Step, trajectory: Trajectory, keyframe: Keyframe) -> tuple[
     named = named_nodes([step], trajectory.prepared.rooms)
     person = keyframe.actors[step.agent].node.id
     return tuple(dict.fromkeys(node for node in (seen_as(one, keyframe.places) for one in named) if node != person))
-
-
-def seen_as(node: int, places: Places) -> int:
-    """The node by which an onlooker sees a node.
-
-    Body parts and worn clothes are drawn with their wearer, and what is in a closed container is seen by that.
-    """
-    states: Mapping[int, tuple[str, ...]] = {known.id: known.states for known in places.graph.nodes}
-    if any(known.id == node and known.category == "BodyParts" for known in places.graph.nodes):
-        return next((known.id for known in places.graph.nodes if known.category == "Characters"), node)
-    found = node
-    for _ in range(8):
-        location = places.locations.get(node)
-        if location is None or location.kind not in ("on", "inside", "worn"):
-            break
-        node = location.holder
-        if location.kind == "worn" or (location.kind == "inside" and "CLOSED" in states.get(node, ())):
-            found = node
-    return found
 
 
 def _lengths(cameras: list[Camera]) -> Iterator[float]:

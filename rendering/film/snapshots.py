@@ -16,6 +16,7 @@ from hearth.rendering.people.holding import held_things
 from hearth.rendering.people.reaching import posed
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.scene.added_furniture import furnished
 from hearth.rendering.scene.history import graphs
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.places import Places
@@ -185,7 +186,7 @@ def _keyframes(
     actors: tuple[Actor, ...] = ()
     for tick, (graph, steps) in enumerate(zip(graphs(execution), ticks, strict=False)):
         if tick == 0:
-            places = places.settled(graph)
+            places = furnished(places, graph, floors).settled(graph)
             floor = floors.at(places.nodes())
             actors = initial_actors(graph, floor, places, people_seed(execution, variation.seed))
             actors = _wandered(actors, floor, variation) if variation.wander else actors
@@ -285,7 +286,6 @@ def snapshots(
     views = room_views(home, *size)
     rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
     above = top_view(home_box(home), TOP, *size)
-    last: dict[Camera | str, Camera] = {}
     last_frames: dict[Camera | str, IncrementalFrame] = {}
     found = trajectory_of(execution, home, knowledge, seed=seed, hour=hour).keyframes
     for keyframe, later in zip(found, (*found[1:], found[-1]), strict=True):
@@ -294,8 +294,8 @@ def snapshots(
             camera = choice if isinstance(choice, Camera) else above
             if choice == AUTO:
                 actor = keyframe.acting
-                camera = best_view(keyframe.scene, views, actor, named, last.get(choice), rooms.get(actor.room))
-            last[choice] = camera
+                others = [other for other in keyframe.actors if other is not actor]
+                camera = best_view(keyframe.scene, views, actor, named, rooms.get(actor.room), others)
             if quality == "draft":
                 last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
                 shot, known = replace(last_frames[choice].shot, after=later.scene), {"rgb": last_frames[choice].picture}

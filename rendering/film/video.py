@@ -1,25 +1,30 @@
 """Videos of executions, with start and end time of each step (thesis 2.4.1)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 from math import cos, radians, sin
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from hearth.rendering.annotations import camera_of
 from hearth.rendering.arrays import Image
 from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
-from hearth.rendering.cameras.viewpoints import best_view, home_box, kept_inside, room_views
+from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
+from hearth.rendering.film.frame_files import FrameFiles, FrameTime
 from hearth.rendering.film.quiet import quiet
-from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory, acting, named_nodes
+from hearth.rendering.film.shots import Planner, Shots, room_at
+from hearth.rendering.film.snapshots import AUTO, TOP, Trajectory
+from hearth.rendering.modalities import check_modalities, pictures_of
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.motion import Frame, Span, frames, spans
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
-from hearth.rendering.scene.variation import PLAIN, Variation
+from hearth.rendering.rays.shot import Shot, shoot
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Box, EnvironmentGraph
+from hearth.schemas.graph import EnvironmentGraph, to_release
 from hearth.schemas.libraries import library
 from hearth.schemas.program import Step
 from hearth.schemas.row_types import FilmedStepRow
@@ -96,16 +101,16 @@ def _renumber(path: Path) -> None:
 
 
 class FilmFrame(NamedTuple):
-    """One picture of a film: its frame, camera, and rendering."""
+    """One picture of a film: its frame and camera, what is seen, and (H, W, 3) colours."""
 
     frame: Frame
     camera: Camera
-    rendered: IncrementalFrame
+    shot: Shot
+    rgb: Image
 
-    @property
-    def rgb(self) -> Image:
-        """(H, W, 3) colours."""
-        return self.rendered.picture
+    def pictures(self, modalities: Iterable[str], quality: str = "draft") -> dict[str, Any]:
+        """Further modalities of the picture, as `modalities.render` gives them; flow is towards the next frame."""
+        return pictures_of(self.shot, modalities, quality)
 
 
 def film(
@@ -115,6 +120,7 @@ def film(
     *,
     size: tuple[int, int] = (640, 480),
     fps: float = 15.0,
+    quality: str = "draft",
 ) -> Iterator[FilmFrame]:
     """The pictures of a video.
 
@@ -124,31 +130,47 @@ def film(
         view: one of `VIEWS`, or the name of a room's camera.
         size: width and height, pixels.
         fps: pictures per second.
+        quality: as in `modalities.render`.
 
     Raises:
         HearthError: the camera does not exist.
     """
     speed = trajectory.variation.speed
-    selector = CameraSelector(home, view, size, trajectory.variation)
+    selector = CameraSelector(trajectory, home, view, size)
     last: IncrementalFrame | None = None
-    for frame in frames(trajectory, fps, speed):
+    for frame, later in _with_next(frames(trajectory, fps, speed)):
         camera = selector.camera(frame)
-        last = incremental_frame(frame.scene, camera, last)
-        yield FilmFrame(frame, camera, last)
+        if quality == "fine":
+            shot = shoot(frame.scene, camera, after=later.scene, by_rays=True)
+            yield FilmFrame(frame, camera, shot, pictures_of(shot, ["rgb"], quality)["rgb"])
+        else:
+            last = incremental_frame(frame.scene, camera, last)
+            yield FilmFrame(frame, camera, replace(last.shot, after=later.scene), last.picture)
+
+
+def _with_next(found: Iterable[Frame]) -> Iterator[tuple[Frame, Frame]]:
+    """Each frame and the one after it; the last one and itself."""
+    before: Frame | None = None
+    for frame in found:
+        if before is not None:
+            yield before, frame
+        before = frame
+    if before is not None:
+        yield before, before
 
 
 class CameraSelector:
     """Selects the camera of each frame.
 
-    `auto` chooses, among the room's cameras and two over the actor's shoulders, the one that best shows the step's
-    objects; it keeps that camera through a step while the actor stays in the room.
+    `auto` shows each act so that the person and what it acts on can be recognised, in shots of at least three seconds;
+    see `shots`.
     """
 
-    def __init__(self, home: EnvironmentGraph, view: str, size: tuple[int, int], variation: Variation = PLAIN) -> None:
-        self.size = size
+    def __init__(self, trajectory: Trajectory, home: EnvironmentGraph, view: str, size: tuple[int, int]) -> None:
+        self.trajectory, self.home, self.size = trajectory, home, size
         self.view, self.agent = agent_of(view)
         self.views = {
-            room: tuple(variation.moved(camera) for camera in cameras)
+            room: tuple(trajectory.variation.moved(camera) for camera in cameras)
             for room, cameras in room_views(home, *size).items()
         }
         self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
@@ -158,69 +180,32 @@ class CameraSelector:
             known_names = ", ".join((*VIEWS, *sorted(fixed)[:3], "..."))
             raise HearthError.of(Code.NOT_RENDERED, f"no camera `{view}`", suggestion=known_names)
         self.fixed = fixed.get(view)
-        self.chosen: Camera | None = None
-        self.scene = (-1, 0)
-        self.since = 0.0
         self.room = 0
 
-    def _followed(self, frame: Frame) -> Actor:
-        """The actor that the camera follows.
+    @cached_property
+    def shots(self) -> Shots:
+        """The shots of `auto`."""
+        return Planner(self.trajectory, self.home, self.views, self.size, self.agent).shots()
+
+    def camera(self, frame: Frame) -> Camera:
+        """The camera of a frame.
 
         Raises:
             HearthError: the agent does not exist.
         """
-        if self.agent is None:
-            return frame.actors[acting(frame.steps, len(frame.actors)) if self.view == AUTO else 0]
-        if self.agent >= len(frame.actors):
-            message = f"no agent {self.agent} to go with; there are {len(frame.actors)}, from 0"
-            raise HearthError.of(Code.UNKNOWN_AGENT, message)
-        return frame.actors[self.agent]
-
-    def camera(self, frame: Frame) -> Camera:
-        """The camera of a frame."""
         if self.fixed is not None:
             return self.fixed
-        actor = self._followed(frame)
+        if self.agent is not None and self.agent >= len(frame.actors):
+            message = f"no agent {self.agent} to go with; there are {len(frame.actors)}, from 0"
+            raise HearthError.of(Code.UNKNOWN_AGENT, message)
+        if self.view == AUTO:
+            return self.shots.at(frame.time)
+        actor = frame.actors[self.agent or 0]
         if self.view == FIRST:
             return first_person(actor, self.size)
-        room = self._room(actor)
-        if self.view == THIRD:
-            return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(room))
-        now = (frame.tick, room)
-        waits = self.scene == now and frame.time - self.since <= MIN_SHOT
-        if self.chosen is not None and self.scene == now and (waits or _in_picture(self.chosen, actor)):
-            return self.chosen
-        self.chosen = self._best(frame, replace(actor, room=room), self.chosen)
-        self.scene, self.since = now, frame.time
-        return self.chosen
-
-    def _best(self, frame: Frame, actor: Actor, last: Camera | None) -> Camera:
-        named = named_nodes([step for step in frame.steps if self.agent in (None, step.agent)], self.rooms)
-        return best_view(frame.scene, self.views, actor, named, last, self.rooms.get(actor.room), wide=True)
-
-    def _room(self, actor: Actor) -> int:
-        """The room that contains the actor's position."""
         # In a doorway no room contains the position: the camera stays.
-        self.room = next((room for room, box in self.rooms.items() if _holds(box, actor.spot)), self.room or actor.room)
-        return self.room
-
-
-MIN_SHOT = 0.7
-"""Least seconds between two changes of the camera."""
-
-BORDER = 0.06
-"""Share of the picture at each edge where an actor counts as leaving it."""
-
-
-def _in_picture(camera: Camera, actor: Actor) -> bool:
-    """Whether a camera shows the actor's body away from the picture's edges."""
-    places, depths = camera.project(np.array([actor.world((0.0, y, 0.0)) for y in (0.5, 1.4)]))
-    share = places / (camera.width, camera.height)
-    return bool((depths > 0.5).all() and (share > BORDER).all() and (share < 1 - BORDER).all())
-
-
-def _holds(box: Box, spot: tuple[float, float]) -> bool:
-    return all(abs(spot[k] - box.center[2 * k]) <= box.size[2 * k] / 2 for k in (0, 1))
+        self.room = room_at(self.rooms, actor.spot) or self.room or actor.room
+        return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(self.room))
 
 
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
@@ -267,6 +252,7 @@ class Recorded(NamedTuple):
         steps: as `times` gives them, each with its cameras and the share of its objects that some picture shows.
         track: tick and camera of each picture.
         keyframes: the last picture of each tick, for a contact sheet.
+        further: files of the other modalities, and their index.
     """
 
     files: tuple[Path, ...]
@@ -274,6 +260,7 @@ class Recorded(NamedTuple):
     steps: list[FilmedStepRow]
     track: list[tuple[int, Camera]]
     keyframes: list[tuple[Image, Span]]
+    further: tuple[Path, ...] = ()
 
 
 def record(
@@ -285,16 +272,22 @@ def record(
     size: tuple[int, int] = (640, 480),
     fps: float = 15.0,
     suffixes: Sequence[str] = (".webm", ".mp4"),
+    modalities: Sequence[str] = ("rgb",),
+    quality: str = "draft",
 ) -> Recorded:
     """Write the videos of one camera into a folder, as `VIEW.webm` and `VIEW.mp4` (thesis 2.4.1).
+
+    Modalities other than `rgb` become files of their own, see `frame_files`.
 
     Args:
         trajectory, home, view, size, fps: as in `film`.
         out: an existing folder.
         suffixes: of `CODECS`.
+        modalities, quality: as in `modalities.render`; `graph` is the scene graph after the tick.
 
     Raises:
-        HearthError: the camera does not exist, or a file can't be written; complete files stay.
+        HearthError: the camera does not exist, a modality or quality is unknown, or a file can't be written; complete
+            files stay.
 
     Examples:
         >>> trajectory = hearth.trajectory_of(execution, graph, known)
@@ -302,16 +295,21 @@ def record(
         >>> film.frames, len(film.steps), [path.name for path in film.files]
         (14, 4, ['auto.mp4'])
     """
+    drawn = check_modalities([name for name in modalities if name not in ("graph", "rgb")], quality)
     known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}
     steps = times(list(known.values()))
     wanted = {tick: named_in(trajectory, span.steps) for tick, span in known.items()}
     seen: dict[int, set[int]] = {tick: set() for tick in known}
     writers = [Writer(inside(out, f"{view}{suffix}"), *size, fps) for suffix in suffixes]
+    files, graphs = FrameFiles(out, view, modalities), _graphs(trajectory) if "graph" in modalities else {}
     last: dict[int, Image] = {}
     track: list[tuple[int, Camera]] = []
-    for film_frame in film(trajectory, home, view, size=size, fps=fps):
+    for film_frame in film(trajectory, home, view, size=size, fps=fps, quality=quality):
         for writer in writers:
             writer.add(film_frame.rgb)
+        if files.names:
+            pictures = film_frame.pictures(drawn, quality) | {"graph": graphs.get(film_frame.frame.tick)}
+            files.add(FrameTime(film_frame.frame.time, film_frame.frame.tick, camera_of(film_frame.camera)), pictures)
         tick, name = film_frame.frame.tick, film_frame.camera.name
         last[tick] = film_frame.rgb
         seen[tick] |= _newly_seen(film_frame, wanted[tick] - seen[tick])
@@ -323,7 +321,13 @@ def record(
     for step, tick in zip(steps, known, strict=True):
         step["visible"] = round(len(seen[tick]) / len(wanted[tick]), 4) if wanted[tick] else 1.0
     keyframes = [(picture, known[tick]) for tick, picture in last.items()]
-    return Recorded(tuple(writer.path for writer in writers), len(track), steps, track, keyframes)
+    videos = tuple(writer.path for writer in writers)
+    return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))
+
+
+def _graphs(trajectory: Trajectory) -> dict[int, Any]:
+    """The scene graph after each tick."""
+    return {keyframe.tick: to_release(keyframe.places.graph) for keyframe in trajectory.keyframes}
 
 
 def named_in(trajectory: Trajectory, steps: Sequence[Step]) -> frozenset[int]:
@@ -337,6 +341,6 @@ def _newly_seen(film_frame: FilmFrame, wanted: frozenset[int]) -> frozenset[int]
     """The wanted nodes that a frame shows."""
     if not wanted:
         return wanted
-    shot = film_frame.rendered.shot
+    shot = film_frame.shot
     numbers = np.flatnonzero(np.bincount(shot.owner + 1)[1:])
     return wanted & {shot.geometry.things[number].id for number in numbers.tolist()}

@@ -277,9 +277,11 @@ def test_one_squeezes_through_where_there_is_no_space_for_two():
 def test_open_leaves_are_walked_around_and_closed_ones_are_not():
     opened = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "OPEN")
     closed = standing(2, "door", (0, 1, -0.4), (0.05, 2, 3.2), "CLOSED")
+    jamb = standing(3, "doorjamb", (0, 1, 0.5), (0.1, 2, 0.9))
     start, goal = (-1.0, 0.0), (1.0, 0.0)
-    assert not crosses(path(ways_of([ROOM], [ROOM, opened]), start, goal), opened)
-    assert path(ways_of([ROOM], [ROOM, closed]), start, goal) == (start, goal)
+    assert not crosses(path(ways_of([ROOM], [ROOM, jamb, opened]), start, goal), opened)
+    assert path(ways_of([ROOM], [ROOM, jamb, closed]), start, goal) == (start, goal)
+    assert not crosses(path(ways_of([ROOM], [ROOM, closed]), start, goal), closed), "a door that hangs nowhere"
 
 
 def test_a_pillow_on_the_floor_is_stepped_over():

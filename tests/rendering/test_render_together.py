@@ -71,23 +71,23 @@ def test_two_walk_in_the_same_seconds_and_both_are_in_the_scene(trajectory, show
     assert last.actors[1].body_pose.posture == "standing"
 
 
-def test_a_camera_goes_with_the_agent_that_it_is_told(shown):
+def test_a_camera_goes_with_the_agent_that_it_is_told(trajectory, shown):
     frame = next(frame for frame in shown if frame.tick == 2)
     for view, number in (("first", 0), ("first.0", 0), ("first.1", 1)):
-        eye = CameraSelector(HOME, view, (64, 48)).camera(frame).eye
+        eye = CameraSelector(trajectory, HOME, view, (64, 48)).camera(frame).eye
         x, z = frame.actors[number].spot
         assert hypot(eye[0] - x, eye[2] - z) < 0.5, view
     with pytest.raises(HearthError, match="no agent 2"):
-        CameraSelector(HOME, "first.2", (64, 48)).camera(frame)
+        CameraSelector(trajectory, HOME, "first.2", (64, 48)).camera(frame)
     with pytest.raises(HearthError, match="no camera"):
-        CameraSelector(HOME, "last.1", (64, 48))
+        CameraSelector(trajectory, HOME, "last.1", (64, 48))
     assert agent_of("kitchen.1.3") == ("kitchen.1.3", None)
 
 
 def test_the_choosing_camera_looks_at_whoever_acts(trajectory):
     alone = staged_of("<char1> [Walk] <cabinet> (1)\n")
     frame = [frame for frame in frames(alone, FPS) if frame.tick == 1][-1]
-    camera = CameraSelector(HOME, "auto", (64, 48)).camera(frame)
+    camera = CameraSelector(alone, HOME, "auto", (64, 48)).camera(frame)
     places, depths = camera.project(np.array([frame.actors[1].world((0.0, 1.0, 0.0))]))
     assert depths[0] > 0
     assert 0 < places[0, 0] < 64
@@ -97,11 +97,11 @@ def test_the_choosing_camera_looks_at_whoever_acts(trajectory):
 def test_what_is_shut_away_is_not_seen_and_is_told_apart():
     found = list(tick_visibilities(staged_of("<char1> [Walk] <cabinet> (1)\n<char1> [Close] <cabinet> (1)\n"), HOME))
     assert [look.named for look in found] == [(BOX,), (BOX,)]
-    assert shares(found) == (2, 1.0, 1.0, 1.0)
+    assert shares(found)[:4] == (2, 1.0, 1.0, 1.0)
     in_closed = tuple(replace(n, states=("CLOSED",)) if n.id == BOX else n for n in HOME.nodes)
     home = replace(HOME, nodes=in_closed)
     (look,) = tick_visibilities(staged_of("<char1> [Walk] <cup> (1)\n", home), home)
     assert look.named == look.missed == look.unseen == look.in_closed == (CUP,)
-    assert shares([look]) == (1, 0.0, 0.0, 1.0)
+    assert shares([look])[:4] == (1, 0.0, 0.0, 1.0)
     (look,) = tick_visibilities(staged_of("<char1> [Walk] <cup> (1)\n"), HOME)
     assert look.missed == (), "a camera looks into what is open"

@@ -1,0 +1,124 @@
+"""Cameras from which an action might be seen: around person and object, preferably at the height of eyes."""
+
+from collections.abc import Sequence
+from math import atan, cos, degrees, radians, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.cameras.camera import Camera, point_of
+from hearth.rendering.cameras.sight import ENOUGH, FILL, Obstacles, Target, unobstructed
+from hearth.rendering.people.acting import Actor
+from hearth.schemas.graph import Box
+
+TURNS = tuple(range(-180, 180, 30))
+"""Degrees from the direction in which the person looks."""
+
+DISTANCES = (1.5, 2.1, 2.9, 4.0)
+"""Metres from the middle of what is shown."""
+
+HEIGHTS = ((1.5, 1.0), (1.05, 0.93), (2.1, 0.86))
+"""Metres above the floor, and how much they are preferred: eyes of who stands, of who sits, and the ceiling."""
+
+WIDEST, NARROWEST = 72.0, 14.0
+"""Degrees of the vertical field of view."""
+
+CLOSEST = 0.6
+"""Metres of height that a picture shows at least."""
+
+INSET = 0.12
+"""Metres from the walls of a room within which no camera stands."""
+
+FAR_APART = 3.0
+"""Metres between person and object beyond which both need not fill the picture."""
+
+FRONT = 0.12
+"""How much more a view from the front is worth than one from behind."""
+
+
+def around(
+    actor: Actor, who: Target, objects: Sequence[Target], room: Box | None, size: tuple[int, int], name: str
+) -> list[Camera]:
+    """Cameras around a person and objects, inside the room, with a field of view that contains both.
+
+    Args:
+        actor, who: the person.
+        objects: what it acts on.
+        room: the box of its room.
+        size: of the picture, pixels.
+        name: of the cameras, before their number.
+    """
+    middle, height = framed(actor, who, objects, size[0] / size[1])
+    found: list[Camera] = []
+    for distance in DISTANCES:
+        for up, _ in HEIGHTS:
+            for turn in TURNS:
+                angle = radians(actor.yaw + turn)
+                eye = (middle[0] + sin(angle) * distance, actor.level + up, middle[2] + cos(angle) * distance)
+                if room is None or inside(eye, room):
+                    far = max(float(np.linalg.norm(np.array(eye) - middle)), 0.3)
+                    fov = float(np.clip(degrees(2 * atan(height / 2 / far)), NARROWEST, WIDEST))
+                    found.append(Camera(f"{name}.{len(found)}", eye, point_of(middle), *size, fov))
+    return found
+
+
+def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) -> tuple[NDArray[np.float64], float]:
+    """The middle of what a camera should show, and the metres that its picture should be high there."""
+    near = [target for target in objects if np.linalg.norm(_point(target, who) - who.points.mean(axis=0)) < FAR_APART]
+    spans = [(who.low, who.high), *((_point(t, who) - _half(t), _point(t, who) + _half(t)) for t in near)]
+    low, high = np.min([a for a, _ in spans], axis=0), np.max([b for _, b in spans], axis=0)
+    middle = (low + high) / 2
+    across = float(np.hypot(high[0] - low[0], high[2] - low[2]))
+    height = max(float(high[1] - low[1]), across / aspect) + 0.35
+    small = min((_needed(target, aspect) for target in near), default=np.inf)
+    if small < height and near:
+        # A small thing needs a closer view: of it, and of the upper body.
+        target = min(near, key=lambda one: _needed(one, aspect))
+        head = who.points[who.points[:, 1].argmax()]
+        middle = 0.55 * _point(target, who) + 0.45 * head
+        reach = float(np.abs(_point(target, who) - head).max())
+        height = max(small, CLOSEST, 0.8 * reach + 0.4)
+    return middle, height
+
+
+def _needed(target: Target, aspect: float) -> float:
+    """Metres of a picture's height from which on a thing would cover too little of it."""
+    x, y, z = np.maximum(target.high - target.low, 0.005)
+    area = FILL * max((y * z + x * z + x * y) / 2.2, 1e-4)
+    return sqrt(area / (ENOUGH * 1.3 * target.least * aspect))
+
+
+def _point(target: Target, who: Target) -> NDArray[np.float64]:
+    """The point of a thing's box nearest to a person."""
+    half = _half(target)
+    found: NDArray[np.float64] = np.clip(who.points.mean(axis=0), target.low + half, target.high - half)
+    return found
+
+
+def _half(target: Target) -> NDArray[np.float64]:
+    """Half of the part of a thing that a camera should show: all of it if it is small."""
+    found: NDArray[np.float64] = np.minimum((target.high - target.low) / 2, 0.35)
+    return found
+
+
+def inside(eye: Sequence[float], room: Box) -> bool:
+    """Whether a point is in a room, away from its walls."""
+    return all(abs(e - c) <= s / 2 - INSET for e, c, s in zip(eye, room.center, room.size, strict=True))
+
+
+def preference(cameras: Sequence[Camera], actor: Actor) -> NDArray[np.float64]:
+    """(cameras,) factors that prefer eye height, and views from the front."""
+    found = []
+    for camera in cameras:
+        up = camera.eye[1] - actor.level
+        height = min(HEIGHTS, key=lambda known: abs(known[0] - up))[1]
+        x, z = camera.eye[0] - actor.spot[0], camera.eye[2] - actor.spot[1]
+        front = (x * sin(radians(actor.yaw)) + z * cos(radians(actor.yaw))) / max(float(np.hypot(x, z)), 0.1)
+        found.append(height * (1 + FRONT * min(front, 0.7)))
+    return np.array(found)
+
+
+def free(cameras: Sequence[Camera], obstacles: Obstacles) -> list[Camera]:
+    """The cameras with nothing close in front of them."""
+    kept = unobstructed(cameras, obstacles)
+    return [camera for camera, good in zip(cameras, kept.tolist(), strict=True) if good]

@@ -1,0 +1,83 @@
+"""Films with every modality: what is read back equals what a picture of the frame has."""
+
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("open3d")
+
+from hearth.grounding.trial import attempt
+from hearth.homes import library
+from hearth.kb.loading.load import default
+from hearth.rendering.film.frame_files import pictures_in
+from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.film.video import film, record
+from hearth.rendering.modalities import MODALITIES, PICTURES
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.world.home import Home
+
+HOW = {"size": (48, 36), "fps": 2.0}
+EVERY = [*MODALITIES, "graph"]
+
+
+@pytest.fixture(scope="module")
+def filmed():
+    graph = library.load_graph("maple", default())
+    program, _ = parse_program("Sit\nRest.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n")
+    done = attempt(program, Home.from_graph(graph, "maple", default())).execution
+    return graph, trajectory_of(done, graph, default())
+
+
+def test_every_modality_of_every_frame_is_written(filmed, tmp_path):
+    graph, trajectory = filmed
+    done = record(trajectory, graph, tmp_path, "auto", suffixes=(".webm",), modalities=EVERY, **HOW)
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in (*done.files, *done.further)}
+    index = json.loads((tmp_path / "auto.index.json").read_text())
+    assert set(index["files"]) == set(EVERY) - {"rgb"}
+    assert len(index["frames"]) == done.frames
+    assert [step["tick"] for step in index["steps"]] == [0, 1, 2]
+    for name, file in index["files"].items():
+        written = list(pictures_in(tmp_path / file)) if name in PICTURES else (tmp_path / file).read_text().splitlines()
+        assert len(written) == done.frames, name
+    frames = list(film(trajectory, graph, "auto", **HOW))
+    for name in ("depth", "instance_ids"):
+        for frame, picture in zip(frames, pictures_in(tmp_path / f"auto.{name}.zip"), strict=True):
+            assert (frame.pictures([name])[name] == picture).all()
+    assert [frame["tick"] for frame in index["frames"]] == [frame.frame.tick for frame in frames]
+
+
+def test_flow_is_towards_the_next_frame(filmed):
+    graph, trajectory = filmed
+    moving = [f for f in film(trajectory, graph, "auto", **HOW) if f.frame.tick == 1]
+    person = moving[0].frame.actors[0].node.id
+    found = [frame.pictures(["flow", "instance_ids"]) for frame in moving]
+    shifts = [np.nan_to_num(each["flow"][each["instance_ids"] == person]) for each in found]
+    assert max(np.abs(shift).max(initial=0) for shift in shifts) > 0.5
+
+
+def test_the_same_film_has_the_same_bytes(filmed, tmp_path):
+    graph, trajectory = filmed
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        record(trajectory, graph, tmp_path / name, "top", modalities=["depth", "flow", "boxes"], **HOW)
+    files = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert len(files) == 2 + 3 + 1
+    for file in files:
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "other" / file).read_bytes(), file
+
+
+def test_fine_films_are_drawn_finely(filmed):
+    graph, trajectory = filmed
+    draft = next(film(trajectory, graph, "auto", **HOW)).rgb
+    fine = next(film(trajectory, graph, "auto", quality="fine", **HOW)).rgb
+    assert draft.shape == fine.shape
+    assert (draft != fine).mean() > 0.2
+
+
+def test_unknown_modalities_are_refused_before_anything_is_written(filmed, tmp_path):
+    graph, trajectory = filmed
+    with pytest.raises(HearthError, match="unknown modality or quality: smell"):
+        record(trajectory, graph, tmp_path, "auto", modalities=["smell"], **HOW)
+    assert not list(tmp_path.iterdir())

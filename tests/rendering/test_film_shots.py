@@ -1,0 +1,114 @@
+"""Shots: the best cut equals that of a plain search; films show what happens, from where nothing is in the way."""
+
+from itertools import groupby, pairwise, product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("open3d")
+
+from hearth.grounding.trial import attempt
+from hearth.homes import library
+from hearth.kb.loading.load import default
+from hearth.rendering.cameras.camera import look_at
+from hearth.rendering.cameras.recognition import in_the_way, recognition, shows
+from hearth.rendering.cameras.visibility import seen_as
+from hearth.rendering.film.quality import film_quality
+from hearth.rendering.film.shots import best_cut
+from hearth.rendering.film.snapshots import trajectory_of
+from hearth.rendering.models.look import Look
+from hearth.rendering.models.looks import Model
+from hearth.rendering.rays.shot import shoot
+from hearth.rendering.scene.instances import Thing
+from hearth.rendering.scene.scene import Scene
+from hearth.schemas.syntax import parse_program
+from hearth.simulation.world.home import Home
+
+PROGRAM = """Watch TV
+It.
+
+
+[Walk] <sofa> (1)
+[Sit] <sofa> (1)
+[Watch] <television> (1)
+[StandUp]
+[Walk] <fridge> (1)
+[Open] <fridge> (1)
+"""
+
+
+def value(worth, rows, cost):
+    cuts = sum(a != b for a, b in pairwise(rows))
+    return sum(worth[row, t] for t, row in enumerate(rows)) - cost * cuts
+
+
+def runs(rows):
+    return [len(list(run)) for _, run in groupby(rows)]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 3), st.integers(1, 7), st.integers(1, 3), st.integers(0, 2**31), st.sampled_from([0.0, 0.4, 2.0]))
+def test_the_best_cut_is_that_of_a_plain_search(rows, moments, shortest, seed, cost):
+    worth = np.random.default_rng(seed).normal(size=(rows, moments))
+    allowed = [found for found in product(range(rows), repeat=moments) if min(runs(found)) >= min(shortest, moments)]
+    if moments < 2 * shortest:
+        allowed = [found for found in allowed if len(set(found)) == 1]
+    found = best_cut(worth, shortest, cost)
+    assert tuple(found) in allowed
+    assert value(worth, found, cost) == pytest.approx(max(value(worth, each, cost) for each in allowed))
+
+
+@pytest.fixture(scope="module")
+def filmed():
+    graph = library.load_graph("maple", default())
+    done = attempt(parse_program(PROGRAM)[0], Home.from_graph(graph, "maple", default())).execution
+    assert done.executable
+    return graph, trajectory_of(done, graph, default())
+
+
+def test_a_film_shows_every_step_in_shots_of_three_seconds(filmed):
+    graph, trajectory = filmed
+    found = film_quality(trajectory, graph)
+    assert [step.shown for step in found.steps] == [True] * 6
+    assert min(found.shots) >= 3
+    assert found.blocked <= 0.05 * found.pictures
+
+
+def test_what_is_in_a_closed_container_is_seen_by_that(filmed):
+    graph, trajectory = filmed
+    names = {node.id: node.class_name for node in graph.nodes}
+    closed, opened = trajectory.keyframes[0].places, trajectory.keyframes[-1].places
+    inside = [n for n, place in closed.locations.items() if place.kind == "inside" and names[place.holder] == "fridge"]
+    assert {names[seen_as(node, closed)] for node in inside} == {"fridge"}
+    assert [seen_as(node, opened) for node in inside] == inside
+
+
+CAMERA = look_at("test", (0, 1, 0), (0, 1, 1), 80, 60, 60.0)
+
+
+def slab(number, center, size, name="table"):
+    x, y, z = center
+    return Thing(number, name, Model("ceiling", Look(size)), (x, y - size[1] / 2, z))
+
+
+def test_what_is_half_hidden_or_small_is_not_recognised():
+    person, cup = slab(1, (-0.6, 1, 3), (0.8, 1.6, 0.1), "character"), slab(2, (0.8, 1, 3), (0.3, 0.3, 0.1))
+    free = shoot(Scene((person, cup)), CAMERA)
+    assert recognition(free, 1).unhidden == 1.0
+    assert recognition(free, 1).share == pytest.approx((free.owner == 0).mean())
+    assert shows(free, 1, (2,))
+    assert not shows(free, 1, (2, 3)), "what is not there is not shown"
+    for across, seen in ((-0.3, True), (0.1, False)):
+        wall = slab(9, (across - 1.3, 1, 2.5), (1.6, 3, 0.1))
+        assert shows(shoot(Scene((person, cup, wall)), CAMERA), 1, (2,)) == seen
+    far = slab(2, (4, 1, 30), (0.3, 0.3, 0.1))
+    assert not shows(shoot(Scene((person, far)), CAMERA), 1, (2,))
+
+
+def test_something_close_that_fills_the_picture_is_in_the_way():
+    back = slab(1, (0, 1, 4), (9, 9, 0.1))
+    assert not in_the_way(shoot(Scene((back,)), CAMERA))
+    assert in_the_way(shoot(Scene((back, slab(2, (0.3, 1, 0.5), (0.4, 0.4, 0.1)))), CAMERA))
+    assert not in_the_way(shoot(Scene((back, slab(2, (0.3, 1, 0.5), (0.05, 0.05, 0.02)))), CAMERA))
