@@ -38,8 +38,11 @@ def prepared(
         seen: called with the number of films made.
 
     Raises:
-        HearthError: BAD_ARGUMENT: films of people are to be made, and `people` is None.
+        HearthError: BAD_ARGUMENT: films of people are to be made, and `people` is None, or they are simulated.
     """
+    if people is not None and people.simulated:
+        message = "the people there are simulated, and real ones would judge them as people"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--people FOLDER of a server")
     folder = inside(out, study.name)
     folder.mkdir(parents=True, exist_ok=True)
     results = references(study, folder, known, workers)

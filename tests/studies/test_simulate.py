@@ -8,8 +8,11 @@ import pytest
 from studies.small import simulated
 
 from hearth.kb.loading.load import default
+from hearth.schemas.diagnostics import HearthError
 from hearth.studies.events import PLACES
+from hearth.studies.prepare import prepared
 from hearth.studies.simulate import Crowd, visits
+from hearth.studies.study_file import named
 from hearth.studies.study_findings import AGENT, PEOPLE, findings
 from hearth.studies.study_folder import EVENTS, opened
 from hearth.studies.study_report import page
@@ -114,6 +117,11 @@ def test_the_page_says_simulated_and_holds_nobodys_markup(made):
     assert "<strong>Simulated.</strong>" not in real
     nasty = page(replace(found, study=replace(found.study, title="<script>alert(1)</script>")), [])
     assert "<script>" not in nasty
+
+
+def test_simulated_people_are_not_filmed_as_people(made, tmp_path):
+    with pytest.raises(HearthError, match="the people there are simulated"):
+        prepared(named("likeness-of-films"), tmp_path, default, made)
 
 
 def test_who_is_forgotten_is_in_no_table(made, folder):
