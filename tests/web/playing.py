@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import orjson
 
 from hearth.challenges.episodes import Job, played
@@ -58,6 +60,11 @@ class Player:
         else:
             self.state = found
         return found
+
+    def receive_after_pause(self):
+        """The answer to a turn, after a pause that the limit of messages a second asks for."""
+        time.sleep(0.1)
+        return self.act("[Turnleft]")
 
     def act(self, act, tick=None):
         return self.ask({"type": "act", "tick": self.state["tick"] if tick is None else tick, "act": act})
