@@ -47,7 +47,8 @@ def drag(page, source, target) -> None:
     page.mouse.move(*source)
     page.mouse.down()
     page.mouse.move(source[0] + 30, source[1] + 5, steps=4)
-    page.mouse.move(*target, steps=12)
+    page.mouse.move(target[0] + 90, target[1], steps=8)  # beside the program, where no other slot catches it
+    page.mouse.move(*target, steps=8)
     page.wait_for_timeout(60)
     page.mouse.up()
     page.wait_for_timeout(60)
@@ -149,6 +150,7 @@ def test_a_whole_way_by_mouse(opened):
 
 def tab_to(page, selector) -> None:
     """Press Tab until an element has the focus."""
+    page.wait_for_selector(selector, state="attached")
     for _ in range(120):
         if page.evaluate("selector => document.activeElement?.matches(selector)", selector):
             return

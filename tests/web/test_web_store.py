@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import random
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -153,7 +154,7 @@ def postgres():
         except HearthError:
             time.sleep(0.1)
     yield url
-    running.terminate()
+    running.send_signal(signal.SIGINT)  # it does not wait for connections
     running.wait()
     shutil.rmtree(folder, ignore_errors=True)
 

@@ -141,6 +141,7 @@ export function mount(element, model, changed, loose) {
     last = JSON.stringify(steps);
     changed(steps);
   });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => workspace.setTheme(theme()));
   return {
     workspace,
     show(steps) {
@@ -165,6 +166,9 @@ export function mount(element, model, changed, loose) {
         block.getSvgRoot().classList.toggle("faulty", mine.some((each) => each.fault));
       });
     },
-    fit() { Blockly.svgResize(workspace); },
+    fit() {
+      Blockly.svgResize(workspace);
+      workspace.scroll(0, 0);  // the drawers open beside the program, not over it
+    },
   };
 }
