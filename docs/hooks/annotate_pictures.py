@@ -1,6 +1,6 @@
-"""Pictures of the pages where people annotate: `python docs/hooks/web_pictures.py [FOLDER]`; docs/pictures if none.
+"""Pictures of the pages where people annotate: `python docs/hooks/annotate_pictures.py [FOLDER]`; docs/pictures if none.
 
-It needs the extra `web`, Playwright and Chromium. A server is started in an empty folder, and a program is written in it.
+It needs the extra `web`, Playwright and Chromium. A server starts in an empty folder, and a program is written in it.
 """
 
 from __future__ import annotations
