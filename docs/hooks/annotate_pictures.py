@@ -1,4 +1,6 @@
-"""Pictures of the pages where people annotate: `python docs/hooks/annotate_pictures.py [FOLDER]`; docs/pictures if none.
+"""Pictures of the pages where people annotate: `python docs/hooks/annotate_pictures.py [FOLDER]`.
+
+Without a folder they go to docs/pictures/web.
 
 It needs the extra `web`, Playwright and Chromium. A server starts in an empty folder, and a program is written in it.
 """
