@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
+from hearth.agents.learned import Hybrid, Learned
 from hearth.agents.protocol import Agent
 from hearth.agents.random_helper import RandomHelper
 
@@ -50,6 +51,8 @@ HELPERS: dict[str, Helper] = {
     ),
     "hp": Helper(lambda partner: Hierarchical(), "inferred", "planner, inferred goal"),
     "hp_random": Helper(lambda partner: Hierarchical(), "random", "planner, goal of another task"),
+    "hybrid": Helper(lambda partner: Hybrid(), "inferred", "learned choice of subgoals, regression; inferred goal"),
+    "hrl": Helper(lambda partner: Learned(), "inferred", "learned choice of subgoals and of actions; inferred goal"),
     "oracle_b": Helper(
         lambda partner: Hierarchical(partner, SEES_ALL, timed=True), "true", "planner that sees everything"
     ),

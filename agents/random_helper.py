@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
@@ -24,10 +22,16 @@ class RandomHelper:
         number = int(self.chooser.random() * len(legal))
         home = legal.home
         for action in sorted(legal.masks):
-            masks = legal.masks[action]
-            count = math.prod(mask.bit_count() for mask in masks)
+            count = legal.count(action)
             if number < count:
-                chosen = [self.chooser.choice(list(indices(mask))) for mask in masks]
+                chosen = self._chosen(legal.masks[action])
                 return Step(action, tuple(ObjectRef(home.classes[i], 0, home.ids[i]) for i in chosen), legal.agent)
             number -= count
         return None
+
+    def _chosen(self, masks: tuple[int, ...]) -> list[int]:
+        """A node for each argument, no two the same; drawn until that is so."""
+        while True:
+            chosen = [self.chooser.choice(list(indices(mask))) for mask in masks]
+            if len(set(chosen)) == len(chosen):
+                return chosen

@@ -1,20 +1,20 @@
 """Lines to and from somebody else: a child process, a loopback socket, or our own standard input and output.
 
 A line that is too long is left out whole and reported; nobody is waited for longer than a deadline. Deadlines are
-times of `time.monotonic`. It needs `select` on pipes, which Windows lacks.
+times of `time.monotonic`. Threads read and write, since pipes can be waited for in no other way on every system.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import select
 import signal
 import socket
 import subprocess
+import threading
 import time
-from collections.abc import Sequence
-from typing import NoReturn
+from collections.abc import Callable, Sequence
+from typing import IO, NoReturn
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -23,23 +23,71 @@ LONGEST_LINE = 65_536
 """Bytes of a line that is read."""
 
 _PIECE = 4096
-"""Bytes written at once: as much as a pipe takes without waiting when `select` reports it writable."""
+"""Bytes written at once."""
 
 LOOPBACK = "127.0.0.1"
 
 
 class Channel:
-    """Lines over two file descriptors.
+    """Lines over something that is read and something that is written.
+
+    Args:
+        read: gives at most so many bytes, none once the other end is gone; it may wait.
+        write: takes some of the bytes, and says how many; it may wait.
 
     Attributes:
-        open: whether the other end is there, as far as is known.
+        open: whether the other end is there, as far as sending and receiving have shown.
     """
 
-    def __init__(self, read: int, write: int) -> None:
+    def __init__(self, read: Callable[[int], bytes | None], write: Callable[[bytes], int | None]) -> None:
         self._read, self._write = read, write
         self._received, self._unsent = bytearray(), bytearray()
         self._skipping = False
+        self._changed = threading.Condition()
         self.open = True
+        self._ended = False
+        for run in (self._reading, self._writing):
+            threading.Thread(target=run, daemon=True).start()
+
+    def _reading(self) -> None:
+        """Read until the end; more than some lines that nobody asks for are left where they are."""
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ended or self._room())
+                if self._ended:
+                    return
+            try:
+                data = self._read(LONGEST_LINE)
+            except (OSError, ValueError):  # closed
+                data = None
+            with self._changed:
+                if not data:
+                    self._ended = True
+                else:
+                    self._received += data
+                    if self._skipping:
+                        self._skip()
+                self._changed.notify_all()
+
+    def _room(self) -> bool:
+        return self._skipping or len(self._received) < 2 * LONGEST_LINE
+
+    def _writing(self) -> None:
+        """Write what is unsent."""
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ended or bool(self._unsent))
+                if self._ended:
+                    return
+                piece = bytes(self._unsent[:_PIECE])
+            try:
+                written = self._write(piece) or 0
+            except (OSError, ValueError):
+                written = -1
+            with self._changed:
+                self._ended = self._ended or written < 0
+                del self._unsent[: max(0, written)]
+                self._changed.notify_all()
 
     def send(self, line: bytes, deadline: float) -> None:
         """Write a line. What can't be written by the deadline is written first the next time.
@@ -47,40 +95,18 @@ class Channel:
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED.
         """
-        self._need_open()
-        self._flush(deadline)
-        self._unsent += line + b"\n"
-        self._flush(deadline)
+        with self._changed:
+            self._flush(deadline)
+            self._unsent += line + b"\n"
+            self._changed.notify_all()
+            self._flush(deadline)
 
     def _flush(self, deadline: float) -> None:
-        """Write what is unsent, and meanwhile read: an agent that writes may not read before it is read."""
-        while self._unsent:
-            room = self._skipping or len(self._received) < 2 * LONGEST_LINE
-            readable, writable, _ = select.select([self._read] if room else [], [self._write], [], _left(deadline))
-            if not (readable or writable):
-                raise HearthError.of(Code.TIMED_OUT, "the agent does not read what it is sent")
-            if readable:
-                self._pull()
-            if writable:
-                self._push()
-
-    def _push(self) -> None:
-        try:
-            del self._unsent[: os.write(self._write, self._unsent[:_PIECE])]
-        except OSError:
-            self._gone()
-
-    def _pull(self) -> None:
-        """Read what has come; of a line that is too long nothing is kept."""
-        try:
-            data = os.read(self._read, LONGEST_LINE)
-        except OSError:
-            data = b""
-        if not data:
-            self._gone()
-        self._received += data
-        if self._skipping:
-            self._skip()
+        """Wait until nothing is unsent."""
+        done = self._changed.wait_for(lambda: self._ended or not self._unsent, _left(deadline))
+        self._need_open()
+        if not done:
+            raise HearthError.of(Code.TIMED_OUT, "the agent does not read what it is sent")
 
     def _skip(self) -> None:
         end = self._received.find(b"\n")
@@ -93,14 +119,14 @@ class Channel:
         Raises:
             HearthError: TIMED_OUT; DISCONNECTED; LINE_TOO_LONG, once for each such line.
         """
-        while True:
-            line = self._line()
-            if line is not None:
-                return line
-            self._need_open()
-            if not select.select([self._read], [], [], _left(deadline))[0]:
-                raise HearthError.of(Code.TIMED_OUT, "the agent did not answer in time")
-            self._pull()
+        with self._changed:
+            while True:
+                line = self._line()
+                if line is not None:
+                    return line
+                self._need_open()
+                if not self._changed.wait(_left(deadline)):
+                    raise HearthError.of(Code.TIMED_OUT, "the agent did not answer in time")
 
     def _line(self) -> bytes | None:
         """A whole line of what was received, if there is one."""
@@ -108,16 +134,18 @@ class Channel:
         if end > LONGEST_LINE or (end < 0 and len(self._received) > LONGEST_LINE):
             self._skipping = True
             self._skip()
+            self._changed.notify_all()
             remedy = f"at most {LONGEST_LINE:,} bytes"
             raise HearthError.of(Code.LINE_TOO_LONG, "an answer that is too long", suggestion=remedy)
         if end < 0:
             return None
         line = bytes(self._received[:end])
         del self._received[: end + 1]
+        self._changed.notify_all()
         return line
 
     def _need_open(self) -> None:
-        if not self.open:
+        if self._ended:
             self._gone()
 
     def _gone(self) -> NoReturn:
@@ -126,19 +154,23 @@ class Channel:
 
     def close(self) -> None:
         """End it; may be called again."""
-        self.open = False
+        with self._changed:
+            self.open, self._ended = False, True
+            self._changed.notify_all()
 
 
 class SocketChannel(Channel):
     """Lines over a connected socket."""
 
     def __init__(self, connection: socket.socket) -> None:
-        super().__init__(connection.fileno(), connection.fileno())
+        super().__init__(connection.recv, connection.send)
         self._connection = connection
 
     def close(self) -> None:
         """Close the socket."""
         super().close()
+        with contextlib.suppress(OSError):
+            self._connection.shutdown(socket.SHUT_RDWR)  # who waits for it is woken
         self._connection.close()
 
 
@@ -163,22 +195,42 @@ class ProcessChannel(Channel):
             message = f"the agent can't be started: {getattr(error, 'strerror', None) or error}"
             raise HearthError.of(Code.MISSING_FILE, message, file=argv[0][:200]) from error
         assert self.process.stdin is not None and self.process.stdout is not None
-        super().__init__(self.process.stdout.fileno(), self.process.stdin.fileno())
+        super().__init__(self.process.stdout.read, self.process.stdin.write)
 
     def close(self, patience: float = 2.0) -> None:
         """Close its input and wait some seconds for its end; then end it and what it started."""
         super().close()
-        for pipe in (self.process.stdin, self.process.stdout):
-            if pipe is not None and not pipe.closed:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-        for number in (None, signal.SIGTERM, signal.SIGKILL):
-            if number is not None:
+        self._shut(self.process.stdin)
+        for end in (None, *_ENDS):
+            if end is not None:
                 with contextlib.suppress(ProcessLookupError, PermissionError):
-                    os.killpg(self.process.pid, number)
+                    end(self.process)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(patience)
-                return
+                break
+        self._shut(self.process.stdout)
+
+    def _shut(self, pipe: IO[bytes] | None) -> None:
+        if pipe is not None and not pipe.closed:
+            with contextlib.suppress(OSError):
+                pipe.close()
+
+
+def _ends() -> tuple[Callable[[subprocess.Popen[bytes]], None], ...]:
+    """What ends a process: with all that it started, where processes have groups."""
+    if os.name == "nt":
+        return subprocess.Popen.terminate, subprocess.Popen.kill
+    return tuple(lambda process, by=by: os.killpg(process.pid, by) for by in (signal.SIGTERM, signal.SIGKILL))
+
+
+_ENDS = _ends()
+
+
+class StandardChannel(Channel):
+    """Lines to our own standard output and from our own standard input."""
+
+    def __init__(self) -> None:
+        super().__init__(lambda most: os.read(0, most), lambda data: os.write(1, data))
 
 
 class Listener:

@@ -84,7 +84,7 @@ class Challenge:
     @property
     def rules(self) -> Rules:
         """How actions are read."""
-        return DEFAULT._replace(bodies=self.bodies)
+        return DEFAULT._replace(bodies=self.bodies, one_grip=True)
 
     def goals_in(self, home: Home) -> dict[Goal, float]:
         """The goals of single sets that there may be in a home, with their probabilities."""

@@ -15,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.challenges.edges import Edges, seen_edges, start_edges
+from hearth.challenges.goal_rows import GOAL_COLUMNS, class_number, goal_array
 from hearth.challenges.slots import Slots
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.goals import Goal
-from hearth.schemas.literals import AGENT, HOLDS, Literal, Name
-from hearth.schemas.vocabulary import CHARACTER_CLASS, RELATION_ID, RELATIONS, STATE_ID, STATES
+from hearth.schemas.vocabulary import RELATIONS, STATES
 from hearth.simulation.goals import Progress
 from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import ground_of
@@ -39,23 +38,13 @@ Arrays = dict[str, NDArray[Any]]
 AGENT_COLUMNS = ("seen", "x", "z", "sin_yaw", "cos_yaw", "sitting", "lying", "stride")
 """Columns of `agents`: metres, and the yaw from +z towards +x."""
 
-GOAL_COLUMNS = ("kind", "predicate", "negated", "subject_class", "subject", "target_class", "target", "wanted", "seen")
-"""Columns of `goal`: kind 1 is a state, 2 a relation; predicate its id, that of HOLDS after those of all relations;
-classes as in `classes`; subject and target slot + 1 where the literal names a node, else 0; how often it is wanted, and
-how often the agent sees it hold."""
-
 LAST_COLUMNS = ("action", "first", "second", "failed")
 """Columns of `last`: number of the action from 1 (one more than their number where it is none of them), slots + 1."""
-
-STATE, RELATION = 1, 2
 
 FAR = 1_000.0
 """Metres that no place exceeds."""
 
 MANY = np.iinfo(np.int16).max
-
-UNKNOWN_CLASS = 1
-"""Number of classes that the knowledge does not have."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +55,7 @@ class Sizes:
         nodes: slots; the largest of our homes has 674 nodes.
         edges: in the order of the ids of source, relation and target; what is seen beyond them is left out.
         agents: characters; the first row is the agent itself, the others follow by number.
-        literals: of a goal.
+        literals: rows of a goal (see `goal_rows`).
         legal: instructions of the padded list (`action_codes.Listed`).
     """
 
@@ -166,7 +155,7 @@ class Encoder:
             time: the part of the episode that has passed.
 
         Raises:
-            HearthError: BAD_ARGUMENT, where there are more characters or literals than rows; a goal of joined parts.
+            HearthError: BAD_ARGUMENT, where there are more characters or rows of the goal than rows of an array.
         """
         world, sizes = view.world, self.sizes
         if len(world.agents) > sizes.agents:
@@ -183,7 +172,7 @@ class Encoder:
             "places": _places(view, rows) * seen[:, None],
             "edges": self._edges(view, rows),
             **self._agents(view, slots),
-            "goal": self._goal(view, slots, progress),
+            "goal": goal_array(view, slots, progress, sizes.literals),
             "time": np.array([min(1.0, time)], np.float32),
         }
 
@@ -218,15 +207,6 @@ class Encoder:
                 last[row] = (action, *numbers, *[0] * (2 - len(numbers)), pose.last.failure is not None)
         return {"agents": poses, "characters": characters, "hands": hands, "last": last}
 
-    def _goal(self, view: View, slots: Slots, progress: Progress | None) -> NDArray[np.int16]:
-        found = np.zeros((self.sizes.literals, len(GOAL_COLUMNS)), np.int16)
-        if progress is not None:
-            check(progress.goal, self.sizes.literals)
-            for row, watch in zip(found, progress.watches, strict=False):
-                counted = sum((mask & view.mask).bit_count() for mask in watch.met)
-                row[:] = (*_literal(watch.literal, slots, self.knowledge), watch.wanted, counted)
-        return found
-
 
 def _places(view: View, rows: Rows) -> NDArray[np.float32]:
     """Where things are: with who holds them, where they have been put, or where the home has them."""
@@ -242,24 +222,6 @@ def _places(view: View, rows: Rows) -> NDArray[np.float32]:
     return found
 
 
-def check(goal: Goal, most: int) -> None:
-    """Refuse a goal that has no rows of `goal`.
-
-    Raises:
-        HearthError: BAD_ARGUMENT.
-    """
-    if goal.parts or any(literal.name not in {*STATE_ID, *RELATION_ID, HOLDS} for literal, _ in goal):
-        raise HearthError.of(Code.BAD_ARGUMENT, f"a goal as an array has literals about states and relations: {goal}")
-    if len(goal.counts) > most:
-        raise _too_many("literals", len(goal.counts), most)
-
-
-def class_number(name: str, knowledge: Knowledge) -> int:
-    """The number of a class: 2 + its published id; 1 where the knowledge has none of that name."""
-    known = knowledge.object_class(name)
-    return UNKNOWN_CLASS if known is None else 2 + known.id
-
-
 @lru_cache(maxsize=8)
 def _categories(knowledge: Knowledge) -> dict[str, int]:
     names = sorted({each.category for each in knowledge.objects.values()} | {"Characters"})
@@ -273,26 +235,6 @@ def _pose(pose: Pose) -> tuple[float, ...]:
         return (1.0, 0.0, 0.0, 0.0, 0.0, *rest)
     yaw = math.radians(place.yaw)
     return (1.0, place.x, place.z, math.sin(yaw), math.cos(yaw), *rest)
-
-
-def _literal(literal: Literal[Name], slots: Slots, knowledge: Knowledge) -> tuple[int, ...]:
-    state = len(literal.terms) == 1
-    predicate = STATE_ID[literal.name] if state else RELATION_ID.get(literal.name, len(RELATIONS))
-    terms = [number for term in literal.terms for number in _term(term, slots, knowledge)]
-    return (STATE if state else RELATION, predicate, literal.negated, *terms, *[0] * (4 - len(terms)))
-
-
-def _term(term: Name, slots: Slots, knowledge: Knowledge) -> tuple[int, int]:
-    """(class, slot + 1) of a term of a goal."""
-    home = slots.home
-    if isinstance(term, int):
-        i = home.index[term]
-        return class_number(home.classes[i], knowledge), int(slots.by_index[i]) + 1
-    name, _, number = term.partition(":")
-    if name != AGENT:
-        return class_number(term, knowledge), 0
-    i = home.agents[int(number)] if number else -1
-    return class_number(CHARACTER_CLASS, knowledge), int(slots.by_index[i]) + 1 if i >= 0 else 0
 
 
 def _too_many(what: str, number: int, most: int) -> HearthError:

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from hearth.challenges.action_codes import ActionCode, Listed, Number, Triples, played, str_step
+from hearth.challenges.goal_rows import check
 from hearth.challenges.play import MOST_TICKS
 from hearth.challenges.rewards import Rewards
-from hearth.challenges.seen_arrays import Arrays, Encoder, Rows, Sizes, check
+from hearth.challenges.seen_arrays import Arrays, Encoder, Rows, Sizes
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal

@@ -142,10 +142,10 @@ class Waiting:
 def _channel(seat: _Seat, how: _How, stack: ExitStack) -> Channel:
     import shlex
 
-    from hearth.challenges.channels import Channel, Listener, ProcessChannel
+    from hearth.challenges.channels import Listener, ProcessChannel, StandardChannel
 
     if seat.spec == STDIO:
-        return Channel(0, 1)
+        return StandardChannel()
     kind, _, port = seat.spec.partition(":")
     if kind == LISTEN and (port.isdecimal() or seat.spec == LISTEN):
         listener = Listener(int(port or 0))

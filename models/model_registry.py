@@ -22,7 +22,7 @@ class Entry(NamedTuple):
     """
 
     place: str
-    input: Literal["text", "sketch", "film"]
+    input: Literal["text", "sketch", "film", "episode"]
     line: str
     source: str
     settings: dict[str, Any] = {}  # noqa: RUF012
@@ -70,6 +70,25 @@ MODELS: dict[str, Entry] = {
         "The same; it reads the description beside the sketch.",
         "ours",
         {"text": True},
+    ),
+    "goal-inference": Entry(
+        "watching.goal_inference:GoalInference",
+        "film",
+        "What somebody wants, from where things were seen; `challenge learn` trains it.",
+        "thesis B.3.1",
+    ),
+    "helping-subgoals": Entry(
+        "helping.policies:HelpingPolicy",
+        "episode",
+        "Hybrid's choice of subgoals; `challenge learn --what subgoals` trains it.",
+        "thesis B.3.5",
+    ),
+    "helping-actions": Entry(
+        "helping.policies:HelpingPolicy",
+        "episode",
+        "HRL's choice of actions for a subgoal; `challenge learn --what actions` trains it.",
+        "thesis B.3.4",
+        {"chooses": "actions"},
     ),
     "mle": Entry(
         "text.text_models:TextModel",

@@ -67,6 +67,7 @@ class Code(StrEnum):
     NOT_HOLDING = "NOT_HOLDING", 37
     NO_ORIGIN = "NO_ORIGIN", 38
     HELD_BY_OTHER = "HELD_BY_OTHER", 39
+    HELD_ALREADY = "HELD_ALREADY", 79
     # The object's state
     OCCUPIED = "OCCUPIED", 40
     INSIDE_CLOSED = "INSIDE_CLOSED", 41

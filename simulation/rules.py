@@ -17,12 +17,14 @@ class Rules(NamedTuple):
         watch_needs_on: watching something with a switch needs it ON (thesis 5.5.2); the release watches what is off.
         doors: a closed door on the only way between two rooms stops a walk; the release ignores doors.
         bodies: characters at places do not walk by metres through each other.
+        one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
     """
 
     origin: Literal["sensible", "release"] = "sensible"
     watch_needs_on: bool = True
     doors: bool = True
     bodies: bool = False
+    one_grip: bool = False
 
 
 DEFAULT = Rules()

@@ -34,6 +34,7 @@ HANDLERS: dict[Code, Handler] = {
 """Handlers by failure code; all that table A.4 names, and what it leaves out."""
 
 UNREPAIRABLE: dict[Code, str] = {
+    Code.HELD_ALREADY: "only challenges refuse it, and nothing is repaired there",
     Code.NOT_AFFORDED: "nothing done before makes an object fit for what it is not made for",
     Code.NOT_SIMULATED: "the action is never executed",
     Code.NO_PATH: "no door leads there, open or closed",

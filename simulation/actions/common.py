@@ -115,6 +115,11 @@ def need_close(world: World, agent: Agent, o: int, action: str = "") -> Failure 
     return refuse(world, Code.NOT_CLOSE, "the character close to it", "no CLOSE edge, direct or by one hop", o)
 
 
+def need_another(world: World, o: int, s: int) -> Failure | None:
+    """Refuse to do something with a thing and itself."""
+    return refuse(world, Code.NOT_AFFORDED, "two different things", "the same twice", o) if o == s else None
+
+
 def need_free_hand(world: World, agent: Agent, o: int, action: str = "") -> Failure | None:
     """Refuse when both hands hold something."""
     if not agent.right or not agent.left:

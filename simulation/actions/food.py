@@ -11,6 +11,7 @@ from hearth.simulation.actions.common import (
     free_hand,
     held,
     need_able,
+    need_another,
     need_close,
     need_holding,
     refuse,
@@ -52,7 +53,8 @@ def pour(world: World, number: int, o: int, s: int, rules: Rules) -> World | Fai
     """Pour o into s; water leaves the hand, other things stay in it."""
     agent = world.agents[number]
     failure = (
-        need_able(world, agent, o, "Pour")
+        need_another(world, o, s)
+        or need_able(world, agent, o, "Pour")
         or need_able(world, agent, s, "Pour", 1)
         or need_holding(world, agent, o)
         or need_close(world, agent, s)

@@ -11,6 +11,7 @@ from hearth.simulation.actions.common import (
     close,
     free_hand,
     held,
+    need_another,
     need_close,
     need_free_hand,
     need_holding,
@@ -67,7 +68,7 @@ def _grab(world: World, number: int, o: int, rules: Rules) -> World:
 def put_back(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
     """Put o on s; on another character, who needs a free hand, it is handed over."""
     agent = world.agents[number]
-    failure = need_holding(world, agent, o) or need_close(world, agent, s)
+    failure = need_another(world, o, s) or need_holding(world, agent, o) or need_close(world, agent, s)
     if failure is not None:
         return failure
     if world.home.characters >> s & 1 and s != agent.index:
@@ -78,7 +79,9 @@ def put_back(world: World, number: int, o: int, s: int, rules: Rules) -> World |
 def put_in(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
     """Put o into s, which must be open if it can be."""
     agent = world.agents[number]
-    failure = need_holding(world, agent, o) or need_close(world, agent, s) or need_open(world, s)
+    failure = (
+        need_another(world, o, s) or need_holding(world, agent, o) or need_close(world, agent, s) or need_open(world, s)
+    )
     if failure is not None:
         return failure
     return _put(world, number, (o, kinds.INSIDE, s), agent.origins)
@@ -172,10 +175,24 @@ def _returnable(s: Situation) -> Masks:
     return some(mask)
 
 
+def _grip(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+    """Grab o, which the rules may refuse where a hand holds it already."""
+    if rules.one_grip and world.agents[number].held >> o & 1:
+        return refuse(world, Code.HELD_ALREADY, "in neither hand", "held already", o)
+    return _GRAB.rule(world, number, o, s, rules)
+
+
+def _graspable(s: Situation) -> Masks:
+    masks = _GRAB.mask(s)
+    return some(masks[0] & ~s.held) if masks and s.rules.one_grip else masks
+
+
 _nobody_else = Check(_need_nobody_else, lambda s, _: ~s.held_by_others)
 
+_GRAB = checked("Grab", able, close, reachable, free_hand, _nobody_else, effect=_grab)
+
 ACTIONS = (
-    checked("Grab", able, close, reachable, free_hand, _nobody_else, effect=_grab),
+    Action("Grab", _grip, _graspable),
     Action("PutBack", put_back, _putable_on),
     Action("PutIn", put_in, _putable_in),
     Action("PutObjBack", put_obj_back, _returnable),

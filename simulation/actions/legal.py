@@ -27,7 +27,7 @@ class Legal:
     Attributes:
         home: whose nodes the masks are about.
         agent: whose instructions.
-        masks: action -> masks, for the executed actions that can be done.
+        masks: action -> masks, for the executed actions that can be done. Of two arguments any two different nodes.
     """
 
     home: Home
@@ -38,26 +38,28 @@ class Legal:
         masks = self.masks.get(instruction.action)
         if masks is None or len(masks) != len(instruction.objects) or instruction.agent != self.agent:
             return False
-        index = self.home.index
-        return all(
-            ref.node in index and mask >> index[ref.node] & 1
-            for ref, mask in zip(instruction.objects, masks, strict=True)
-        )
+        index, nodes = self.home.index, [ref.node for ref in instruction.objects]
+        if len(set(nodes)) < len(nodes):
+            return False
+        return all(node in index and mask >> index[node] & 1 for node, mask in zip(nodes, masks, strict=True))
 
     def __iter__(self) -> Iterator[Step]:
         """Instructions by action name, then node ids; made one by one as they are asked for."""
         for action in sorted(self.masks):
             for objects in product(*map(self._references, self.masks[action])):
-                yield Step(action, objects, self.agent)
+                if len({ref.node for ref in objects}) == len(objects):
+                    yield Step(action, objects, self.agent)
 
     def __len__(self) -> int:
-        total = 0
-        for masks in self.masks.values():
-            count = 1
-            for mask in masks:
-                count *= mask.bit_count()
-            total += count
-        return total
+        return sum(map(self.count, self.masks))
+
+    def count(self, action: str) -> int:
+        """How many instructions of an action there are; no thing is named twice in one."""
+        masks = self.masks.get(action, (0,))
+        count = masks[0].bit_count() if masks else 1
+        if len(masks) > 1:
+            count = count * masks[1].bit_count() - (masks[0] & masks[1]).bit_count()
+        return count
 
     def objects(self, action: str, position: int = 0) -> tuple[int, ...]:
         """Ids of the nodes that an argument of an action may be, ascending; none when it can't be done."""
@@ -109,6 +111,6 @@ def legal(
         if masks is not None:
             if keep != -1:
                 masks = tuple([mask & keep for mask in masks])
-            if all(masks):
+            if all(masks) and not (len(masks) > 1 and masks[0] == masks[1] and masks[0].bit_count() == 1):
                 found[name] = masks
     return Legal(world.home, agent, found)

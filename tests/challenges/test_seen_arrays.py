@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from hearth.challenges.action_codes import Listed, Triples, fixed_list, played, str_step
-from hearth.challenges.seen_arrays import AGENT_COLUMNS, GOAL_COLUMNS, Encoder, Sizes, class_number
+from hearth.challenges.goal_rows import GOAL_COLUMNS, JOINS, class_number
+from hearth.challenges.seen_arrays import AGENT_COLUMNS, Encoder, Sizes
 from hearth.challenges.session import opening
 from hearth.challenges.slots import Slots
 from hearth.kb.loading.load import default
@@ -40,14 +41,15 @@ def moments(maple):
     env.restore(world)
     progress = Progress.start(goal, world)
     for number in range(120):
-        steps: dict[int, Step] = {}
+        steps: dict[int, Step | None] = {}
         for agent in (0, 1):
             legal = env.legal(agent, actions=NAMES)
             if number % 10 == 0:
                 found.append((env.world, env.observe(agent), legal, progress))
             action = chooser.choice(sorted(legal.masks))
             nodes = [chooser.choice(legal.objects(action, position)) for position in range(len(legal.masks[action]))]
-            steps[agent] = next(s for s in legal if s.action == action and [r.node for r in s.objects] == nodes)
+            every = (s for s in legal if s.action == action and [r.node for r in s.objects] == nodes)
+            steps[agent] = next(every, None)  # none is about one thing twice
         tick = env.step(steps)
         progress = progress.then(tick.before, tick.world)
     return found
@@ -177,14 +179,17 @@ def test_masks_allow_what_is_legal_and_nothing_else(moments):
         count = 0
         for action in range(1, 1 + len(NAMES)):
             if masks["legal_actions"][action]:
-                count += int(np.prod(masks["legal_objects"][action].sum(axis=1)))
+                objects = masks["legal_objects"][action]
+                count += int(np.prod(objects.sum(axis=1)))
+                if world.home.knowledge.arity[NAMES[action - 1]] > 1:
+                    count -= int(objects.all(axis=0).sum())  # nothing is put on itself
         assert count == len(legal)
         assert masks_of(listed, legal, slots).sum() - 1 == sum(map(different, legal)) == slots.count(legal)
         for _ in range(200):
             number = [chooser.randrange(1, 1 + len(NAMES)), chooser.randrange(400), chooser.randrange(400)]
             step = triples.read(number, legal, slots)
             used = [*number[: 1 + len(step.objects)], *[0] * (2 - len(step.objects))]
-            assert permitted(used, masks) == (step in legal)
+            assert (permitted(used, masks) and different(step)) == (step in legal)
 
 
 def masks_of(code, legal, slots):
@@ -246,13 +251,33 @@ def test_slots_that_cannot_be_are_refused(maple, things, size, message):
         Slots.of(maple, size, things)
 
 
-def test_a_goal_that_has_no_rows_is_refused(maple, encoder):
+JOINED = (
+    "OPEN(microwave) and (CLOSED(fridge) or not (OPEN(fridge))) and exists x. (ON(x, table)) and Grab(agent, plate)"
+)
+
+
+def test_joined_parts_have_rows_that_name_the_row_of_their_word(maple, encoder):
     world, _ = opening(maple, GOAL)(0)
     env = Env(knowledge=maple.knowledge)
     env.restore(world)
-    goal = read_goal("CLOSED(fridge) or OPEN(fridge)", maple)
-    with pytest.raises(HearthError, match="goal as an array"):
-        encoder.arrays(env.observe(0), encoder.rows(world.home), Progress.start(goal, world))
+    goal = read_goal(JOINED, maple)
+    sizes = Sizes(SIZES.nodes, SIZES.edges, SIZES.agents, 12, SIZES.legal)
+    wide = Encoder(sizes, encoder.names, encoder.knowledge)
+    rows = wide.rows(world.home)
+    found = wide.arrays(env.observe(0), rows, Progress.start(goal, world))["goal"]
+    table = [dict(zip(GOAL_COLUMNS, map(int, row), strict=True)) for row in found if row[0]]
+    words = {number: JOINS[row["predicate"] - 1] for number, row in enumerate(table, 1) if row["kind"] == 3}
+    assert list(words.values()) == ["or", "not", "exists"]
+    by_word = {word: number for number, word in words.items()}
+    assert [(row["kind"], words.get(row["part"], ""), row["branch"]) for row in table] == [
+        (1, "", 0), (4, "", 0), (3, "", 0), (1, "or", 1), (3, "or", 2), (1, "not", 1), (3, "", 0), (2, "exists", 1),
+    ]  # fmt: skip
+    assert table[-1]["subject"] == SIZES.nodes + by_word["exists"] and not any(row["seen"] for row in table)
+    assert wide.spaces()["goal"].contains(found)
+    with pytest.raises(HearthError, match="8 literals for 6 rows"):
+        Encoder(Sizes(SIZES.nodes, literals=6), encoder.names, encoder.knowledge).arrays(
+            env.observe(0), rows, Progress.start(goal, world)
+        )
 
 
 def test_arrays_are_those_of_the_home_after_an_edit(maple, encoder):

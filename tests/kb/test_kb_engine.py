@@ -10,7 +10,7 @@ from oracles.facts import Facts
 from oracles.formulas import changes, first_failure
 from small_worlds import random_graph, random_step
 
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
@@ -110,6 +110,9 @@ def compare(knowledge, world, facts, step, where):
     failed = first_failure(knowledge, facts, action, binding)
     result = act(world, step, REPLAY)
     code = result.code if isinstance(result, Failure) else None
+    if len(set(step.objects)) < len(step.objects):  # of no action in the table
+        assert code == Code.NOT_AFFORDED, where
+        return None
     assert code == (failed.code if failed else None), (where, str(failed and failed.formula))
     if failed:
         return None

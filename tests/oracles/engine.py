@@ -164,6 +164,7 @@ def shut(w: World, x: int) -> bool:
 
 def put_back(w: World, o: int, s: int | None, options: Options) -> None:
     assert s is not None
+    need(o != s, Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)
     need(w.close(s), Code.NOT_CLOSE)
     put(w, o, s, "ON")
@@ -171,6 +172,7 @@ def put_back(w: World, o: int, s: int | None, options: Options) -> None:
 
 def put_in(w: World, o: int, s: int | None, options: Options) -> None:
     assert s is not None
+    need(o != s, Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)
     need(w.close(s), Code.NOT_CLOSE)
     need(not shut(w, s), Code.IS_CLOSED)
@@ -288,6 +290,7 @@ def cut(w: World, o: int, _: int | None, options: Options) -> None:
 
 def pour(w: World, o: int, s: int | None, options: Options) -> None:
     assert s is not None
+    need(o != s, Code.NOT_AFFORDED)
     need(w.has(o, "POURABLE", "DRINKABLE"), Code.NOT_AFFORDED)
     need(w.has(s, "RECIPIENT") or w.name[s] in ("hands_both", "sponge", "face"), Code.NOT_AFFORDED)
     need(o in w.held(), Code.NOT_HOLDING)

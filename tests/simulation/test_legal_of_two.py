@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from small_worlds import bound_step
 
@@ -48,3 +50,34 @@ def test_nothing_is_handed_to_who_has_both_hands_full():
     assert code(world(*one), hand) is None and hand in legal(world(*one), 0, DEFAULT)
     assert code(world(*one, both), hand) is not None
     assert hand not in legal(world(*one, both), 0, DEFAULT)
+
+
+@pytest.mark.parametrize("action", ["PutBack", "PutIn", "Pour"])
+def test_nothing_is_put_on_in_or_into_itself(action):
+    """One may put either of two held things on the other, but neither on itself."""
+    known = default()
+    mug = Node(4, "mug", "Props", ("GRABBABLE", "MOVABLE", "POURABLE", "DRINKABLE", "RECIPIENT"))
+    graph = EnvironmentGraph(
+        (KITCHEN, ME, mug, replace(mug, id=5)),
+        tuple(Edge(n, "INSIDE", 1) for n in (2, 4, 5))
+        + (Edge(2, "HOLDS_RH", 4), Edge(2, "HOLDS_LH", 5), Edge(2, "CLOSE", 4), Edge(2, "CLOSE", 5)),
+    )
+    start = World.start(Home.from_graph(graph, "", known))
+    itself, other = bound_step(action, [mug, mug], 0), bound_step(action, [mug, replace(mug, id=5)], 0)
+    found = legal(start, 0, DEFAULT)
+    listed = [tuple(ref.node for ref in each.objects) for each in found if each.action == action]
+    assert code(start, itself) is Code.NOT_AFFORDED and itself not in found
+    assert code(start, other) is None and other in found
+    assert (4, 5) in listed and (4, 4) not in listed and found.count(action) == len(listed)
+    assert len(found) == len(list(found))
+
+
+def test_what_one_holds_is_grabbed_again_only_by_the_releases_rule():
+    again, start = bound_step("Grab", [CUPS[0]], 0), world(Edge(2, "HOLDS_RH", 4))
+    after = act(start, again, DEFAULT)
+    assert isinstance(after, World) and after.agents[0].right == after.agents[0].left  # as the release has it
+    rules = DEFAULT._replace(one_grip=True)
+    refused = act(start, again, rules)
+    assert isinstance(refused, Failure) and refused.code is Code.HELD_ALREADY
+    assert again in legal(start, 0, DEFAULT) and again not in legal(start, 0, rules)
+    assert not isinstance(act(start, bound_step("Grab", [CUPS[1]], 0), rules), Failure)

@@ -1,0 +1,141 @@
+"""Policies over subgoals and over actions: their settings, what they choose, their checkpoints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+from hearth.models.helping.scenes import Pair, Scene, Trace, Words, packed
+from hearth.models.interface import Settings
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+if TYPE_CHECKING:
+    import numpy as np
+    from torch import nn
+
+    from hearth.models.checkpoint import Checkpoint
+    from hearth.models.helping.policy_networks import State
+
+NAMES = {"subgoals": "helping-subgoals", "actions": "helping-actions"}
+"""The models of the registry, by what they choose."""
+
+
+@dataclass(frozen=True)
+class HelpingPolicy(Settings):
+    """Settings of a policy.
+
+    Attributes:
+        chooses: `subgoals` (figure B-8) or `actions` (figure B-7).
+        width, heads: of its network.
+    """
+
+    chooses: str = "subgoals"
+    width: int = 128
+    heads: int = 4
+
+    def network(self, words: Words) -> nn.Module:
+        """A network that has learnt nothing."""
+        from hearth.models.helping import policy_networks
+
+        made = policy_networks.SubgoalNetwork if self.chooses == "subgoals" else policy_networks.ActionNetwork
+        return made(len(words.things), len(words.places), self.width, self.heads)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedPolicy:
+        """The trained policy of a checkpoint."""
+        import torch
+
+        settings = cls.of(checkpoint.settings)
+        words = Words(*(tuple(map(str, checkpoint.content[name])) for name in Words._fields))
+        network = settings.network(words)
+        network.load_state_dict({name: torch.as_tensor(value.copy()) for name, value in checkpoint.weights.items()})
+        network.eval()
+        return TrainedPolicy(settings, words, network, dict(checkpoint.trained))
+
+
+@dataclass(frozen=True)
+class TrainedPolicy:
+    """A policy that may be asked.
+
+    Attributes:
+        settings: its own.
+        words: what its subgoals are about.
+        network: with its weights.
+        facts: how it was trained.
+    """
+
+    settings: HelpingPolicy
+    words: Words
+    network: nn.Module
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    def choose(self, scene: Scene, state: State | None, chooser: Random) -> tuple[Pair, State]:
+        """What is drawn by the policy's probabilities, and the state with which the next choice is made."""
+        import torch
+
+        with torch.no_grad():
+            seen = self.network(packed([Trace((scene,), (), ())]), state)
+            first = _drawn(seen.first[0, 0].double().exp().numpy(), chooser)
+            second = _drawn(seen.second[0, 0, first].double().exp().numpy(), chooser)
+        return (first, second), seen.state
+
+    def with_facts(self, facts: Mapping[str, Any]) -> TrainedPolicy:
+        """The same, with how it was trained."""
+        return replace(self, facts=facts)
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        from hearth.models.checkpoint import Checkpoint
+
+        weights = {name: value.detach().numpy() for name, value in self.network.state_dict().items()}
+        content = {name: list(words) for name, words in self.words._asdict().items()}
+        return Checkpoint(NAMES[self.settings.chooses], asdict(self.settings), content, weights, self.facts)
+
+
+def untrained(chooses: str, words: Words, seed: int) -> TrainedPolicy:
+    """A policy whose network has learnt nothing; equal for equal seeds."""
+    import torch
+
+    from hearth.models.devices import device
+
+    device()
+    torch.manual_seed(seed)
+    settings = HelpingPolicy(chooses)
+    return TrainedPolicy(settings, words, settings.network(words))
+
+
+def _drawn(probabilities: np.ndarray, chooser: Random) -> int:
+    """A number drawn by probabilities."""
+    import numpy as np
+
+    total = np.cumsum(probabilities)
+    return min(int(np.searchsorted(total, chooser.random() * total[-1], side="right")), len(total) - 1)
+
+
+@lru_cache(maxsize=8)
+def restored(model: str, chooses: str) -> TrainedPolicy:
+    """A trained policy; read once.
+
+    Args:
+        model: a checkpoint's folder, or the name of one that comes with Hearth.
+        chooses: what it is to choose.
+
+    Raises:
+        HearthError: MISSING_FILE, if there is none or the extra is not installed; BAD_ARGUMENT: it chooses something
+            else; DAMAGED_FILE.
+    """
+    from hearth.models.devices import device
+    from hearth.models.model_registry import restore
+
+    device()
+    name, found = restore(model if not Path(model).exists() else Path(model))
+    if name != NAMES[chooses]:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"a checkpoint of `{name}` chooses no {chooses}", file=model)
+    policy: Any = found
+    checked: TrainedPolicy = policy
+    return checked
