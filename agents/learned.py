@@ -10,7 +10,7 @@ from hearth.agents.hierarchical import HELPING
 from hearth.agents.human_like import HumanLike
 from hearth.agents.scene_reading import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal
-from hearth.models.helping.scenes import Pair, Scene
+from hearth.models.helping.policy_inputs import Pair, Scene
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal

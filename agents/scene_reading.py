@@ -9,7 +9,7 @@ from functools import lru_cache
 from hearth.agents.belief import containers
 from hearth.agents.subgoals import Aims, Missing, Subgoal, Wanted
 from hearth.kb.knowledge import Knowledge
-from hearth.models.helping.scenes import MOST_CLASSES, Pair, Scene, Words
+from hearth.models.helping.policy_inputs import MOST_CLASSES, Pair, Scene, Words
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT
 from hearth.schemas.program import ObjectRef, Step
@@ -162,7 +162,7 @@ PUT = 4
 
 @lru_cache(maxsize=8)
 def _kinds(knowledge: Knowledge) -> dict[str, int]:
-    """The kind of each action that a policy may choose (`models.helping.scenes.KINDS`)."""
+    """The kind of each action that a policy may choose (`models.helping.policy_inputs.KINDS`)."""
     found: dict[str, int] = {}
     for name in knowledge.group("played"):
         if name in knowledge.group("goes"):

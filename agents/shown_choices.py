@@ -8,7 +8,7 @@ from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.learned import Choice
 from hearth.agents.scene_reading import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal
-from hearth.models.helping.scenes import Words
+from hearth.models.helping.policy_inputs import Words
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal

@@ -96,6 +96,7 @@ class Channel:
             HearthError: TIMED_OUT; DISCONNECTED.
         """
         with self._changed:
+            self._need_open()
             self._flush(deadline)
             self._unsent += line + b"\n"
             self._changed.notify_all()
@@ -104,7 +105,8 @@ class Channel:
     def _flush(self, deadline: float) -> None:
         """Wait until nothing is unsent."""
         done = self._changed.wait_for(lambda: self._ended or not self._unsent, _left(deadline))
-        self._need_open()
+        if self._unsent:
+            self._need_open()
         if not done:
             raise HearthError.of(Code.TIMED_OUT, "the agent does not read what it is sent")
 

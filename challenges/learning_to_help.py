@@ -27,7 +27,7 @@ from hearth.challenges.rewards import HIERARCHICAL
 from hearth.challenges.task_files import suite
 from hearth.challenges.tasks import Task
 from hearth.models.helping.policies import TrainedPolicy, untrained
-from hearth.models.helping.scenes import Batch, Trace, Words, packed
+from hearth.models.helping.policy_inputs import Batch, Trace, Words, packed
 from hearth.models.interface import Training
 from hearth.schemas.rng import derive
 from hearth.storage.files import value_digest
@@ -68,7 +68,7 @@ class Effort:
     rate: float = 1e-4
 
 
-EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=15, epochs=5)}
+EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=10, epochs=3, updates=8)}
 """What two cores give in some minutes."""
 
 

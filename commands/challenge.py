@@ -218,37 +218,57 @@ def watch(
 @app.command()
 def learn(
     name: str,
+    what: str = "goals",
     *,
     out: Path,
     limit: int | None = None,
     rate: float = 1.0,
-    epochs: int = 12,
+    epochs: int | None = None,
     seed: int = 0,
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Train the network that infers goals from states on a challenge's demonstrations, and write a checkpoint.
+    """Train what helpers have learnt, and write a checkpoint: goals, subgoals or actions.
+
+    `goals` infers goals from the states of demonstrations. `subgoals` is Hybrid's policy and `actions` HRL's second:
+    both imitate the planner on tasks of training, and go on by A2C.
+
+    \b
+    Examples:
+      python cli.py challenge learn wah --out build/goal-inference
+      python cli.py challenge watch test-1.json --from states --model build/goal-inference
+      python cli.py challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
+    """
+    from hearth.challenges.learning import train
+    from hearth.commands.progress_line import bar
+    from hearth.kb.loading.load import default
+
+    with bar("episodes") as seen, bar("epochs") as passed:
+        facts = train(name, what, out, default, seed, limit, rate, epochs, workers, seen, passed)
+    shown = {"out": out, **{key: value for key, value in facts.items() if not isinstance(value, dict)}}
+    if as_json:
+        output.emit(shown)
+    else:
+        output.figures(shown)
+
+
+@app.command()
+def curves(checkpoints: list[Path], *, out: Path, as_json: bool = False) -> None:
+    """Draw how trainings went, one line for each checkpoint: seeds of one model belong together.
 
     \b
     Example:
-      python cli.py challenge learn wah --out build/goal-inference
-      python cli.py challenge watch test-1.json --from states --model build/goal-inference
+      python cli.py challenge curves build/subgoals-0 build/subgoals-1 build/subgoals-2 --out curves.svg
     """
-    from hearth.challenges.learning_to_watch import learn as trained
-    from hearth.challenges.learning_to_watch import write
-    from hearth.commands.progress_line import bar
-    from hearth.kb.loading.load import default
-    from hearth.models.interface import Training
+    from hearth.analysis.training_curves import drawn, runs
 
-    how = Training(seed=seed, epochs=epochs, patience=0)
-    with bar("demonstrations") as seen, bar("epochs") as passed:
-        found = trained(name, default, how, limit, rate, workers, seen, passed)
-    write(found, out)
-    facts = {"out": out, **{key: value for key, value in found.facts.items() if not isinstance(value, dict)}}
+    found = runs(checkpoints)
+    out.write_text(drawn(found), encoding="utf-8")
+    rows = [run.row() for run in found]
     if as_json:
-        output.emit(facts)
+        output.emit(rows)
     else:
-        output.figures(facts)
+        output.records(rows)
 
 
 @app.command()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -157,21 +157,55 @@ def _libraries() -> dict[str, str]:
 def _card(checkpoint: Checkpoint) -> str:
     """The card: YAML for machines, then what the model is, what it was trained on, and what it is not for."""
     trained = checkpoint.trained
-    facts = [f"- {name}: {trained[name]}" for name in sorted(trained) if name not in ("curves", "losses")]
+    about = _ABOUT.get(checkpoint.model.partition("-")[0], _ABOUT[""])
+    lists = ("curves", "losses", "imitation")
+    facts = [f"- {name}: {trained[name]}" for name in sorted(trained) if name not in lists]
     lines = [
         "---",
         f"license: {LICENCE.lower()}",
         "library_name: hearth",
-        "tags: [household, program-synthesis]",
+        f"tags: [household, {about.tag}]",
         "---",
         f"# {checkpoint.model}",
         "",
-        "A model of Hearth that writes programs for household activities.",
+        about.what,
         "",
         *facts,
         "",
-        "It is for research on programs in simulated homes. It knows English descriptions of activities like those of",
-        "its dataset; for others it writes wrong programs. It is not for acting in real homes.",
+        *about.limits,
         "",
     ]
     return "\n".join(lines)
+
+
+class _About(NamedTuple):
+    """What a card says of a kind of model: a tag, a line, and what it is not for."""
+
+    tag: str
+    what: str
+    limits: tuple[str, ...]
+
+
+_NOT_REAL = "It is for research on people and helpers in simulated homes, and not for acting in real homes."
+
+_ABOUT = {
+    "": _About(
+        "program-synthesis",
+        "A model of Hearth that writes programs for household activities.",
+        (
+            "It is for research on programs in simulated homes. It knows English descriptions of activities like those",
+            "of its dataset; for others it writes wrong programs. It is not for acting in real homes.",
+        ),
+    ),
+    "goal": _About(
+        "goal-inference",
+        "A model of Hearth that infers what somebody wants from where things were seen (thesis 6.4, B.3.1).",
+        (_NOT_REAL, "It knows the predicates of one challenge; other goals it reads as the nearest of those."),
+    ),
+    "helping": _About(
+        "reinforcement-learning",
+        "A policy of Hearth that helps somebody reach a goal in a home (thesis 6.5.2, B.3).",
+        (_NOT_REAL, "It knows the things and furniture of one challenge's goals, and helps with no others."),
+    ),
+}
+"""By the first word of a model's name."""

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor, nn
 
+from hearth.models.helping.policy_inputs import Batch
 from hearth.models.helping.policy_networks import Outlook
-from hearth.models.helping.scenes import Batch
 
 VALUE, ENTROPY, CLOSE = 0.25, 0.01, 0.1
 """Weights of the parts of a loss: the error of expected returns, the entropy of choices, the prediction of reach."""

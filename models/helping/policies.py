@@ -9,7 +9,7 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from hearth.models.helping.scenes import Pair, Scene, Trace, Words, packed
+from hearth.models.helping.policy_inputs import Pair, Scene, Trace, Words, packed
 from hearth.models.interface import Settings
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from hearth.models.helping.scenes import FEATURES, KINDS, MOST_CLASSES, Batch
+from hearth.models.helping.policy_inputs import FEATURES, KINDS, MOST_CLASSES, Batch
 
 State = tuple[Tensor, Tensor]
 """Of the LSTM."""

@@ -22,7 +22,9 @@ BODY_RADIUS = 0.25
 """Metres around a character that others keep out of."""
 
 MOST_FIELDS = 1_000
-"""Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells."""
+"""Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells. They are not stored beside homes: reading
+them saves some .1 s for each home and process, and takes 12 MB each (`benchmarks/stored_fields.py`).
+"""
 
 
 class Field(NamedTuple):

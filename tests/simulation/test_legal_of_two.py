@@ -57,11 +57,9 @@ def test_nothing_is_put_on_in_or_into_itself(action):
     """One may put either of two held things on the other, but neither on itself."""
     known = default()
     mug = Node(4, "mug", "Props", ("GRABBABLE", "MOVABLE", "POURABLE", "DRINKABLE", "RECIPIENT"))
-    graph = EnvironmentGraph(
-        (KITCHEN, ME, mug, replace(mug, id=5)),
-        tuple(Edge(n, "INSIDE", 1) for n in (2, 4, 5))
-        + (Edge(2, "HOLDS_RH", 4), Edge(2, "HOLDS_LH", 5), Edge(2, "CLOSE", 4), Edge(2, "CLOSE", 5)),
-    )
+    edges = [Edge(n, "INSIDE", 1) for n in (2, 4, 5)] + [Edge(2, "CLOSE", n) for n in (4, 5)]
+    edges += [Edge(2, "HOLDS_RH", 4), Edge(2, "HOLDS_LH", 5)]
+    graph = EnvironmentGraph((KITCHEN, ME, mug, replace(mug, id=5)), tuple(edges))
     start = World.start(Home.from_graph(graph, "", known))
     itself, other = bound_step(action, [mug, mug], 0), bound_step(action, [mug, replace(mug, id=5)], 0)
     found = legal(start, 0, DEFAULT)

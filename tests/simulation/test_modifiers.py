@@ -17,6 +17,7 @@ from hearth.simulation.episode import Episode, read, write
 from hearth.simulation.instructions import instruction_of
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.world.digest import digest
 from hearth.simulation.world.world import World
 
 
@@ -73,6 +74,8 @@ def test_a_thing_is_put_on_a_point_of_its_place(beside, maple):
     x, _, z = table.box.center
     put = act(held, step(maple, f"[PutBack] <milk> (1) <{name}> (1) {{at={x + 0.1:.2f},{z:.2f}}}"))
     assert isinstance(put, World), put
+    anywhere = act(held, step(maple, f"[PutBack] <milk> (1) <{name}> (1)"))
+    assert isinstance(anywhere, World) and digest(put) == digest(anywhere)  # points are for films
     refused = act(held, step(maple, f"[PutBack] <milk> (1) <{name}> (1) {{at={x + 9:.2f},{z:.2f}}}"))
     assert isinstance(refused, Failure) and refused.code is Code.NO_PLACE
 

@@ -1,0 +1,71 @@
+"""Training of what helpers have learnt, and the checkpoints that come of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from hearth.challenges.episodes import Known
+from hearth.models.interface import Training
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, unseen
+
+WHAT = ("goals", "subgoals", "actions")
+"""What may be learnt."""
+
+PASSES = 12
+"""Over the demonstrations, where goals are learnt."""
+
+
+def train(
+    name: str,
+    what: str,
+    out: Path,
+    known: Known,
+    seed: int = 0,
+    limit: int | None = None,
+    rate: float = 1.0,
+    epochs: int | None = None,
+    workers: int = 1,
+    seen: Seen = unseen,
+    trained: Seen = unseen,
+) -> Mapping[str, Any]:
+    """Train, and write a checkpoint; how it was trained.
+
+    Args:
+        name: of the challenge.
+        what: one of `WHAT`.
+        out: the checkpoint's folder.
+        known: gives the knowledge.
+        seed: of all that is drawn.
+        limit: the first demonstrations, or tasks, only.
+        rate: of habits in demonstrations of goals (see `playing_demonstrations.Wish`).
+        epochs: passes over demonstrations, or epochs of practice; as they come where None.
+        workers: processes that play episodes.
+        seen, trained: report progress: episodes and epochs done.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: nothing of that name is learnt; MISSING_FILE: the extra `models` is not installed.
+    """
+    from hearth.models.checkpoint import save
+
+    if what not in WHAT:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"nobody learns `{what[:40]}`", suggestion=", ".join(WHAT))
+    found: Any
+    if what == "goals":
+        from hearth.challenges import learning_to_watch
+
+        how = Training(seed=seed, epochs=epochs or PASSES, patience=0)
+        found = learning_to_watch.learn(name, known, how, limit, rate, workers, seen, trained)
+    else:
+        from hearth.challenges import learning_to_help
+
+        effort = learning_to_help.EFFORTS[what]
+        effort = effort if epochs is None else replace(effort, epochs=epochs)
+        found = learning_to_help.learn(name, what, known, Training(seed=seed), effort, limit, workers, seen, trained)
+    save(found.checkpoint(), out)
+    facts: Mapping[str, Any] = found.facts
+    return facts
