@@ -68,7 +68,7 @@ class Effort:
     rate: float = 1e-4
 
 
-EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=10, epochs=3, updates=8)}
+EFFORTS = {"subgoals": Effort(), "actions": Effort(imitation=9, epochs=2, updates=5)}
 """What two cores give in some minutes."""
 
 

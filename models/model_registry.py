@@ -18,7 +18,8 @@ TRAINED = Path(__file__).parent / "trained"
 class Entry(NamedTuple):
     """A model: the place of its settings (`module:Class` of `hearth.models`), its input, its line, its source.
 
-    `learns` is false for one that needs no training; `output` is `sketch` for one that learns to write sketches.
+    `learns` is false for one that needs no training; `output` is `sketch` for one that learns to write sketches;
+    `by` is the command that trains one that writes no programs.
     """
 
     place: str
@@ -28,6 +29,7 @@ class Entry(NamedTuple):
     settings: dict[str, Any] = {}  # noqa: RUF012
     learns: bool = True
     output: Literal["program", "sketch"] = "program"
+    by: str = ""
 
 
 MODELS: dict[str, Entry] = {
@@ -74,21 +76,24 @@ MODELS: dict[str, Entry] = {
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",
         "film",
-        "What somebody wants, from where things were seen; `challenge learn` trains it.",
+        "What somebody wants, from where things were seen.",
         "thesis B.3.1",
+        by="challenge learn wah",
     ),
     "helping-subgoals": Entry(
         "helping.policies:HelpingPolicy",
         "episode",
-        "Hybrid's choice of subgoals; `challenge learn --what subgoals` trains it.",
+        "Hybrid's choice of subgoals.",
         "thesis B.3.5",
+        by="challenge learn wah --what subgoals",
     ),
     "helping-actions": Entry(
         "helping.policies:HelpingPolicy",
         "episode",
-        "HRL's choice of actions for a subgoal; `challenge learn --what actions` trains it.",
+        "HRL's choice of actions for a subgoal.",
         "thesis B.3.4",
         {"chooses": "actions"},
+        by="challenge learn wah --what actions",
     ),
     "mle": Entry(
         "text.text_models:TextModel",
@@ -151,7 +156,8 @@ def settings_of(name: str, **changed: Any) -> Model:
     """The settings of a model, its own or with some changed.
 
     Raises:
-        HearthError: UNKNOWN_ID, if there is no such model; MISSING_FILE, if the extra is not installed.
+        HearthError: UNKNOWN_ID, if there is no such model; BAD_ARGUMENT, if it writes no programs; MISSING_FILE, if the
+            extra is not installed.
     """
     entry = MODELS.get(name)
     if entry is None:
@@ -160,8 +166,14 @@ def settings_of(name: str, **changed: Any) -> Model:
         near = difflib.get_close_matches(name, MODELS, n=1)
         suggestion = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(MODELS)}"
         raise HearthError.of(Code.UNKNOWN_ID, f"no model is called `{name}`", suggestion=suggestion)
+    if entry.by:
+        raise _writes_nothing(name, f"python cli.py {entry.by} --out FOLDER trains it")
     made: Model = _class(entry)(**{**entry.settings, **changed})
     return made
+
+
+def _writes_nothing(name: str, remedy: str) -> HearthError:
+    return HearthError.of(Code.BAD_ARGUMENT, f"`{name}` writes no programs", suggestion=remedy)
 
 
 def _class(entry: Entry) -> Any:
@@ -181,18 +193,32 @@ def trained_names() -> list[str]:
 
 
 def restore(model: str | Path) -> tuple[str, Trained]:
-    """A trained model and its name in the registry: of a checkpoint's folder, or of one that comes with Hearth.
+    """A trained model that writes programs, and its name: of a checkpoint's folder, or of one that comes
+    with Hearth.
+
+    Raises:
+        HearthError: as of `restore_any`; BAD_ARGUMENT, if it writes no programs.
+    """
+    name, trained = restore_any(model)
+    if MODELS[name].by:
+        raise _writes_nothing(str(model), "python cli.py challenge run TASKS --helper hybrid uses such models")
+    found: Trained = trained
+    return name, found
+
+
+def restore_any(model: str | Path) -> tuple[str, Any]:
+    """The same of any model.
 
     Raises:
         HearthError: there is none, it is broken or of another version, or the extra is not installed.
     """
     if str(model) in MODELS and not MODELS[str(model)].learns and not Path(model).exists():
-        ready: Trained = _class(MODELS[str(model)])()
-        return str(model), ready
+        return str(model), _class(MODELS[str(model)])()
     folder = TRAINED / str(model) if str(model) in trained_names() else Path(model)
     if str(model) in MODELS and not folder.exists():
         message = f"`{model}` has not been trained"
-        suggestion = f"python cli.py model train {model} DATASET --out FOLDER, and name that folder"
+        command = MODELS[str(model)].by or f"model train {model} DATASET"
+        suggestion = f"python cli.py {command} --out FOLDER, and name that folder"
         raise HearthError.of(Code.MISSING_FILE, message, suggestion=suggestion)
     checkpoint = load(folder)
     entry = MODELS.get(checkpoint.model)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
-from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -48,13 +47,13 @@ class HelpingPolicy(Settings):
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedPolicy:
         """The trained policy of a checkpoint."""
-        import torch
+        from hearth.models.filled import filled
 
         settings = cls.of(checkpoint.settings)
+        if settings.chooses not in NAMES or NAMES[settings.chooses] != checkpoint.model:
+            raise ValueError(f"a policy of `{settings.chooses[:40]}`")
         words = Words(*(tuple(map(str, checkpoint.content[name])) for name in Words._fields))
-        network = settings.network(words)
-        network.load_state_dict({name: torch.as_tensor(value.copy()) for name, value in checkpoint.weights.items()})
-        network.eval()
+        network = filled(lambda: settings.network(words), checkpoint.weights)
         return TrainedPolicy(settings, words, network, dict(checkpoint.trained))
 
 
@@ -130,12 +129,11 @@ def restored(model: str, chooses: str) -> TrainedPolicy:
             else; DAMAGED_FILE.
     """
     from hearth.models.devices import device
-    from hearth.models.model_registry import restore
+    from hearth.models.model_registry import restore_any
 
     device()
-    name, found = restore(model if not Path(model).exists() else Path(model))
+    name, found = restore_any(model)
     if name != NAMES[chooses]:
         raise HearthError.of(Code.BAD_ARGUMENT, f"a checkpoint of `{name}` chooses no {chooses}", file=model)
-    policy: Any = found
-    checked: TrainedPolicy = policy
-    return checked
+    policy: TrainedPolicy = found
+    return policy

@@ -27,8 +27,16 @@ def checkpoint(made, tmp_path_factory):
 def test_list():
     rows = json.loads(call("list", "--json").stdout)
     assert {"name", "input"} <= set(rows[0])
-    assert {row["input"] for row in rows} <= {"text", "sketch", "film"}
+    assert {row["input"] for row in rows} <= {"text", "sketch", "film", "episode"}
+    known = {row["name"]: row for row in rows}
+    assert known["goal-inference"]["trained"] and known["helping-subgoals"]["trained"]
     assert "nearest" in call("list").output
+
+
+@pytest.mark.parametrize("words", [("train", "goal-inference", "X", "--out", "Y"), ("show", "goal-inference", "sit")])
+def test_what_writes_no_programs_says_what_it_is_for(words, tmp_path):
+    result = call(*words)
+    assert result.exit_code == 1 and "writes no programs" in str(result.output) + str(result.stderr or "")
 
 
 def test_predictions_are_what_score_reads(checkpoint, made, tmp_path):
