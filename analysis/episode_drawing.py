@@ -9,6 +9,7 @@ from hearth.challenges.episodes import Record, replayed, start_of
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.homes.drawing import Trail
+from hearth.homes.plan_panels import Panel
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -65,6 +66,32 @@ def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
                 moments.append(pose.point)
         found.append(Trail(tuple(points), COLOURS[number % len(COLOURS)], tuple(moments)))
     return found
+
+
+def panels_of(found: Results, task: Task, record: Record, knowledge: Knowledge) -> list[Panel]:
+    """An episode as a drawing; one with a helper beside that of the main agent alone, where the run has it.
+
+    Raises:
+        HearthError: NOT_RENDERED: the agents have no places.
+    """
+    helper = found.header.lineup.helper
+    alone = [each for each in found.records if (each.task, each.seed) == (task.id, record.seed) and not each.helped]
+    records = [*alone, record] if record.helped else [record]
+    return [_panel(each, *ticks_of(task, each, knowledge), helper) for each in records]
+
+
+def _panel(record: Record, start: World, ticks: Sequence[Tick], helper: str) -> Panel:
+    found = tuple(trails(start, ticks))
+    reached = "goal reached" if record.metrics["success"] else "goal not reached"
+    title = f"{'with ' + helper if record.helped else 'alone'}: {reached} after {record.metrics['ticks']} ticks"
+    return Panel(title, found, ("main agent", f"helper ({helper})")[: len(found)])
+
+
+def furniture(task: Task, world: World) -> set[str]:
+    """The classes of furniture that a task's goal names."""
+    home = world.home
+    every = [term for literal, _ in task.goal_in(home) for term in literal.terms]
+    return {home.classes[home.index[term]] for term in every if isinstance(term, int)}
 
 
 def _handles(tick: Tick, number: int) -> bool:

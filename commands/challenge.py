@@ -315,26 +315,39 @@ def show(
     episode: int = 0,
     *,
     alone: bool = False,
+    belief: bool = False,
     out: Path | None = None,
     as_json: bool = False,
 ) -> None:
     """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6.
 
+    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
+    believes wanted things to be, as time goes by (figure B-3).
+
     \b
-    Example:
+    Examples:
       python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
+      python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
     """
-    from hearth.analysis.episode_drawing import episode_of, narrated, ticks_of, trails
+    from hearth.analysis import belief_drawing
+    from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of
     from hearth.challenges.result_files import read
-    from hearth.homes.drawing import write
+    from hearth.homes import plan_panels
     from hearth.homes.library import load_layout
     from hearth.kb.loading.load import default
 
     found, known = read(results), default()
     one, record = episode_of(found, str(results), task, episode, alone)
     start, ticks = ticks_of(one, record, known)
+    if belief:
+        beliefs = belief_drawing.followed(one, start, ticks)
+        if out is not None:
+            out.write_text(belief_drawing.drawn(beliefs), encoding="utf-8")
+        output.emit(beliefs) if as_json else output.records([each.row() for each in beliefs])
+        return
     if out is not None:
-        write(load_layout(one.home, known), out, trails(start, ticks))
+        panels = panels_of(found, one, record, known)
+        plan_panels.write(load_layout(one.home, known), out, panels, furniture(one, start))
     rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
     if as_json:
         output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})

@@ -1,8 +1,9 @@
 """A home's floor plan as a drawing: SVG written directly, PNG from the same shapes. North is up."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.sax.saxutils import escape
 
 from hearth.homes.geometry import Rect, bottom, footprint
@@ -23,7 +24,7 @@ ROOM_COLOURS = {
     "dining_room": "#f7ead8", "living_room": "#e6f0e0", "home_office": "#e4ebf5", "entrance_hall": "#efece6",
 }  # fmt: skip
 COLOURS = {"wall": "#3b3b3b", "door": "#8a5a2b", "window": "#6db3e8", "curtain": "#b58fc4", "mat": "#e3d2b8"}
-FURNITURE, HUNG, SMALL, INK = "#d3b28c", "#9fb3a0", "#c65b4a", "#222222"
+FURNITURE, HUNG, SMALL, INK, PERSON = "#d3b28c", "#9fb3a0", "#c65b4a", "#222222", "#3f6fd1"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ def shapes(layout: Layout) -> Iterator[Shape]:
     for thing in things:
         if thing.mount in ("item", "sunk"):
             yield Shape("rect", footprint(thing.box), SMALL if thing.on else "#7f7f7f", "#ffffff")
-    yield from _furniture(layout.character, "#3f6fd1")
+    yield from _furniture(layout.character, PERSON)
     for room in layout.plan.rooms:
         yield Shape("text", room.rect, "#00000077", text=room.name, size=0.24)
 
@@ -116,12 +117,13 @@ def svg(layout: Layout, trails: Sequence[Trail] = ()) -> str:
         f'viewBox="0 0 {area.width * SCALE:.1f} {area.depth * SCALE:.1f}" font-family="sans-serif">'
     )
     parts = [head, f"<title>{escape(layout.plan.name)}</title>", '<rect width="100%" height="100%" fill="#ffffff"/>']
-    parts.extend(_svg_shape(shape, area) for shape in shapes(layout))
-    parts.extend(part for trail in trails for part in _svg_trail(trail, area))
+    parts.extend(svg_shape(shape, area) for shape in shapes(layout))
+    parts.extend(part for trail in trails for part in svg_trail(trail, area))
     return "\n".join([*parts, "</svg>", ""])
 
 
-def _svg_shape(shape: Shape, area: Rect) -> str:
+def svg_shape(shape: Shape, area: Rect) -> str:
+    """A shape as SVG."""
     rect = shape.rect
     x, y = (rect.x0 - area.x0) * SCALE, (area.z1 - rect.z1) * SCALE
     if shape.kind == "text":
@@ -136,7 +138,9 @@ def _svg_shape(shape: Shape, area: Rect) -> str:
     return f'<rect x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{shape.fill}"{edge}/>'
 
 
-def _svg_trail(trail: Trail, area: Rect) -> Iterator[str]:
+def svg_trail(trail: Trail, area: Rect) -> Iterator[str]:
+    """A way and its moments as SVG."""
+
     def at(point: Spot) -> str:
         return f"{(point[0] - area.x0) * SCALE:.1f},{(area.z1 - point[1]) * SCALE:.1f}"
 
@@ -165,14 +169,19 @@ def write(layout: Layout, path: Path | str, trails: Sequence[Trail] = ()) -> Non
 
 def _write_png(layout: Layout, path: Path, trails: Sequence[Trail]) -> None:
     canvas = library("matplotlib.backends.backend_agg").FigureCanvasAgg
-    rectangle = library("matplotlib.patches").Rectangle
     area = bounds(layout)
     figure = library("matplotlib.figure").Figure(figsize=(area.width, area.depth), dpi=SCALE)
-    axes = figure.add_axes((0, 0, 1, 1))
+    paint(figure.add_axes((0, 0, 1, 1)), area, shapes(layout), trails)
+    canvas(figure).print_png(str(path), metadata={"Software": None})
+
+
+def paint(axes: Any, area: Rect, parts: Iterable[Shape], trails: Sequence[Trail]) -> None:
+    """Shapes and ways on axes of matplotlib, which then show an area."""
+    rectangle = library("matplotlib.patches").Rectangle
     axes.set_xlim(area.x0, area.x1)
     axes.set_ylim(area.z0, area.z1)
     axes.set_axis_off()
-    for number, shape in enumerate(shapes(layout)):
+    for number, shape in enumerate(parts):
         rect = shape.rect
         if shape.kind == "text":
             axes.text(*rect.center, shape.text, size=shape.size * 72 * 0.95, ha="center", va="center",
@@ -185,4 +194,3 @@ def _write_png(layout: Layout, path: Path, trails: Sequence[Trail]) -> None:
         axes.plot(xs, zs, color=trail.colour, linewidth=3, alpha=0.75, zorder=10_000)
         for x, z in trail.moments:
             axes.plot(x, z, "o", color=trail.colour, markersize=9, markeredgecolor="black", zorder=10_001)
-    canvas(figure).print_png(str(path), metadata={"Software": None})

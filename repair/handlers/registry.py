@@ -34,7 +34,6 @@ HANDLERS: dict[Code, Handler] = {
 """Handlers by failure code; all that table A.4 names, and what it leaves out."""
 
 UNREPAIRABLE: dict[Code, str] = {
-    Code.HELD_ALREADY: "only challenges refuse it, and nothing is repaired there",
     Code.NOT_AFFORDED: "nothing done before makes an object fit for what it is not made for",
     Code.NOT_SIMULATED: "the action is never executed",
     Code.NO_PATH: "no door leads there, open or closed",
@@ -55,11 +54,12 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.NEAR_DUPLICATE, Code.NO_EFFECT, Code.OFF_TOPIC, Code.UNDECLARED,
         Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
-        Code.BAD_ARGUMENT, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
+        Code.BAD_ARGUMENT, Code.HELD_ALREADY, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
         Code.NO_SESSION, Code.TOO_FAST, Code.OUT_OF_ORDER,
     }
 )  # fmt: skip
-"""Codes of reading, checking, grounding, repairing itself, scoring, publishing and agents: no run ends in them."""
+"""Codes of reading, checking, grounding, repairing itself, scoring, publishing and agents: no run ends in them, but for
+HELD_ALREADY in challenges, where nothing is repaired."""
 
 
 def unclassified() -> tuple[Code, ...]:
