@@ -1,6 +1,6 @@
 """Stage 5: pictures of a few executions, from above and by one camera, as colour and instance ids; and films of some.
 
-Each film has its own light, bodies, designs, positions and speed.
+Each film has its own light, bodies, designs, positions and speed. Films for clips are small, and arrays.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import rerun
+from hearth.pipelines.engine import clip_cases
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
-from hearth.schemas.row_types import CaseRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
-from hearth.schemas.tables import FILMED, RENDERED
+from hearth.schemas.row_types import CaseRow, ClippedRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
+from hearth.schemas.tables import CLIPPED, FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest
 from hearth.storage.partitions import READ_BATCH, read_rows
@@ -57,8 +58,8 @@ class Context(NamedTuple):
         return self.drawable[name]
 
 
-def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow] | Reject]:
-    """One row for each picture of a case, and one for its film, if any; a reject if libraries for pictures lack."""
+def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow | ClippedRow] | Reject]:
+    """One row for each picture of a case, its film and its clips, if any; a reject if libraries for pictures lack."""
     if context.job.plan["lacking"]:
         yield Reject.of(Code.NOT_RENDERED, no_pictures(context.job.plan["lacking"]), suggestion=remedy("pictures"))
         return
@@ -71,6 +72,10 @@ def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow 
     folder = _folder(case["execution_id"])
     if case["execution_id"] in job.plan["films"]:
         yield "videos", _film(case, execution, place, context)
+    if case["execution_id"] in job.plan["clips"]:
+        yield from (("clips", row) for row in _clips(case, execution, place, context))
+    if case["execution_id"] not in job.plan["pictures"]:
+        return
     for shot in snapshots(execution, home, context.homes.knowledge):
         for modality, picture in shot.pictures.items():
             name = f"{FRAMES}/{folder}/{shot.tick:03d}.{_view(shot.camera)}.{modality}.png"
@@ -110,6 +115,42 @@ def _film(case: CaseRow, execution: Execution, place: DrawableHome, context: Con
         "layout_made": place.made,
         "file": f"{folder}/{done.files[0].name}",
     }
+
+
+def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Context) -> Iterator[ClippedRow]:
+    """Write a film's arrays, and give the rows of its clips."""
+    from hearth.rendering.film import clips
+    from hearth.rendering.film.snapshots import trajectory_of
+    from hearth.rendering.scene.variation import drawn
+
+    name, job, known = case["execution_id"], context.job, context.homes.knowledge
+    trajectory = trajectory_of(execution, place.graph, known, variation=drawn(job.settings.seed, name))
+    numbers = {thing.name: thing.id for thing in known.objects.values()}
+    coloured = clip_cases.coloured(name, job.settings.seed)
+    film = clips.clip_film(trajectory, place.graph, numbers, clips.MODALITIES if coloured else clips.MASKS_ONLY)
+    file = f"{FILMS}/{_folder(name)}/{clips.FILE}"
+    path = job.folder / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(path, clips.stored(film))
+    part, kind = job.plan["clips"][name]
+    for number, clip in enumerate(film.clips):
+        yield {
+            "execution_id": name,
+            "number": number,
+            "part": part,
+            "kind": kind,
+            "tick": clip.tick,
+            "action": clip.step.action,
+            "objects": [ref.name for ref in clip.step.objects],
+            "first": clip.first,
+            "frames": clips.FRAMES,
+            "fps": clips.RATE,
+            "width": clips.SIZE[0],
+            "height": clips.SIZE[1],
+            "camera": clip.camera,
+            "modalities": sorted(film.pictures),
+            "file": file,
+        }
 
 
 def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
@@ -168,14 +209,23 @@ def _pose(camera: Camera) -> list[float]:
 def prepare(settings: Settings) -> Plan:
     """Choose the executions: the first ones of different programs, in homes of the catalog."""
     homes = Homes(settings)
+    wanted = max(settings.pictures, settings.videos)
     found: dict[str, tuple[str, str]] = {}
+    ran: list[tuple[str, str, str]] = []
+    files: dict[str, str] = {}
     for file, row in _sampled(settings):
-        if len(found) >= max(settings.pictures, settings.videos):
+        if len(found) >= wanted and not settings.clips:
             break
         if row["executable"] and homes.in_catalog(row["home"]):
-            found.setdefault(row["program_id"], (row["execution_id"], file))
+            if len(found) < wanted:
+                found.setdefault(row["program_id"], (row["execution_id"], file))
+            if settings.clips:
+                ran.append((row["program_id"], row["execution_id"], row["home"]))
+                files[row["execution_id"]] = file
     films = sorted(name for name, _ in list(found.values())[: settings.videos])
-    chosen = {"executions": dict(sorted(found.values())), "films": films}
+    clips = dict(sorted(clip_cases.chosen(ran, homes.names(), settings.clips, settings.seed).items()))
+    executions = dict(sorted([*found.values(), *((name, files[name]) for name in clips)]))
+    chosen = {"executions": executions, "pictures": sorted(dict(found.values())), "films": films, "clips": clips}
     return {**overlays(settings), **chosen, "lacking": lacking("pictures")}
 
 
@@ -236,10 +286,10 @@ def open_context(job: Job) -> Context:
 
 STAGE = Stage(
     name="render",
-    tables={"": RENDERED, "videos": FILMED},
+    tables={"": RENDERED, "videos": FILMED, "clips": CLIPPED},
     process=process,
     reads=("sample",),
-    settings=("pictures", "videos", "seed"),
+    settings=("pictures", "videos", "clips", "seed"),
     open=open_context,
     prepare=prepare,
     facts=overlays_used,

@@ -422,6 +422,28 @@ class FilmedRow(TypedDict):
     file: Annotated[str, "the video, relative to the dataset"]
 
 
+class ClippedRow(TypedDict):
+    """Two seconds of a film, and what is done in their middle."""
+
+    execution_id: Annotated[str, "the execution filmed"]
+    number: Annotated[int, "of the clip in its film, from 0"]
+    part: Annotated[str, "train, validation or test; all clips of a program are in one"]
+    kind: Annotated[str, "whether its home is seen in training: seen, validation or unseen"]
+    tick: Annotated[int, "the tick in its middle, from 1"]
+    action: Annotated[str, "of that tick's step"]
+    objects: Annotated[list[str], "classes of that step's objects"]
+    first: Annotated[int, "its first frame in the film, from 0"]
+    frames: Annotated[int, "how many it has"]
+    fps: Annotated[float, "frames a second"]
+    width: Annotated[int, "pixels"]
+    height: Annotated[int, "pixels"]
+    camera: Annotated[str, "of the frame in its middle"]
+    modalities: Annotated[
+        list[str], "arrays of the file: class_ids (as in `vocabulary`), rgb, depth (millimetres)"
+    ]
+    file: Annotated[str, "the film's arrays (.npz), each (frames of the film, height, width), relative to the dataset"]
+
+
 class RejectRow(TypedDict):
     """A fault of a record that was refused."""
 
@@ -592,6 +614,12 @@ class FrameRow(RenderedRow):
 
 class VideoRow(FilmedRow):
     """A film of an execution."""
+
+    home: Annotated[str, "where it was filmed"]
+
+
+class ClipRow(ClippedRow):
+    """A clip of an execution's film."""
 
     home: Annotated[str, "where it was filmed"]
 

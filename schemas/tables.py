@@ -71,6 +71,7 @@ CASE: Final = _schema(row_types.CaseRow)
 SKETCHED: Final = _schema(row_types.SketchRow)
 RENDERED: Final = _schema(row_types.RenderedRow)
 FILMED: Final = _schema(row_types.FilmedRow)
+CLIPPED: Final = _schema(row_types.ClippedRow)
 REJECTED: Final = _schema(row_types.RejectedRow)
 
 _VERSIONS: Final = _schema(row_types.VersionsRow)
@@ -92,6 +93,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
         "sketches": SKETCHED,
         "frames": _schema(row_types.FrameRow),
         "videos": _schema(row_types.VideoRow),
+        "clips": _schema(row_types.ClipRow),
         "vocabulary": _schema(row_types.NameRow),
         "rejects": _schema(row_types.RejectRow),
         "ledger": _schema(row_types.LedgerRow),

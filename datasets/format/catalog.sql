@@ -18,6 +18,7 @@ CREATE VIEW splits AS SELECT * FROM read_parquet(dataset_folder() || 'splits/*.p
 CREATE VIEW sketches AS SELECT * FROM read_parquet(dataset_folder() || 'sketches/*.parquet');
 CREATE VIEW frames AS SELECT * FROM read_parquet(dataset_folder() || 'frames/*.parquet');
 CREATE VIEW videos AS SELECT * FROM read_parquet(dataset_folder() || 'videos/*.parquet');
+CREATE VIEW clips AS SELECT * FROM read_parquet(dataset_folder() || 'clips/*.parquet');
 CREATE VIEW vocabulary AS SELECT * FROM read_parquet(dataset_folder() || 'vocabulary/*.parquet');
 CREATE VIEW rejects AS SELECT * FROM read_parquet(dataset_folder() || 'rejects/*.parquet');
 CREATE VIEW ledger AS SELECT * FROM read_parquet(dataset_folder() || 'ledger/*.parquet');

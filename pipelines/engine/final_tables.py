@@ -57,6 +57,7 @@ def finish(job: Job, counts: Counts) -> None:
         "sketches": lambda: _sketches(job),
         "frames": lambda: _frames(job, ""),
         "videos": lambda: _frames(job, "videos"),
+        "clips": lambda: _frames(job, "clips"),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
         "rejects": lambda: _rejects(job),
         "ledger": lambda: _ledger(job, counts),
@@ -238,7 +239,7 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[forms.HomeEdgeRow]:
             yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
 
 
-def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow]:
+def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow | forms.ClipRow]:
     home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet"):
         table = pq.read_table(path, columns=["execution_id", "home"])

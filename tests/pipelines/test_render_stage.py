@@ -14,7 +14,7 @@ def filmed(tmp_path_factory, build_folder):
     program = folder / "bed.txt"
     program.write_text("Rest\nLie down.\n\n[Walk] <bed> (1)\n")
     built = build_folder(
-        folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, variants=0
+        folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, clips=1, variants=0
     )
     return built.run_all()
 
@@ -42,6 +42,24 @@ def test_a_film_has_its_steps_its_cameras_and_what_was_drawn_by_chance(filmed):
     assert row["track"][0]["frame"] == 0
     assert len(row["track"][0]["pose"]) == 16
     assert 7.5 <= row["variation"]["hour"] <= 18.5
+
+
+def test_clips_have_their_arrays_and_what_is_done(filmed):
+    import numpy as np
+
+    import hearth
+
+    rows = filmed.rows("render/clips")
+    assert [(row["tick"], row["action"], row["objects"], row["kind"]) for row in rows] == [
+        (1, "Walk", ["bed"], "seen")
+    ] * len(rows)
+    assert 1 <= len(rows) <= 5 and [row["number"] for row in rows] == [*range(len(rows))]
+    with np.load(filmed.out / "render" / rows[0]["file"], allow_pickle=False) as file:
+        assert sorted(file) == rows[0]["modalities"]
+        assert file["class_ids"].shape[0] >= rows[-1]["first"] + rows[-1]["frames"]
+    ds = hearth.load(filmed.out)
+    assert ds.rows("SELECT count(*), any_value(home) FROM clips")[1] == [(len(rows), "maple")]
+    assert (ds.folder / rows[0]["file"]).is_file()
 
 
 def test_films_are_published_and_counted(filmed):

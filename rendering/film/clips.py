@@ -1,0 +1,142 @@
+"""Two-second clips of films, with the instruction that is done in their middle (thesis 4.3.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from io import BytesIO
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.rendering.cameras.camera import Camera
+from hearth.rendering.film.snapshots import AUTO, Trajectory
+from hearth.rendering.film.video import CameraSelector
+from hearth.rendering.modalities import pictures_of
+from hearth.rendering.people.motion import Frame, frames
+from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
+from hearth.rendering.rays.shot import Shot, shoot, shoot_after
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.program import Step
+
+FRAMES = 9
+"""Frames of a clip."""
+
+SECONDS = 2.0
+"""How long a clip is."""
+
+RATE = FRAMES / SECONDS
+"""Frames a second."""
+
+MOST = 5
+"""Clips of a step, at most: long steps, as walks, would otherwise be nearly all."""
+
+SIZE = (64, 48)
+"""Width and height, pixels."""
+
+MASKS = "class_ids"
+"""The modality that every film of clips has; numbers as in the table `vocabulary`."""
+
+MASKS_ONLY = (MASKS,)
+
+MODALITIES = (MASKS, "rgb", "depth")
+"""Of films that have more."""
+
+FILE = "clips.npz"
+"""Name of a film's arrays in its folder."""
+
+
+class Clip(NamedTuple):
+    """A clip of a film.
+
+    Attributes:
+        tick: the tick in its middle, from 1.
+        step: that tick's step.
+        first: number of its first frame in the film, from 0; it has `FRAMES` of them.
+        camera: of the middle frame.
+    """
+
+    tick: int
+    step: Step
+    first: int
+    camera: str
+
+
+class ClipFilm(NamedTuple):
+    """A film of clips.
+
+    Attributes:
+        pictures: modality -> (T, H, W) or (T, H, W, 3), one for each frame.
+        clips: in order.
+        changes: the frames at which the camera changes, from 0; the first is 0.
+        cameras: from those frames on.
+    """
+
+    pictures: Mapping[str, NDArray[Any]]
+    clips: tuple[Clip, ...]
+    changes: tuple[int, ...]
+    cameras: tuple[Camera, ...]
+
+
+def clip_film(
+    trajectory: Trajectory, home: EnvironmentGraph, class_ids: Mapping[str, int], modalities: Iterable[str] = MASKS_ONLY
+) -> ClipFilm:
+    """Film an execution for clips, by the cameras that a film would choose.
+
+    Args:
+        trajectory: as `snapshots.trajectory_of` gives it.
+        home: the home's graph, with boxes.
+        class_ids: class -> number in the masks; others are 0.
+        modalities: of each frame; `rgb` takes most of the time.
+    """
+    names = tuple(modalities)
+    taken = [*_taken(trajectory, home, class_ids, names)]
+    kept = [(frame, camera) for frame, camera, _ in taken]
+    changes = [n for n, (_, camera) in enumerate(kept) if n == 0 or camera != kept[n - 1][1]]
+    pictures = {name: np.stack([found[name] for *_, found in taken]) for name in names}
+    return ClipFilm(pictures, tuple(_clips(kept)), tuple(changes), tuple(kept[n][1] for n in changes))
+
+
+def _taken(
+    trajectory: Trajectory, home: EnvironmentGraph, class_ids: Mapping[str, int], names: Sequence[str]
+) -> Iterator[tuple[Frame, Camera, dict[str, NDArray[Any]]]]:
+    """Each frame with its camera and its pictures."""
+    selector = CameraSelector(home, AUTO, SIZE, trajectory.variation)
+    others = [name for name in names if name != "rgb"]
+    last: IncrementalFrame | None = None
+    shot: Shot | None = None
+    for frame in frames(trajectory, RATE, trajectory.variation.speed):
+        camera = selector.camera(frame)
+        if "rgb" in names:
+            last = incremental_frame(frame.scene, camera, last)
+            shot = last.shot
+        elif shot is not None and shot.camera == camera:
+            shot = shoot_after(frame.scene, shot)
+        else:
+            shot = shoot(frame.scene, camera)
+        found = pictures_of(replace(shot, class_ids=class_ids), others)
+        yield frame, camera, {**found, **({"rgb": last.picture.copy()} if last else {})}
+
+
+def _clips(kept: Sequence[tuple[Frame, Camera]]) -> Iterator[Clip]:
+    """At most `MOST` clips of each tick, their middles spread evenly over it; the film's ends have no whole clip."""
+    half = FRAMES // 2
+    whole = range(half, len(kept) - half)
+    for tick, group in groupby(whole, key=lambda number: kept[number][0].tick):
+        middles = [*group]
+        if not tick:
+            continue
+        count = min(MOST, len(middles))
+        for k in range(count):
+            middle = middles[(2 * k + 1) * len(middles) // (2 * count)]
+            frame, camera = kept[middle]
+            yield Clip(tick, frame.steps[0], middle - half, camera.name)
+
+
+def stored(film: ClipFilm) -> bytes:
+    """The pictures of a film as the bytes of an .npz file, which NumPy reads; equal films are equal bytes."""
+    buffer = BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **{name: film.pictures[name] for name in sorted(film.pictures)})
+    return buffer.getvalue()
