@@ -52,6 +52,11 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as 
 	@$(FULL) --strength mild --out $(OUT)/full
 	@$(FULL) --strength thesis --out $(OUT)/full-thesis
 
+clips: $(READY)  ## some 20,000 two-second clips of drawn programs in our homes, in data_out/clips
+	@mkdir -p $(OUT)
+	@$(HEARTH) corpus synthesize 700 --seed $(SEED) --out $(OUT)/clips.jsonl
+	@$(HEARTH) build $(OUT)/clips.jsonl --out $(OUT)/clips --seed $(SEED) --workers $(JOBS) --tier clips
+
 challenges: $(READY)  ## all tasks and demonstrations of Watch-And-Help, in data_out/challenges/wah
 	@$(HEARTH) challenge build wah --out $(OUT)/challenges/wah --workers $(JOBS)
 

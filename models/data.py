@@ -91,10 +91,15 @@ class Corpus:
     @property
     def facts(self) -> dict[str, Any]:
         """What a checkpoint records of it."""
-        digest = value_digest(self.dataset.manifest["files"])
         counts = {"train": len(self.train), "validation": len(self.validation)}
-        facts = {"dataset": self.dataset.manifest.get("version", ""), "digest": digest, "split": self.split, **counts}
+        facts = {**facts_of(self.dataset), "split": self.split, **counts}
         return {**facts, **{f"{name}_of_test": count for name, count in self.shared.items()}}
+
+
+def facts_of(dataset: Dataset) -> dict[str, Any]:
+    """What a checkpoint records of the dataset that it was trained on."""
+    version = dataset.manifest.get("version", "")
+    return {"dataset": version, "digest": value_digest(dataset.manifest["files"])}
 
 
 _PROGRAMS = """

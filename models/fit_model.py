@@ -10,7 +10,7 @@ from typing import Any
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.checkpoint import save
-from hearth.models.data import corpus
+from hearth.models.data import corpus, facts_of
 from hearth.models.interface import Training
 from hearth.models.model_registry import MODELS, settings_of
 from hearth.schemas.diagnostics import HearthError
@@ -39,7 +39,7 @@ def fit(
         name: in the registry.
         folder: of the dataset.
         out: of the checkpoint; an unfinished training in it is continued.
-        split: of the dataset.
+        split: of the dataset; clips have parts of their own.
         changed: settings of the model, as `NAME=VALUE`.
         originals: leave out augmented programs; models of sketches learn from them, too.
         sketches: `annotated` or `inferred`: which go before the others.
@@ -52,12 +52,23 @@ def fit(
     import shutil
 
     model = settings_of(name, **_changed(name, changed))
+<<<<<<< HEAD
     originals = originals and MODELS[name].input != "sketch"
     found = corpus(Dataset.open(folder), split, originals=originals, seed=how.get("seed", 0), sketches=sketches)
     found = found.of_sketches() if MODELS[name].output == "sketch" else found
     trained = model.fit(found, Training(**how, folder=out / STATE), seen)
     checkpoint = trained.checkpoint()
     facts = {**found.facts, "sketches": sketches, "seed": how.get("seed", 0), **checkpoint.trained}
+=======
+    dataset, training = Dataset.open(folder), Training(**how, folder=out / STATE)
+    if MODELS[name].input == "film":
+        checkpoint = model.fit(dataset, training, seen).checkpoint()  # type: ignore[arg-type]
+        facts = {**facts_of(dataset), **checkpoint.trained}
+    else:
+        found = corpus(dataset, split, originals=originals, seed=training.seed)
+        checkpoint = model.fit(found, training, seen).checkpoint()
+        facts = {**found.facts, "seed": training.seed, **checkpoint.trained}
+>>>>>>> 8b33a98 (Models of films: a classifier of clips by their masks, programs followed through a film with the engine, table 4.3)
     save(replace(checkpoint, model=name, trained=facts), out)
     shutil.rmtree(out / STATE, ignore_errors=True)
     return facts

@@ -438,9 +438,7 @@ class ClippedRow(TypedDict):
     width: Annotated[int, "pixels"]
     height: Annotated[int, "pixels"]
     camera: Annotated[str, "of the frame in its middle"]
-    modalities: Annotated[
-        list[str], "arrays of the file: class_ids (as in `vocabulary`), rgb, depth (millimetres)"
-    ]
+    modalities: Annotated[list[str], "arrays of the file: class_ids (as in `vocabulary`), rgb, depth (millimetres)"]
     file: Annotated[str, "the film's arrays (.npz), each (frames of the film, height, width), relative to the dataset"]
 
 

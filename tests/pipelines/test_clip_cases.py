@@ -44,9 +44,7 @@ def test_tests_are_in_all_kinds_of_homes_and_parts_have_their_shares():
 
 
 def test_a_program_that_ran_nowhere_it_may_be_filmed_is_left_out():
-    assert chosen(ran(50, ("f",)), HOMES, 50, 0).keys() == {
-        f"p{n}@f" for n in range(50) if part_of(f"p{n}", 0) == TEST
-    }
+    assert chosen(ran(50, ("f",)), HOMES, 50, 0).keys() == {f"p{n}@f" for n in range(50) if part_of(f"p{n}", 0) == TEST}
 
 
 def test_the_order_of_runs_changes_nothing():

@@ -1,0 +1,150 @@
+"""The classifier of clips: it is trained on the masks of training films, and names the instruction of others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hearth.models.checkpoint import Checkpoint
+from hearth.models.filled import filled
+from hearth.models.films.class_accuracy import accuracies
+from hearth.models.films.clip_data import Clips, Instruction, Labels, frames_of
+from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.training import Task, train
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+
+NAME = "clips"
+"""Of its checkpoints."""
+
+AT_ONCE = 128
+"""Clips that are classified at once."""
+
+RELATIONS = ((0, 3, 5, 8), (0, 2, 4, 6), (1, 3, 6, 8), (2, 4, 5, 7))
+"""Frames that are related in prediction; the mean of their logarithms decides."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClipModel(Settings):
+    """Settings of the classifier.
+
+    Attributes:
+        vector: numbers for a class of the masks.
+        width: numbers for a frame.
+        dropout: share of numbers left out in training.
+        batch: clips in a batch.
+        balance: the power of a class's share by which its loss is divided: 0 counts clips, 1 classes.
+        films: of training, at most; 0 for all.
+    """
+
+    vector: int = 12
+    width: int = 128
+    dropout: float = 0.3
+    batch: int = 64
+    balance: float = 0.5
+    films: int = 0
+
+    def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedClipModel:
+        """Train on the clips of `train`; those of `validation` decide when to stop."""
+        learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
+        labels = Labels.of(learned)
+        torch.manual_seed(how.seed)
+        model = TrainedClipModel(self, labels, self.network(labels))
+        wanted = np.array([labels.numbers(clip.done) for clip in learned.clips])
+        weights = [torch.tensor(each, dtype=torch.float32) for each in self._weights(wanted, labels)]
+
+        def batches(random: Random) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
+            order = random.sample(range(len(learned)), len(learned))
+            for start in range(0, len(order), self.batch):
+                which = order[start : start + self.batch]
+                taken = sorted(random.sample(range(learned.frames), RELATED))
+                masks = frames_of(learned, which, labels, taken)
+                yield torch.from_numpy(masks), torch.from_numpy(wanted[which])
+
+        def loss(batch: tuple[torch.Tensor, torch.Tensor]) -> torch.Tensor:
+            return loss_of(model.network(batch[0]), batch[1], weights)
+
+        def validate() -> float:
+            done = [clip.done for clip in checked.clips]
+            return accuracies(done, model.named(checked, RELATIONS[:1]))["mean"]
+
+        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(labels.instructions)])
+        model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
+        return model
+
+    def _weights(self, wanted: NDArray[np.int64], labels: Labels) -> Iterator[NDArray[np.float64]]:
+        sizes = (len(labels.actions), len(labels.objects) + 1, len(labels.objects) + 1)
+        for place, size in enumerate(sizes):
+            counts = np.bincount(wanted[:, place], minlength=size)
+            weights = np.where(counts > 0, np.maximum(counts, 1) ** -self.balance, 0.0)
+            yield weights * len(wanted) / (weights * counts).sum()
+
+    def network(self, labels: Labels) -> ClipNetwork:
+        """The network, with random weights."""
+        sizes = len(labels.actions), len(labels.objects) + 1
+        return ClipNetwork(len(labels.seen) + 1, self.vector, self.width, *sizes, self.dropout)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedClipModel:
+        """The model of a checkpoint."""
+        settings, labels = cls.of(checkpoint.settings), Labels.read(checkpoint.content["labels"])
+        network = filled(lambda: settings.network(labels), checkpoint.weights)
+        return TrainedClipModel(settings, labels, network, dict(checkpoint.trained))
+
+
+@dataclass(frozen=True)
+class TrainedClipModel:
+    """A trained classifier."""
+
+    settings: ClipModel
+    labels: Labels
+    network: ClipNetwork
+    facts: dict[str, Any] = field(default_factory=dict)
+
+    def named(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> list[Instruction]:
+        """The instruction that each clip is taken for: the most probable of training's."""
+        best = self.scores(clips, relations).argmax(1)
+        return [self.labels.instructions[number] for number in best.tolist()]
+
+    def scores(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> NDArray[np.float32]:
+        """(N, I) logarithms of how probable each of training's instructions is in each clip, up to a constant."""
+        rows = torch.from_numpy(self.labels.rows)  # (I, 3)
+        ways = list(relations)
+        self.network.eval()
+        found = []
+        for start in range(0, len(clips), AT_ONCE):
+            which = range(start, min(start + AT_ONCE, len(clips)))
+            with torch.no_grad():
+                each = [self._parts(clips, which, taken, rows) for taken in ways]
+            found.append(torch.stack(each).mean(0).numpy())
+        return np.concatenate(found)
+
+    def _parts(self, clips: Clips, which: Sequence[int], taken: Sequence[int], rows: torch.Tensor) -> torch.Tensor:
+        heads = self.network(torch.from_numpy(frames_of(clips, which, self.labels, taken)))
+        return torch.stack([scores[:, rows[:, place]] for place, scores in enumerate(heads)]).sum(0)
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """It has no programs for requests.
+
+        Raises:
+            HearthError: BAD_ARGUMENT.
+        """
+        message = f"`{NAME}` is a model of films: it has no programs for texts or sketches"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model table 4.3 DATASET --model M` scores it")
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
+        return Checkpoint(NAME, asdict(self.settings), {"labels": self.labels.document()}, weights, self.facts)
+
