@@ -151,7 +151,7 @@ def attach(folder: Path, absent: Sequence[str] = (), format: int = FORMAT) -> An
     for table in TABLES:
         here = reading(table, format)
         if table in absent and here == _reading(table):
-            connection.register(f"no_{table}", TABLES[table].empty_table())
+            connection.from_arrow(TABLES[table].empty_table()).create(f"no_{table}")  # a table: cursors see it, too
             here = f"no_{table}"
         text = text.replace(_reading(table), here)
     connection.execute(text)

@@ -147,4 +147,3 @@ class TrainedClipModel:
         """All that `restored` needs."""
         weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
         return Checkpoint(NAME, asdict(self.settings), {"labels": self.labels.document()}, weights, self.facts)
-

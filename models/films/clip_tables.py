@@ -75,7 +75,7 @@ def clip_table(dataset: Dataset, models: Sequence[Path | str], seed: int = 0) ->
     rows += _rows("random retrieval", "yardstick", test, [[draw.choice(done) for _ in test.clips]], 0)
     rows += _rows("commonest", "yardstick", test, [[commonest] * len(test)], 0)
     named = [_classifier(model).named(test) for model in models]
-    return rows + [*_rows("clips", "ours", test, named, len(named))] if named else rows
+    return [*rows, *_rows("clips", "ours", test, named, len(named))] if named else rows
 
 
 def _classifier(model: Path | str) -> TrainedClipModel:
