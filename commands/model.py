@@ -155,7 +155,8 @@ def table(
     seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4.
+    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
+    4.3 of clips.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
@@ -165,11 +166,21 @@ def table(
     Example:
       python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
       python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
+      python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)
+    if number == "4.3":
+        from hearth.models.films import clip_tables
+
+        rows_of_clips = clip_tables.clip_table(data, models or (), seed)
+        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
+                  row.spread, row.clips, row.seeds or None] for row in rows_of_clips]  # fmt: skip
+        columns_of_clips = ["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"]
+        output.emit(rows_of_clips) if as_json else output.table(columns_of_clips, shown)
+        return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
 

@@ -52,23 +52,16 @@ def fit(
     import shutil
 
     model = settings_of(name, **_changed(name, changed))
-<<<<<<< HEAD
-    originals = originals and MODELS[name].input != "sketch"
-    found = corpus(Dataset.open(folder), split, originals=originals, seed=how.get("seed", 0), sketches=sketches)
-    found = found.of_sketches() if MODELS[name].output == "sketch" else found
-    trained = model.fit(found, Training(**how, folder=out / STATE), seen)
-    checkpoint = trained.checkpoint()
-    facts = {**found.facts, "sketches": sketches, "seed": how.get("seed", 0), **checkpoint.trained}
-=======
     dataset, training = Dataset.open(folder), Training(**how, folder=out / STATE)
     if MODELS[name].input == "film":
         checkpoint = model.fit(dataset, training, seen).checkpoint()  # type: ignore[arg-type]
         facts = {**facts_of(dataset), **checkpoint.trained}
     else:
-        found = corpus(dataset, split, originals=originals, seed=training.seed)
+        originals = originals and MODELS[name].input != "sketch"
+        found = corpus(dataset, split, originals=originals, seed=training.seed, sketches=sketches)
+        found = found.of_sketches() if MODELS[name].output == "sketch" else found
         checkpoint = model.fit(found, training, seen).checkpoint()
-        facts = {**found.facts, "seed": training.seed, **checkpoint.trained}
->>>>>>> 8b33a98 (Models of films: a classifier of clips by their masks, programs followed through a film with the engine, table 4.3)
+        facts = {**found.facts, "sketches": sketches, "seed": training.seed, **checkpoint.trained}
     save(replace(checkpoint, model=name, trained=facts), out)
     shutil.rmtree(out / STATE, ignore_errors=True)
     return facts

@@ -66,17 +66,15 @@ MODELS: dict[str, Entry] = {
     "chooser": Entry(
         "sketches.chooser:Chooser", "sketch", "Chooses nodes and optional steps; the planner makes it run.", "ours"
     ),
-<<<<<<< HEAD
     "chooser-text": Entry(
         "sketches.chooser:Chooser",
         "sketch",
         "The same; it reads the description beside the sketch.",
         "ours",
         {"text": True},
-=======
+    ),
     "clips": Entry(
         "films.clip_model:ClipModel", "film", "Names the instruction of a two-second clip by its masks.", "thesis 4.3.3"
->>>>>>> 8b33a98 (Models of films: a classifier of clips by their masks, programs followed through a film with the engine, table 4.3)
     ),
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",

@@ -78,7 +78,7 @@ class Clips:
         """
         columns = "execution_id, file, first, frames, action, objects, kind, tick"
         query = f"SELECT {columns} FROM clips WHERE part = $part ORDER BY execution_id, number"
-        rows = dataset.rows(query, {"part": part})[1]
+        rows = dataset.rows(query, part=part)[1]
         if not rows:
             message = f"the dataset has no clips of the part `{part}`"
             raise HearthError.of(Code.UNKNOWN_ID, message, suggestion="`make clips` makes some")

@@ -86,3 +86,23 @@ def test_what_has_no_geometry_is_not_chosen(made):
     from hearth.pipelines.render import prepare
 
     assert prepare(made.settings)["executions"] == {}
+
+
+def test_clips_are_read_as_arrays(filmed):
+    import numpy as np
+
+    import hearth
+    from hearth.models.films.clip_data import Clips, Labels, frames_of
+    from hearth.schemas.diagnostics import HearthError
+
+    ds = hearth.load(filmed.out)
+    part = filmed.rows("render/clips")[0]["part"]
+    clips = Clips.of(ds, part)
+    labels = Labels.of(clips)
+    found = frames_of(clips, range(len(clips)), labels, range(clips.frames))
+    assert found.shape == (len(clips), 9, 48, 64) and found.max() > 0
+    known = dict(ds.rows("SELECT name, id FROM vocabulary WHERE kind = 'class'")[1])
+    person = labels.palette[known["character"]]
+    assert person and np.mean(found == person) > 0.001
+    with pytest.raises(HearthError, match="no clips of the part"):
+        Clips.of(ds, {"train": "test"}.get(part, "train"))
