@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from hearth.commands import output
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -175,11 +178,7 @@ def table(
     if number == "4.3":
         from hearth.models.films import clip_tables
 
-        rows_of_clips = clip_tables.clip_table(data, models or (), seed)
-        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
-                  row.spread, row.clips, row.seeds or None] for row in rows_of_clips]  # fmt: skip
-        columns_of_clips = ["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"]
-        output.emit(rows_of_clips) if as_json else output.table(columns_of_clips, shown)
+        _clips(clip_tables.clip_table(data, models or (), seed), clip_tables.COLUMNS, as_json)
         return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
@@ -205,6 +204,16 @@ def table(
     shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in columns), row.seeds or None, row.minutes]
              for row in rows]  # fmt: skip
     output.table(["method", "of", *columns, "seeds", "minutes"], shown)
+
+
+def _clips(rows: Sequence[Any], columns: Sequence[str], as_json: bool) -> None:
+    """Table 4.3."""
+    if as_json:
+        output.emit(rows)
+        return
+    shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in columns),
+              row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
+    output.table(["method", "of", "homes", *columns, "error", "clips", "seeds"], shown)
 
 
 def _score(value: Any) -> str:

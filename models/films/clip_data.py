@@ -22,7 +22,7 @@ NOTHING = 0
 """Number of what is not in the palette, and of no object."""
 
 MOST_COLOURS = 255
-"""Classes that a palette tells apart."""
+"""Classes that a palette has numbers for."""
 
 LARGEST = 64 << 20
 """Bytes of a film's file."""
