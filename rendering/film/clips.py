@@ -103,7 +103,7 @@ def _taken(
     trajectory: Trajectory, home: EnvironmentGraph, class_ids: Mapping[str, int], names: Sequence[str]
 ) -> Iterator[tuple[Frame, Camera, dict[str, NDArray[Any]]]]:
     """Each frame with its camera and its pictures."""
-    selector = CameraSelector(home, AUTO, SIZE, trajectory.variation)
+    selector = CameraSelector(trajectory, home, AUTO, SIZE)
     others = [name for name in names if name != "rgb"]
     last: IncrementalFrame | None = None
     shot: Shot | None = None

@@ -60,7 +60,7 @@ def test_each_step_has_one_to_five_clips(film):
 
 def test_pictures_are_those_of_render(trajectory, film, numbers):
     moving, home = trajectory
-    selector = CameraSelector(home, "auto", clips.SIZE, moving.variation)
+    selector = CameraSelector(moving, home, "auto", clips.SIZE)
     for number, frame in enumerate(frames(moving, clips.RATE)):
         camera = selector.camera(frame)
         if number % 7 == 0:
