@@ -38,18 +38,21 @@ class Site(NamedTuple):
         base: the home as it was, in its default state.
         home: without those things, and without characters.
         places: class of things -> where they may be.
+        anywhere: where some of them may be.
     """
 
     base: Base
     home: Home
     places: dict[str, Places]
+    anywhere: Places
 
 
 def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowledge, agents: int | None = None) -> World:
     """A world in which nothing of a goal is reached, all of it can be, and its agents stand in different rooms.
 
     Of each class there are as many things as are wanted, up to one more than any goal wants. For each thing first the
-    relation and the class of its place are drawn, then the place.
+    relation and the class of its place are drawn, then the place: where such things belong, or, if in this home they
+    belong only where they are wanted, where any of the challenge's things do.
 
     Args:
         which: the challenge whose goal it is.
@@ -60,8 +63,8 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
         agents: the first of the challenge's characters only; the world is the same but for the others.
 
     Raises:
-        HearthError: UNKNOWN_HOME; UNKNOWN_OBJECT where the home lacks furniture of the goal; NO_PLACE where a thing
-            belongs nowhere in it but where it is wanted; NO_ROOM where there are fewer rooms than agents.
+        HearthError: UNKNOWN_HOME; UNKNOWN_OBJECT where the home lacks furniture of the goal; NO_PLACE where no thing
+            belongs anywhere in it but where it is wanted; NO_ROOM where there are fewer rooms than agents.
     """
     site = site_of(which.name, home, knowledge)
     chooser = rng(seed, "start", home)
@@ -69,7 +72,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
     wanted, wrong = wanted_things(goal), _wanted_at(which, goal, site.home)
     for name, most in sorted(which.grammar.most_of.items()):
         least = wanted.get(name, 0)
-        places = _allowed(site.places[name], wrong[name])
+        places = _allowed(site.places[name], wrong[name]) or _allowed(site.anywhere, wrong[name])
         number = chooser.randint(least, max(least, most + 1))
         if number and not places:
             raise HearthError.of(Code.NO_PLACE, f"{home} has no place for {name} but where it is wanted")
@@ -99,7 +102,9 @@ def site_of(name: str, home: str, knowledge: Knowledge) -> Site:
     gone = sorted(base.home.ids[i] for i in (*things, *base.home.agents))
     cleared = edit(World.start(base.home), remove=gone, check=False)
     assert isinstance(cleared, World)
-    return Site(base, cleared.home, {each: _places(which, base, each) for each in which.grammar.most_of})
+    places = {each: _places(which, base, each) for each in which.grammar.most_of}
+    groups = [group for each in places.values() for group in each]
+    return Site(base, cleared.home, places, tuple(sorted(set(groups))))
 
 
 def _places(which: Challenge, base: Base, name: str) -> Places:
