@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.learned import Hybrid, Learned
+from hearth.agents.population import PEOPLE
 from hearth.agents.protocol import Agent
 from hearth.agents.random_helper import RandomHelper
 
@@ -38,6 +39,7 @@ SEES_ALL = replace(HELPING, sees_all=True)
 MAIN: dict[str, Callable[[], MainAgent]] = {
     "human_like": HumanLike,
     "oracle": lambda: HumanLike(Habits(sees_all=True)),
+    **PEOPLE,
 }
 """Who is helped."""
 

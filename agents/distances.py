@@ -52,6 +52,16 @@ class Distances:
         field = ground.ways.field(stands)
         return field.distance[start], _end(field, start)
 
+    def after(self, start: int, node: int, metres: float) -> int:
+        """The cell at which one is after some metres of the walk to something."""
+        if self._here is None or start < 0:
+            return start
+        field = self._here.ground.ways.field(self._here.ground.stands(node))
+        left, cell = field.distance[start] - metres, start
+        while (after := field.following[cell]) >= 0 and field.distance[cell] > left:
+            cell = after
+        return cell
+
     def end(self, node: int) -> int:
         """A cell at which one stands for something that stays where it is; -1 without geometry."""
         if self._here is None or node >= len(self._here.ground.home):

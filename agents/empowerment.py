@@ -19,11 +19,11 @@ class Empowerment(OnlineHelper):
 
     def choose(self, view: View) -> Edge | None:
         """The commonest edge that can still be helped with."""
-        planner = Planner(self.space, view.world, view.others[0], self.posterior.distances)
+        planner = Planner(self.space, self.posterior.places, view.world, view.others[0], self.posterior.distances)
         theirs = view.world.agents[view.others[0].agent].held
         held = self.held(view)
         found: Counter[Edge] = Counter()
-        for goal in (self.chooser.randrange(len(self.space.goals)) for _ in range(self._particles)):
+        for goal in (self.chooser.choice(self.space.wanted) for _ in range(self._particles)):
             found.update(planner.prospect(goal, self._horizon).edges.keys())
         able = [each for each in found if not theirs >> each.thing & 1 and (not held or each.thing in held)]
         return max(able, key=lambda each: (found[each], each), default=None)

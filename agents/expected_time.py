@@ -1,30 +1,28 @@
-"""A helper that saves the most of its partner's expected time for each tick of its own, over the exact posterior.
+"""A helper that does what lets its partner finish soonest, in expectation over the exact posterior.
 
-Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. Here every goal counts with its
-probability, what a thing saves is what the partner would have needed for it, both hands are used, and a thing whose
-place is still uncertain is taken along until it is known where it is wanted.
+Beyond the thesis: NOPA (eq. 7.1) weighs one edge at a time by a few particles. Here each thing that could be done next
+is followed, under goals that stand for the posterior, until the goal is reached (see `forecast`): both hands are used,
+the work is shared, and what is of no use under some goals costs the time that it wastes. With a single goal that it is
+given it is the planner of HP_GT.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from hearth.agents.goal_space import Edge, Flags, Floats, GoalsIn
+from hearth.agents.forecast import GIVE, HANDS, TAKE, Forecast, Stop
+from hearth.agents.goal_space import Edge, GoalsIn
+from hearth.agents.heaps import HELPER, Situation
 from hearth.agents.online import OnlineHelper
-from hearth.agents.posterior import FAR, USUAL_MODEL, ActionModel
+from hearth.agents.posterior import USUAL_MODEL, ActionModel
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
-from hearth.simulation.world.states import CLOSED
 
-HANDS_OF_ANYBODY = 2
-
-LEAST = 0.05
-"""Probability below which it is not worth reckoning."""
-
-BOTH_HANDS = 6
-"""Ticks that it takes more to open something with both hands full."""
+CERTAIN = 0.999
+"""Probability from which on a goal is taken for granted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,190 +30,139 @@ class Settings:
     """How it helps.
 
     Attributes:
+        goals: how many stand for the posterior.
+        patience: ticks of waiting that a plan must beat, as if the goal would be known after them.
         take, keep: the least probability that a thing is wanted, to take it and to keep it.
-        deliver: the least probability of where it is wanted, given that it is, to bring it there.
-        committed: how probable it must be that the partner is at a thing, to leave it alone.
-        loyalty: how much better a new subgoal must be than the present one.
-        candidates: how many things are looked at closely.
+        needless: ticks that a thing costs which turns out not to be wanted, or not where it is put.
+        loyalty: ticks by which a new subgoal must be better than the present one.
+        nearest, paired: how many heaps are looked at for a single thing, and for two at once.
+        sure: how probable a thing must be under a goal to be what the partner goes for.
     """
 
-    take: float = 0.35
+    goals: int = 10
+    patience: float = 6.0
+    take: float = 0.3
     keep: float = 0.15
-    deliver: float = 0.6
-    committed: float = 0.5
-    loyalty: float = 1.2
-    candidates: int = 8
+    needless: float = 2.0
+    loyalty: float = 0.4
+    nearest: int = 6
+    paired: int = 4
+    sure: float = 0.5
 
 
 USUAL = Settings()
 
 
-@dataclass(frozen=True, slots=True)
-class _Stakes:
-    """What each thing is worth. P predicates, T things.
-
-    Attributes:
-        first, second: (P, T) ticks that the partner is expected to save by a thing where a predicate wants it, and by
-            another one after it.
-        wanted: (P, T) the probability that it is wanted there.
-    """
-
-    first: Floats
-    second: Floats
-    wanted: Floats
-
-    def any(self, number: int) -> float:
-        """The probability that a thing is wanted anywhere."""
-        return min(1.0, float(self.wanted[:, number].sum()))
-
-
 class ExpectedTime(OnlineHelper):
-    """Does what saves the most expected ticks in each of its own."""
+    """Does what is expected to let its partner finish soonest."""
 
     def __init__(self, goals: GoalsIn, settings: Settings = USUAL, model: ActionModel = USUAL_MODEL) -> None:
         super().__init__(goals, model)
         self.settings = settings
 
     def choose(self, view: View) -> Edge | None:
-        """The first step of the plan that is worth most in each tick; None to wait."""
-        stakes = self._stakes(view)
-        held = [self.space.things.index(thing) for thing in self.held(view)]
-        plans = {**self._deliveries(view, stakes, held), **self._fetches(view, stakes, held)}
-        for number in held:
-            if stakes.any(number) < self.settings.keep:
-                relation, node = self.first_places[self.space.things[number]]
-                plans[Edge(relation, self.space.things[number], node)] = 1e-6
-        if not plans:
-            return None
-        best = max(plans, key=lambda each: (plans[each], each))
-        now = self.subgoal
-        if now in plans and plans[now] * self.settings.loyalty >= plans[best]:
-            return now
-        return best
+        """The first step of the best plan; None to wait."""
+        self._look(view)
+        if not self._forecasts:
+            return self._back(view)
+        best, chosen = float("inf"), None
+        if self._forecasts[0][0] < CERTAIN:
+            best = self._expected((), self.settings.patience)
+        for stops in self._plans(view):
+            edge = self._edge(stops[0])
+            value = self._expected(stops) - self.settings.loyalty * (edge == self.subgoal)
+            if value < best:
+                best, chosen = value, edge
+        return chosen or self._back(view)
 
-    def _stakes(self, view: View) -> _Stakes:
-        """What each thing would save, over all goals."""
-        posterior, space = self.posterior, self.space
-        lacking = posterior.missing.copy()
-        going = posterior.weights @ posterior.pursued
-        theirs = int(going.argmax()) if going.max() > self.settings.committed else -1
-        if theirs >= 0:
-            lacking[:, space.fits[:, theirs]] = np.maximum(0, lacking[:, space.fits[:, theirs]] - 1)
-        cost = self._round_trips(view)
-        ordered = np.sort(cost, axis=1)
-        first, second = np.zeros_like(cost), np.zeros_like(cost)
-        wanted = np.zeros_like(cost)
-        for number in range(1, int(lacking.max(initial=0)) + 1):
-            share = posterior.weights @ (lacking == number)
-            nth = ordered[:, min(number, ordered.shape[1]) - 1]
-            before = ordered[:, max(0, number - 2)]
-            first += share[:, None] * np.minimum(cost, nth[:, None])
-            if number > 1:
-                second += share[:, None] * np.minimum(cost, before[:, None])
-            wanted += share[:, None]
-        able = space.fits & (cost < FAR)
-        if theirs >= 0:
-            overtaking = self._overtaking(view, theirs, able, (posterior.missing > 0) & (lacking == 0))
-            first += overtaking
-            share = posterior.weights @ ((posterior.missing > 0) & (lacking == 0))
-            wanted += np.where(overtaking.sum(axis=0) > 0, share[:, None], 0)
-        return _Stakes(np.where(able, first, 0), np.where(able, second, 0), np.where(able, wanted, 0))
+    def _look(self, view: View) -> None:
+        """The situation, the goals that stand for all, and how probably the things of each heap are wanted."""
+        posterior, space, other = self.posterior, self.space, view.others[0]
+        giving = self.ticks(view, [(self.partner, 1)])
+        ways = (posterior.distances, self.distances)
+        self._now = Situation(space, posterior.places, view.world, (other, view.me), ways, giving)
+        self._forecasts = []
+        for goal, share in self._representatives():
+            lacking = {row: number for row, number in enumerate(posterior.missing[goal].tolist()) if number}
+            pursued = int(posterior.pursued[goal].argmax())
+            sure = posterior.pursued[goal, pursued] > self.settings.sure
+            if lacking:
+                self._forecasts.append((share, Forecast(self._now, lacking, pursued if sure else -1)))
+        missing = posterior.missing > 0
+        known: dict[tuple[int, ...], float] = {}
+        for heap in self._now.heaps:
+            if heap.rows not in known:
+                known[heap.rows] = float(posterior.weights @ missing[:, list(heap.rows)].any(axis=1))
+        self._wanted = [known[heap.rows] for heap in self._now.heaps]
+        self._rows = posterior.expected
 
-    def _overtaking(self, view: View, theirs: int, able: Flags, last: Flags) -> Floats:
-        """(P, T) ticks saved where what the partner goes for is the last that is wanted, and the helper is faster."""
-        found = np.zeros(able.shape)
-        share = self.posterior.weights @ last
-        rest = self.posterior.costs(view.world, view.others[0])[:, theirs]
-        for row in np.flatnonzero((share > LEAST) & self.space.fits[:, theirs]):
-            target = self.putting(self.space.relations[row], int(self.space.targets[row]), view.world)
-            for number in np.flatnonzero(able[row]):
-                place = self.belief.where[self.space.things[number]]
-                if place.relation != HOLDS or place.node == self.me:
-                    stops = [target] if place.node == self.me else [self.taking(place, view.world), target]
-                    found[row, number] = share[row] * max(0.0, rest[row] - self.ticks(view, stops))
-        return found
+    def _representatives(self) -> list[tuple[int, float]]:
+        """Goals at equal steps of the cumulated posterior, with their shares, the likeliest first."""
+        weights, number = self.posterior.weights, self.settings.goals
+        order = np.argsort(-weights, kind="stable")
+        total = np.cumsum(weights[order])
+        steps = (np.arange(number) + 0.5) / number * total[-1]
+        chosen, counts = np.unique(np.searchsorted(total, steps).clip(0, len(order) - 1), return_counts=True)
+        return [(int(order[each]), int(count) / number) for each, count in zip(chosen, counts, strict=True)]
 
-    def _round_trips(self, view: View) -> Floats:
-        """(P, T) ticks in which the partner would fetch a thing from where a predicate wants it; FAR of what it has,
-        and of what is where it is wanted.
-        """
-        world, distances = view.world, self.posterior.distances
-        found = np.full(self.space.fits.shape, FAR)
-        counted = self.space.counted(self.space.places(world))
-        for number, thing in enumerate(self.space.things):
-            relation, node = self.belief.where[thing]
-            if node == self.partner:
-                continue
-            if relation == HOLDS:
+    def _plans(self, view: View) -> Iterator[Sequence[Stop]]:
+        """What it could do next: bring or hand over what it holds, take one thing, or two."""
+        heaps, settings = self._now.heaps, self.settings
+        held = [number for number, heap in enumerate(heaps) if heap.holder == HELPER for _ in heap.things]
+        for number in dict.fromkeys(held):
+            if self._wanted[number] >= settings.keep:
+                likely = [row for row in heaps[number].rows if self._rows[row] > settings.keep]
+                yield from ((Stop(number, row),) for row in likely)
+                if len(likely) > 1 and not view.others[0].holding:
+                    yield (Stop(number, GIVE),)
+        if len(self.held(view)) == HANDS:
+            return
+        near = self._nearest()
+        yield from ((Stop(number),) for number in near)
+        if not held:
+            for one in near[: settings.paired]:
+                for other in near[: settings.paired]:
+                    if one != other or len(heaps[one].things) >= HANDS:
+                        yield Stop(one), Stop(other)
+
+    def _nearest(self) -> list[int]:
+        """The heaps that are worth a look: probably wanted, and brought in few ticks."""
+        found = []
+        for number, heap in enumerate(self._now.heaps):
+            if heap.holder < 0 and self._wanted[number] >= self.settings.take:
+                row = max(heap.rows, key=lambda row: self._rows[row])
+                ticks, cell = self._now.leg(HELPER, self._now.starts[HELPER], heap.node)
+                ticks += 2 + self._now.leg(HELPER, cell, self._now.targets[row][0])[0]
+                found.append((ticks / self._wanted[number], number))
+        return [number for _, number in sorted(found)[: self.settings.nearest]]
+
+    def _expected(self, stops: Sequence[Stop], wait: float = 0.0) -> float:
+        """Expected ticks until the partner has reached its goal, and the price of what is taken needlessly."""
+        ticks = sum(share * each.finish(stops, wait) for share, each in self._forecasts)
+        unwanted = sum(
+            1 - (self._wanted[heap] if row == TAKE else self._rows[row]) for heap, row in stops if row != GIVE
+        )
+        return ticks + self.settings.needless * unwanted
+
+    def _edge(self, stop: Stop) -> Edge:
+        things = [self.space.things[number] for number in self._now.heaps[stop.heap].things]
+        same = self.subgoal is not None and self.subgoal.thing in things
+        thing = self.subgoal.thing if same and self.subgoal else things[0]
+        if stop.row == TAKE:
+            return Edge("", thing)
+        if stop.row == GIVE:
+            return Edge(HOLDS, thing, self.partner)
+        return Edge(self.space.relations[stop.row], thing, int(self.space.targets[stop.row]))
+
+    def _back(self, view: View) -> Edge | None:
+        """Bring back what it holds and nobody wants."""
+        wanted = {
+            self.space.things[number]: probability
+            for heap, probability in zip(self._now.heaps, self._wanted, strict=True)
+            for number in heap.things
+        }
+        for thing in self.held(view):
+            if wanted.get(thing, 0.0) < self.settings.keep:
                 relation, node = self.first_places[thing]
-            for row in np.flatnonzero(self.space.fits[:, number] & ~counted[:, number]):
-                end = distances.end(int(self.space.targets[row]))
-                ticks = distances.ticks(distances.leg(end, node)[0])
-                shut = relation == "INSIDE" and world.states[CLOSED] >> node & 1
-                found[row, number] = 2 * ticks + 2 + shut
-        return found
-
-    def _deliveries(self, view: View, stakes: _Stakes, held: list[int]) -> dict[Edge, float]:
-        """Bringing what it holds to where it is wanted, or to the partner, with what that is worth a tick."""
-        found = {}
-        for number in held:
-            thing = self.space.things[number]
-            if (likely := stakes.any(number)) < self.settings.keep:
-                continue
-            row = int(stakes.wanted[:, number].argmax())
-            relation, target = self.space.relations[row], int(self.space.targets[row])
-            ticks = self.ticks(view, [self.putting(relation, target, view.world)])
-            if stakes.wanted[row, number] >= self.settings.deliver * likely:
-                found[Edge(relation, thing, target)] = float(stakes.first[row, number]) / ticks
-            elif not view.others[0].holding:
-                ticks = self.ticks(view, [(self.partner, 1)])
-                found[Edge(HOLDS, thing, self.partner)] = float(stakes.first[:, number].sum()) / 2 / ticks
-        return found
-
-    def _fetches(self, view: View, stakes: _Stakes, held: list[int]) -> dict[Edge, float]:
-        """Taking another thing and then bringing all there is in hand, with what that is worth a tick."""
-        hands = view.world.agents[view.agent]
-        if bool(hands.right) + bool(hands.left) == HANDS_OF_ANYBODY:
-            return {}
-        found: dict[Edge, float] = {}
-        near = self._candidates(view, stakes, held)
-        for number, alone in near.items():
-            plans = [self._worth(view, stakes, [*held, number], [number])]
-            if not held:
-                plans += [
-                    self._worth(view, stakes, [number, other], [number, other]) for other in near if other != number
-                ]
-            thing = self.space.things[number]
-            found[Edge("", thing)] = max(plans) if alone else 0.0
-        return {subgoal: worth for subgoal, worth in found.items() if worth > 0}
-
-    def _candidates(self, view: View, stakes: _Stakes, held: list[int]) -> dict[int, float]:
-        """The things most worth taking by themselves."""
-        found = {}
-        for number, thing in enumerate(self.space.things):
-            place = self.belief.where[thing]
-            if number in held or place.relation == HOLDS or stakes.any(number) < self.settings.take:
-                continue
-            if worth := self._worth(view, stakes, [number], [number]):
-                found[number] = worth
-        best = sorted(found, key=lambda number: (-found[number], number))[: self.settings.candidates]
-        return {number: found[number] for number in best}
-
-    def _worth(self, view: View, stakes: _Stakes, carried: list[int], taken: list[int]) -> float:
-        """Expected ticks saved in each tick by taking some things and bringing all that are carried where they are
-        probably wanted; of two for one predicate, the second counts as such.
-        """
-        stops = [self.taking(self.belief.where[self.space.things[number]], view.world) for number in taken]
-        saved, burden, rows = 0.0, 0, []
-        for number in carried:
-            row = int(stakes.first[:, number].argmax())
-            worth = stakes.second if row in rows else stakes.first
-            more = float(worth[:, number].sum())
-            if more <= 0:
-                return 0.0
-            saved += more
-            stop = self.putting(self.space.relations[row], int(self.space.targets[row]), view.world)
-            stops.append((stop[0], 1) if row in rows else stop)
-            rows.append(row)
-            burden += BOTH_HANDS * (len(carried) == HANDS_OF_ANYBODY and number == carried[0] and stop[1] > 1)
-        return saved / max(1.0, self.ticks(view, stops) + burden)
+                return Edge(relation, thing, node)
+        return None

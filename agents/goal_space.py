@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.agents.belief import place_of
+from hearth.agents.belief import Place, place_of
 from hearth.schemas.goals import Goal
+from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -35,6 +37,13 @@ class Edge(NamedTuple):
     target: int = -1
 
 
+Counts = tuple[int, ...]
+"""How many a goal wants of each predicate of a space."""
+
+Places = list[Place]
+"""Where each thing of a space is."""
+
+
 GoalsIn = Callable[[Home], Mapping[Goal, float]]
 """The goals that there may be in a home, naming its furniture by id, with their probabilities."""
 
@@ -46,7 +55,7 @@ class GoalSpace:
     Attributes:
         goals: all of them.
         prior: (G,) their probabilities.
-        relations: of each predicate.
+        predicates: (P) what goals count, naming furniture of the home.
         targets: (P,) index of the furniture of each.
         counts: (G, P) how many are wanted.
         things: indices of the things.
@@ -55,7 +64,7 @@ class GoalSpace:
 
     goals: tuple[Goal, ...]
     prior: Floats
-    relations: tuple[str, ...]
+    predicates: tuple[Literal[Name], ...]
     targets: Numbers
     counts: Numbers
     things: tuple[int, ...]
@@ -87,18 +96,46 @@ class GoalSpace:
         return cls(
             tuple(goals),
             prior / prior.sum(),
-            tuple(literal.name for literal in predicates),
+            tuple(predicates),
             np.array(list(places.values()), np.int64),
             counts,
             things,
             fits.reshape(len(predicates), len(things)),
         )
 
-    def places(self, world: World) -> list[tuple[str, int]]:
+    @cached_property
+    def relations(self) -> tuple[str, ...]:
+        """Of each predicate."""
+        return tuple(each.name for each in self.predicates)
+
+    @cached_property
+    def classes(self) -> tuple[str, ...]:
+        """Of the things that each predicate counts."""
+        return tuple(str(each.subject) for each in self.predicates)
+
+    @cached_property
+    def wanted(self) -> tuple[Counts, ...]:
+        """(G) how many each goal wants of each predicate."""
+        return tuple(map(tuple, self.counts.tolist()))
+
+    def goal(self, counts: Counts) -> Goal:
+        """The goal of some counts of predicates."""
+        return Goal(tuple((each, count) for each, count in zip(self.predicates, counts, strict=True) if count))
+
+    @cached_property
+    def rows_of(self) -> tuple[tuple[int, ...], ...]:
+        """(T) the predicates that each thing may count for."""
+        return tuple(tuple(np.flatnonzero(column).tolist()) for column in self.fits.T)
+
+    def counts_at(self, row: int, relation: str, node: int) -> bool:
+        """Whether a thing that fits a predicate counts for it in some place."""
+        return bool(self.targets[row] == node) and self.relations[row] == relation
+
+    def places(self, world: World) -> Places:
         """(T) where each thing is now: what it is on or in, who holds it, or its room."""
         return [place_of(world, thing) for thing in self.things]
 
-    def counted(self, places: list[tuple[str, int]]) -> Flags:
+    def counted(self, places: Places) -> Flags:
         """(P, T) whether a thing counts for a predicate where it is."""
         nodes = np.array([node for _, node in places], np.int64)
         here: Flags = self.fits & (self.targets[:, None] == nodes)

@@ -6,7 +6,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Literal as Choice
 
-from hearth.agents.goal_space import Edge, GoalsIn
+from hearth.agents.goal_space import Counts, Edge, GoalsIn
+from hearth.agents.network_proposals import NetworkProposals
 from hearth.agents.online import OnlineHelper
 from hearth.agents.posterior import USUAL_MODEL, ActionModel
 from hearth.agents.prospects import Planner, Prospect
@@ -14,8 +15,10 @@ from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 
-Proposals = Choice["exact", "uniform", "likeliest"]
-"""Where particles come from: the exact posterior, all goals with equal probability, or the likeliest goal alone."""
+Source = Choice["exact", "uniform", "likeliest", "gpn"]
+"""Where particles come from: the exact posterior, all goals with equal probability, the likeliest goal alone, or the
+goal proposal network, which needs the extra `models`.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +27,7 @@ class Settings:
 
     Attributes:
         proposals: of goals.
+        model: the network that proposes them, where one does: a checkpoint's folder, or a name of `model list`.
         particles: K, how many goals are proposed at once.
         horizon: T_prop, ticks for which a plan is predicted and after which goals are proposed anew.
         ahead: L_max, ticks after which an edge is expected that no predicted plan brings about.
@@ -33,7 +37,8 @@ class Settings:
         keeps: V that a new subgoal must be better than the present one.
     """
 
-    proposals: Proposals = "exact"
+    proposals: Source = "exact"
+    model: str = "goal-proposals"
     particles: int = 20
     horizon: float = 5.0
     ahead: float = 100.0
@@ -58,12 +63,16 @@ class Nopa(OnlineHelper):
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode (see `agents.protocol`)."""
         super().reset(observation, goal, seed)
-        self._particles: list[tuple[int, frozenset[int]]] = []
+        self._particles: list[tuple[Counts, frozenset[int]]] = []
+        self._network = None
+        if self.settings.proposals == "gpn":
+            self._network = NetworkProposals(self.space, self.settings.model, self.partner, observation.world)
         self._age = 0.0
 
     def choose(self, view: View) -> Edge | None:
         """The best edge; None where none is worth more than waiting."""
-        planner = Planner(self.space, view.world, view.others[0], self.posterior.distances)
+        places = self.posterior.places
+        planner = Planner(self.space, places, view.world, view.others[0], self.posterior.distances)
         self._reject(view)
         if not self._particles or self._age >= self.settings.horizon:
             self._propose(planner)
@@ -88,23 +97,33 @@ class Nopa(OnlineHelper):
             self._particles = [each for each in self._particles if nodes <= each[1]]
 
     def _propose(self, planner: Planner) -> None:
-        number = self.settings.particles
-        if self.settings.proposals == "likeliest":
-            goals = self.posterior.likeliest(1).tolist()
-        elif self.settings.proposals == "exact":
-            goals = self.chooser.choices(range(len(self.space.goals)), self.posterior.weights.tolist(), k=number)
-        else:
-            goals = [self.chooser.randrange(len(self.space.goals)) for _ in range(number)]
+        goals = self._drawn()
         found = {goal: planner.prospect(goal, self.settings.horizon).nodes for goal in set(goals)}
         self._particles = [(goal, found[goal]) for goal in goals]
         self._age = 0.0
 
-    def _weighed(self, planner: Planner) -> list[tuple[float, Prospect]]:
-        """The goals of the particles with their shares and what is predicted under each from now on."""
-        shares: defaultdict[int, float] = defaultdict(float)
+    def _drawn(self) -> list[Counts]:
+        """Goals drawn from the proposals (algorithm 2, line 13)."""
+        number, wanted = self.settings.particles, self.space.wanted
+        if self._network is not None:
+            return self._network.drawn(self.posterior.places, number, self.chooser)
+        if self.settings.proposals == "likeliest":
+            return [wanted[goal] for goal in self.posterior.likeliest(1).tolist()]
+        if self.settings.proposals == "exact":
+            return self.chooser.choices(wanted, self.posterior.weights.tolist(), k=number)
+        return [self.chooser.choice(wanted) for _ in range(number)]
+
+    @property
+    def proposed(self) -> dict[Counts, float]:
+        """The goals of its particles, with their shares."""
+        shares: defaultdict[Counts, float] = defaultdict(float)
         for goal, _ in self._particles:
             shares[goal] += 1 / len(self._particles)
-        return [(share, planner.prospect(goal, self.settings.horizon)) for goal, share in shares.items()]
+        return dict(shares)
+
+    def _weighed(self, planner: Planner) -> list[tuple[float, Prospect]]:
+        """The goals of the particles with their shares and what is predicted under each from now on."""
+        return [(share, planner.prospect(goal, self.settings.horizon)) for goal, share in self.proposed.items()]
 
     def _values(self, view: View, prospects: list[tuple[float, Prospect]]) -> dict[Edge, float]:
         """The value of each edge that could be helped with (algorithm 3)."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from hearth.agents.belief import Belief, Place, place_of
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Edge, GoalsIn, GoalSpace
+from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace
 from hearth.agents.posterior import USUAL_MODEL, ActionModel, Posterior
 from hearth.agents.regression import Regression
 from hearth.schemas.goals import Goal
@@ -23,6 +23,10 @@ from hearth.simulation.world.world import World
 
 CROOKED = 1.3
 """How much longer a way is than a straight line."""
+
+
+MOST_PROPOSED = 100
+"""Goals of a posterior that are shown; the others have next to no probability."""
 
 
 class OnlineHelper:
@@ -63,6 +67,12 @@ class OnlineHelper:
         if self.subgoal is None:
             return None
         return self._first(Regression(observation, legal, self.belief, self._spare(observation)), self.subgoal)
+
+    @property
+    def proposed(self) -> dict[Counts, float]:
+        """The goals that it reckons with, with their probabilities."""
+        likely = self.posterior.likeliest(MOST_PROPOSED).tolist()
+        return {self.space.wanted[goal]: self.posterior.probability(goal) for goal in likely}
 
     def choose(self, view: View) -> Edge | None:
         """What to help with now; None to wait."""

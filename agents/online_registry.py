@@ -9,6 +9,7 @@ from hearth.agents.empowerment import Empowerment
 from hearth.agents.expected_time import ExpectedTime
 from hearth.agents.goal_space import GoalsIn
 from hearth.agents.nopa import Nopa, Settings
+from hearth.agents.proposed_plans import ProposedPlans
 from hearth.agents.protocol import Agent
 
 
@@ -19,19 +20,33 @@ class OnlineKind:
     Attributes:
         make: makes the helper of the goals that there may be.
         about: what it is, for tables.
+        network: whether it asks the goal proposal network, which needs the extra `models`.
     """
 
     make: Callable[[GoalsIn], Agent]
     about: str
+    network: bool = False
+
+
+SMALL = "goal-proposals-small"
+"""The network that was trained on 300 episodes."""
 
 
 def _nopa(about: str, settings: Settings) -> OnlineKind:
-    return OnlineKind(lambda goals: Nopa(goals, settings), about)
+    return OnlineKind(lambda goals: Nopa(goals, settings), about, settings.proposals == "gpn")
 
 
 ONLINE: dict[str, OnlineKind] = {
     "expected_time": OnlineKind(ExpectedTime, "saves the most expected ticks, over the exact posterior"),
     "nopa": _nopa("NOPA, proposals from the exact posterior", Settings()),
+    "nopa_gpn": _nopa("NOPA, proposals from the network", Settings(proposals="gpn")),
+    "nopa_gpn_s": _nopa("NOPA, proposals from the network of 300 episodes", Settings(proposals="gpn", model=SMALL)),
+    "hp_gpn": OnlineKind(ProposedPlans, "planner for the network's most probable goal", network=True),
+    "hp_gpn_s": OnlineKind(lambda goals: ProposedPlans(goals, SMALL), "the same, 300 episodes", network=True),
+    "af_gpn": OnlineKind(
+        lambda goals: ProposedPlans(goals, particles=20), "the commonest first action of 20 plans", network=True
+    ),
+    **{f"nopa_k{k}": _nopa(f"NOPA with {k} particles", Settings(particles=k)) for k in (1, 2, 5, 10, 40)},
     "nopa_uniform": _nopa("NOPA, uniform proposals (RG)", Settings(proposals="uniform")),
     "nopa_no_inverse": _nopa(
         "NOPA, uniform proposals, no inverse planning", Settings(proposals="uniform", inverse_planning=False)

@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers
+from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers, Places
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import HANDS, HOLDS
@@ -22,6 +22,9 @@ from hearth.simulation.observation.views import Pose
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.states import CLOSED
 from hearth.simulation.world.world import World
+
+MOST = 1_000
+"""Things of a predicate that goals want, at most."""
 
 FAR = 1e6
 """Ticks to what can't be reached."""
@@ -36,7 +39,7 @@ class ActionModel:
         slip: probability of an action that the model does not explain.
     """
 
-    rationality: float = 0.2
+    rationality: float = 0.3
     slip: float = 0.02
 
 
@@ -62,7 +65,7 @@ class Posterior:
         self._known = home.knowledge
         self._home = home
         self._last: tuple[Step, Failure | None] | None = None
-        self._places: list[tuple[str, int]] = []
+        self.places: Places = []
 
     def observe(self, world: World, other: Pose) -> None:
         """Take in what somebody has just tried, and the world since then.
@@ -72,12 +75,12 @@ class Posterior:
             other: how that one stands, with what it last tried.
         """
         last = None if other.last is None else (other.last.instruction, other.last.failure)
-        if last is not None and self._places and last != self._last:
+        if last is not None and self.places and last != self._last:
             self._weigh(last[0])
         self._last = last
         places = self.space.places(world)
-        if places != self._places:
-            self._places = places
+        if places != self.places:
+            self.places = places
             counted = self.space.counted(places)
             self.missing = self.space.missing(counted)
             self._keep(np.asarray(self.missing.any(axis=1), np.float64))
@@ -85,13 +88,31 @@ class Posterior:
             self._last = None
 
     def _expect(self, world: World, other: Pose, counted: Flags) -> None:
-        """What is fetched or carried next under each goal, by cost from where the one who acts stands."""
+        """What is fetched or carried next under each goal.
+
+        Whoever must fetch all of some things saves most by beginning with those that are near now, but far from where
+        they are wanted: what counts is the cost from here less the cost from there, or that of the dearest thing that
+        is needed otherwise.
+        """
         space, me = self.space, self._home.index[other.node]
-        self._held = np.array([place == (HOLDS, me) for place in self._places])
+        self._held = np.array([place == (HOLDS, me) for place in self.places])
         cost = self.costs(world, other)
-        near = np.exp(-self.model.rationality * (cost - cost.min(axis=1, keepdims=True)))
-        useful = np.where(space.fits & ~counted & (cost < FAR), near, 0.0)
-        found = (self.missing > 0).astype(np.float64) @ useful
+        able = space.fits & ~counted & (cost < FAR)
+        trips = np.where(self._held, cost, self.round_trips(world))
+        ordered = np.sort(np.where(able, trips, FAR), axis=1)
+        last = able.sum(axis=1) - 1
+        goals, rows = np.nonzero(self.missing)
+        needed, which = np.unique(
+            rows * MOST + self.missing[goals, rows], return_inverse=True
+        )  # few pairs in many goals
+        row, number = np.divmod(needed, MOST)
+        dearest = ordered[row, np.clip(last[row], 0, number - 1)]
+        order = np.where(able[row], cost[row] - np.minimum(trips[row], dearest[:, None]), np.inf)
+        least = float(order.min(initial=np.inf))
+        near = np.exp(-self.model.rationality * (order - (least if np.isfinite(least) else 0.0)))[which]
+        found = np.zeros((len(space.goals), len(space.things)))
+        begins = np.flatnonzero(np.diff(goals, prepend=-1))
+        found[goals[begins]] = np.add.reduceat(near, begins) if len(begins) else 0.0
         carried = found * self._held
         found = np.where(carried.any(axis=1, keepdims=True), carried, found)
         total = found.sum(axis=1, keepdims=True)
@@ -102,18 +123,33 @@ class Posterior:
         start = self.distances.cell(other.place)
         me, closed = self._home.index[other.node], world.states[CLOSED]
         found = np.full(self.space.fits.shape, FAR)
-        for number, (relation, node) in enumerate(self._places):
+        for number, (relation, node) in enumerate(self.places):
             if relation == HOLDS and node != me:
                 continue
             fetched, cell = 0.0, start
             if relation != HOLDS:
                 metres, cell = self.distances.leg(start, node)
                 fetched = self.distances.ticks(metres) + 1 + (relation == "INSIDE" and closed >> node & 1)
-            for row in np.flatnonzero(self.space.fits[:, number]):
+            for row in self.space.rows_of[number]:
                 target = int(self.space.targets[row])
                 carried = self.distances.ticks(self.distances.leg(cell, target)[0])
                 shut = self.space.relations[row] == "INSIDE" and closed >> target & 1
                 found[row, number] = fetched + carried + 1 + shut
+        return found
+
+    def round_trips(self, world: World) -> Floats:
+        """(P, T) ticks in which a thing is fetched from where a predicate wants it; FAR of what somebody holds."""
+        distances, closed = self.distances, world.states[CLOSED]
+        found = np.full(self.space.fits.shape, FAR)
+        for number, (relation, node) in enumerate(self.places):
+            if relation == HOLDS:
+                continue
+            shut = relation == "INSIDE" and closed >> node & 1
+            for row in self.space.rows_of[number]:
+                target = int(self.space.targets[row])
+                metres, cell = distances.leg(distances.end(target), node)
+                there = distances.ticks(distances.leg(cell, target)[0])
+                found[row, number] = distances.ticks(metres) + there + 2 + shut
         return found
 
     def _weigh(self, step: Step) -> None:
@@ -158,7 +194,7 @@ class Posterior:
         fetched = np.array(
             [
                 node in (thing, place) or (of_room and bool(self._home.inside[place] >> node & 1))
-                for thing, (_, place) in zip(self.space.things, self._places, strict=True)
+                for thing, (_, place) in zip(self.space.things, self.places, strict=True)
             ],
             np.float64,
         )

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Edge, Flags, GoalSpace, Numbers
+from hearth.agents.goal_space import Counts, Edge, Flags, GoalSpace, Places
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
 from hearth.simulation.world.states import CLOSED
@@ -57,25 +57,25 @@ class Planner:
     """Predicts plans in one world.
 
     Attributes:
-        space: the goals, by number.
-        missing: (G, P) what each goal lacks.
+        space: the goals.
     """
 
-    def __init__(self, space: GoalSpace, world: World, other: Pose, distances: Distances) -> None:
+    def __init__(self, space: GoalSpace, places: Places, world: World, other: Pose, distances: Distances) -> None:
         self.space = space
         self._world, self._distances = world, distances
         self._me = world.home.index[other.node]
         self._start = distances.cell(other.place)
-        self._places = space.places(world)
-        counted = space.counted(self._places)
-        self.missing: Numbers = space.missing(counted)
+        self._places = places
+        counted = space.counted(places)
+        self._found = counted.sum(axis=1).tolist()
         self._away: Flags = space.fits & ~counted
         self._taken = {t for t, (relation, node) in enumerate(self._places) if relation == HOLDS and node != self._me}
         self._known: dict[tuple[int, int], tuple[float, int]] = {}
 
-    def prospect(self, goal: int, horizon: float) -> Prospect:
-        """The plan for a goal, by its number, until a number of ticks."""
-        lacking = {row: number for row, number in enumerate(self.missing[goal].tolist()) if number}
+    def prospect(self, goal: Counts, horizon: float) -> Prospect:
+        """The plan for a goal until a number of ticks."""
+        pairs = enumerate(zip(goal, self._found, strict=True))
+        lacking = {row: wanted - found for row, (wanted, found) in pairs if wanted > found}
         things = np.flatnonzero(self._away[list(lacking)].any(axis=0)).tolist()
         plan = _Plan(lacking, things, self._start)
         while plan.now < horizon and (ways := list(self._ways(plan))):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape
@@ -12,7 +13,7 @@ from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_registry import ONLINE
 from hearth.challenges.episodes import Known
 from hearth.challenges.lineup import NOBODY, Lineup
-from hearth.challenges.metrics import of_tasks, paired, speedups, summary
+from hearth.challenges.metrics import mean, of_tasks, paired, speedups, summary
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import Suite
@@ -46,7 +47,13 @@ class Method:
 
 
 def methods(
-    suite: Suite, seeds: int, folder: Path, known: Known, workers: int = 1, watch: Callable[[str], Seen] | None = None
+    suite: Suite,
+    seeds: int,
+    folder: Path,
+    known: Known,
+    workers: int = 1,
+    watch: Callable[[str], Seen] | None = None,
+    table: str = "",
 ) -> Iterator[Method]:
     """Run every method; results that a folder has already are kept, and who is alone is run once.
 
@@ -57,18 +64,36 @@ def methods(
         known: gives the knowledge.
         workers: processes.
         watch: for the name of a method, what is called with the number of its episodes done.
+        table: whose methods; the challenge's own where empty.
     """
     folder.mkdir(parents=True, exist_ok=True)
     alone: Results | None = None
-    for row in TABLES[suite.challenge]["methods"]:
+    for row in TABLES[table or suite.challenge]["methods"]:
         helper, found = row["helper"], None
-        if helper in (NOBODY, *HELPERS, *ONLINE):
+        if helper in (NOBODY, *HELPERS, *ONLINE) and _ready(helper):
             seen = watch(row["name"]) if watch else unseen
             goal = row.get("goal", "")
             out = inside(folder, f"{helper}{goal and '-'}{goal}.jsonl")
             found = run(suite, Lineup(helper=helper, goal=goal), seeds, out, known, workers, seen, alone)
             alone = alone or found
         yield Method(row["name"], helper, row.get("thesis", ""), found)
+
+
+def _ready(helper: str) -> bool:
+    """Whether the libraries are installed that a helper needs."""
+    asks = helper in ONLINE and ONLINE[helper].network
+    return not asks or all(find_spec(name) is not None for name in ("torch", "safetensors"))
+
+
+def by_set(results: Results) -> dict[str, dict[str, float]]:
+    """The speedup for each goal set, with half the width of its 95 % interval (figures 7-6a, C-3)."""
+    sets = {task.id: task.sets[0] for task in results.header.suite.tasks}
+    found = speedups(results.outcomes(False), results.outcomes(results.header.helped[-1]))
+    shown = {}
+    for name in dict.fromkeys(sets.values()):
+        one = mean([value for task, value in found.items() if sets[task] == name])
+        shown[name] = {"speedup": one.value, "speedup_ci": CONFIDENT * (one.error or 0.0)}
+    return shown
 
 
 def rows(found: Sequence[Method]) -> list[dict[str, Any]]:
@@ -93,7 +118,8 @@ def _figures(results: Results) -> dict[str, Any]:
         row[name] = found[name]
         row[f"{name}_ci"] = CONFIDENT * (found[f"{name}_se"] or 0.0)
     test = paired(of_tasks(helped or alone, "length"), of_tasks(alone, "length"))
-    return {**row, "t": test.t, "p": test.p, "freedom": test.freedom, "effect": test.effect}
+    tested = {"t": test.t, "p": test.p, "freedom": test.freedom, "effect": test.effect}
+    return {**row, **tested, "by_set": by_set(results)}
 
 
 def versus(one: Results, other: Results) -> dict[str, Any]:

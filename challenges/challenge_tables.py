@@ -9,9 +9,11 @@ from typing import Any
 
 import pyarrow as pa
 
+from hearth.agents.online_registry import ONLINE
 from hearth.challenges import published_tasks, table_rows
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Known, Record
+from hearth.challenges.helper_beliefs import beliefs
 from hearth.challenges.playing_demonstrations import Demonstration, demonstrations
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
@@ -34,9 +36,13 @@ TABLES: dict[str, pa.Schema] = {
         "demonstrations": table_rows.DemonstrationRow,
         "episodes": table_rows.EpisodeRow,
         "trajectories": table_rows.TrajectoryRow,
+        "posteriors": table_rows.PosteriorRow,
     }.items()
 }
 """Published tables by name; each is one file."""
+
+SHOWN = 0.01
+"""Probability from which on a predicate has a row in `posteriors`."""
 
 VIEWS = {
     "demonstration_steps": (
@@ -83,6 +89,7 @@ def publish(
         "demonstrations": (_demonstration(each, rate) for each in shown),
         "episodes": (_episode(found, each) for found in results for each in found.records),
         "trajectories": (row for found in results for each in found.records for row in _trajectory(found, each)),
+        "posteriors": (row for found in results for each in found.records for row in _posterior(found, each, known)),
     }
     folder.mkdir(parents=True, exist_ok=True)
     counts = {}
@@ -188,3 +195,23 @@ def _trajectory(found: Results, record: Record) -> Iterator[dict[str, Any]]:
         for agent, text in enumerate(texts):
             if text is not None:
                 yield {"episode_id": name, "agent": agent, **_instruction(tick, text)}
+
+
+def _posterior(found: Results, record: Record, known: Known) -> Iterator[table_rows.PosteriorRow]:
+    """What a helper that infers the goal believed; nothing of others."""
+    helper = found.header.lineup.helper
+    if helper not in ONLINE or not record.helped or record.helper_goal is not None:
+        return
+    (task,) = (each for each in found.header.suite.tasks if each.id == record.task)
+    name, believed = episode_id(found, record), beliefs(task, record, helper, known())
+    for tick, moment in enumerate(believed.moments):
+        for number, probability in enumerate(moment.wanted):
+            if probability >= SHOWN:
+                predicate, wanted = believed.predicates[number], believed.goal[number]
+                yield {
+                    "episode_id": name,
+                    "tick": tick,
+                    "predicate": predicate,
+                    "probability": probability,
+                    "wanted": wanted,
+                }

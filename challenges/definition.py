@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
-from hearth.challenges.goal_grammar import GoalSet, Grammar
+from hearth.challenges.goal_grammar import GoalSet, Grammar, instance
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -86,9 +86,17 @@ class Challenge:
         """How actions are read."""
         return DEFAULT._replace(bodies=self.bodies, one_grip=True)
 
-    def goals_in(self, home: Home) -> dict[Goal, float]:
+    def goals_in(self, home: Home) -> Mapping[Goal, float]:
         """The goals of single sets that there may be in a home, with their probabilities."""
-        return {self.grammar.in_home(goal, home): share for goal, share in self.grammar.goals.items()}
+        places = tuple(instance(name, home) for name in sorted(self.grammar.furniture))
+        if places not in self._goals:  # homes with equal furniture have equal goals
+            bound = {self.grammar.in_home(goal, home): share for goal, share in self.grammar.goals.items()}
+            self._goals[places] = bound
+        return self._goals[places]
+
+    @cached_property
+    def _goals(self) -> dict[tuple[int, ...], Mapping[Goal, float]]:
+        return {}
 
     def allowed(self, knowledge: Knowledge) -> frozenset[str]:
         """The actions that agents may try."""

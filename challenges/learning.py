@@ -13,7 +13,10 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
 
-WHAT = ("goals", "subgoals", "actions")
+PROPOSALS = {"proposals": "train", "proposals-small": "train-small"}
+"""The split that goal proposals are learnt from, by what is learnt."""
+
+WHAT = ("goals", "subgoals", "actions", *PROPOSALS)
 """What may be learnt."""
 
 PASSES = 12
@@ -60,6 +63,11 @@ def train(
 
         how = Training(seed=seed, epochs=epochs or PASSES, patience=0)
         found = learning_to_watch.learn(name, known, how, limit, rate, workers, seen, trained)
+    elif what in PROPOSALS:
+        from hearth.challenges import learning_to_propose
+
+        how = Training(seed, epochs or 300, rate=learning_to_propose.RATE, patience=0, halve_after=0)
+        found = learning_to_propose.learn(name, PROPOSALS[what], known, how, limit, workers, seen, trained)
     else:
         from hearth.challenges import learning_to_help
 

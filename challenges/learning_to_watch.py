@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hearth.challenges.definition import challenge
@@ -75,10 +74,3 @@ def learn(
     done = GoalInference().fit(shown, grammar.predicates, possible, goals_of_tests(name), how, trained)
     facts: dict[str, Any] = {"challenge": name, "digest": found.digest, "rate_of_habits": rate, **done.facts}
     return replace(done, facts=facts)
-
-
-def write(trained: TrainedGoalInference, out: Path) -> None:
-    """Write a checkpoint."""
-    from hearth.models.checkpoint import save
-
-    save(trained.checkpoint(), out)

@@ -97,8 +97,12 @@ class Lineup:
 
 
 def partial_of(agent: Any) -> bool | None:
-    """Whether an agent sees only what is around it, for `Player`: an oracle of ours sees all, nobody else's does."""
+    """Whether an agent sees only what is around it, for `Player`: an oracle of ours sees all, who is near-sighted never
+    does, all others as the challenge has it.
+    """
     ours = type(agent).__module__.startswith("hearth.agents.")
+    if getattr(agent, "near_sighted", False):
+        return True
     return False if ours and agent.__dict__.get("habits") is not None and agent.habits.sees_all else None
 
 

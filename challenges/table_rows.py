@@ -88,3 +88,13 @@ class TrajectoryRow(TypedDict):
     agent: Annotated[int, "0 is the main agent, 1 the helper"]
     action: Annotated[str, "name of the action"]
     objects: Annotated[list[int], "node ids"]
+
+
+class PosteriorRow(TypedDict):
+    """How probable it was, for a helper that is not given the goal, that the goal has a predicate."""
+
+    episode_id: Annotated[str, "the episode"]
+    tick: Annotated[int, "from 0; before what was done in it"]
+    predicate: Annotated[str, "as in `ON(plate, table)`; with the home's class of the furniture"]
+    probability: Annotated[float, "by the exact posterior; rows below a hundredth are left out"]
+    wanted: Annotated[int, "how often the true goal wants it; 0 if it does not"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import challenge_online, output
 from hearth.commands.challenge_film import film
 
 if TYPE_CHECKING:
@@ -19,6 +19,9 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Help somebody at home: tasks of Watch-And-Help and Online Watch-And-Help, agents, and their scores.",
 )
+
+app.command()(challenge_online.infer)
+app.command()(challenge_online.people)
 
 
 @app.command()
@@ -70,6 +73,7 @@ def run_tasks(
     *,
     out: Path,
     seconds: float = 30.0,
+    proposals: str = "",
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
@@ -82,6 +86,7 @@ def run_tasks(
     Examples:
       python cli.py challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
       python cli.py challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+      python cli.py challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
     """
     from hearth.challenges.lineup import Lineup
     from hearth.challenges.suite_runs import run
@@ -90,6 +95,8 @@ def run_tasks(
     from hearth.kb.loading.load import default
 
     suite = read(file)
+    if proposals not in ("", "exact"):
+        helper = f"{helper}_{proposals}"
     with bar("episodes") as seen:
         found = run(suite, Lineup(main, helper, goal, seconds), seeds, out, default, workers, seen)
     _print(found, as_json)
@@ -228,7 +235,7 @@ def learn(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Train what helpers have learnt, and write a checkpoint: goals, subgoals or actions.
+    """Train what helpers have learnt, and write a checkpoint: goals, subgoals, actions, proposals or proposals-small.
 
     `goals` infers goals from the states of demonstrations. `subgoals` is Hybrid's policy and `actions` HRL's second:
     both imitate the planner on tasks of training, and go on by A2C.
@@ -238,6 +245,7 @@ def learn(
       python cli.py challenge learn wah --out build/goal-inference
       python cli.py challenge watch test-1.json --from states --model build/goal-inference
       python cli.py challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
+      python cli.py challenge learn owah --what proposals-small --out build/goal-proposals-small
     """
     from hearth.challenges.learning import train
     from hearth.commands.progress_line import bar
@@ -317,15 +325,18 @@ def show(
     alone: bool = False,
     belief: bool = False,
     out: Path | None = None,
+    goal_beliefs: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6.
+    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
+    the helper believed of the goal as in figure 7-4.
 
     An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
     believes wanted things to be, as time goes by (figure B-3).
 
     \b
     Examples:
+      python cli.py challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
       python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
       python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
     """
@@ -348,6 +359,8 @@ def show(
     if out is not None:
         panels = panels_of(found, one, record, known)
         plan_panels.write(load_layout(one.home, known), out, panels, furniture(one, start))
+    if goal_beliefs is not None:
+        challenge_online.draw_beliefs(goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks)))
     rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
     if as_json:
         output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
@@ -365,6 +378,8 @@ def table(
     seeds: int = 5,
     *,
     out: Path,
+    particles: bool = False,
+    by_set: bool = False,
     limit: int | None = None,
     workers: int = 0,
     as_json: bool = False,
@@ -378,19 +393,26 @@ def table(
     Examples:
       python cli.py challenge table wah --out data_out/challenges/wah
       python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah
+      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --by-set     (figure 7-6a)
+      python cli.py challenge table owah --seeds 3 --out data_out/challenges/owah --particles  (figure C-5)
     """
     from hearth.analysis.challenge_table import TABLES, figure, methods, rows
     from hearth.challenges.task_files import suite
+    from hearth.commands.challenge_online import print_by_set
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
     from hearth.storage.names import inside
 
-    chosen = suite(name, split or TABLES.get(name, {}).get("split", ""), limit=limit)
+    which = f"{name}-particles" if particles else name
+    chosen = suite(name, split or TABLES.get(which, {}).get("split", ""), limit=limit)
     with bar("episodes") as seen:
-        found = rows(list(methods(chosen, seeds, out, default, workers, lambda _: seen)))
-    inside(out, f"figure-{TABLES[name]['figure']}.svg").write_text(figure(found), encoding="utf-8")
+        found = rows(list(methods(chosen, seeds, out, default, workers, lambda _: seen, which)))
+    inside(out, f"figure-{TABLES[which]['figure']}.svg").write_text(figure(found), encoding="utf-8")
     if as_json:
         output.emit(found)
+        return
+    if by_set:
+        print_by_set(found)
         return
     shown = ("success", "speedup", "saving", "reward", "conflict_episodes", "needless_episodes")
     cells = [

@@ -25,6 +25,9 @@ from hearth.simulation.observation.views import LastAction, pose
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 
+PLAIN = sorted(name for name, kind in ONLINE.items() if not kind.network and not name.startswith("nopa_k"))
+"""Helpers that need no network, which knows one grammar only."""
+
 COUNTS = {"plate": 3, "fork": 3, "apple": 3}
 
 
@@ -83,7 +86,7 @@ class Plain:
         self.weights = dict(goals)
         self.pursued, self.last, self.places = {}, None, None
 
-    def observe(self, world, other, costs, space):
+    def observe(self, world, other, costs, trips, space):
         step = other.last and (other.last.instruction, other.last.failure)
         if step and self.places and step != self.last:
             self.weigh(step[0])
@@ -92,7 +95,7 @@ class Plain:
         if places == self.places:
             return
         self.places, self.last = places, None
-        me = self.home.index[other.node]
+        me = self.me = self.home.index[other.node]
         rows = list(dict.fromkeys(literal for goal in self.goals for literal, _ in goal))
         for goal in self.goals:
             lacking = self.lacking(goal, places)
@@ -102,18 +105,35 @@ class Plain:
             for number, thing in enumerate(space.things):
                 for literal in lacking:
                     row = rows.index(literal)
-                    if self.counts(literal, thing, None) and not self.counts(literal, thing, places[number]):
-                        ticks = costs[row, number]
-                        nearest = costs[row].min()
-                        if ticks < FAR:
-                            worth = math.exp(-self.model.rationality * (ticks - nearest))
-                            found[thing] = found.get(thing, 0.0) + worth
+                    if number in self.able(literal, costs[row]):
+                        saved = self.saved(goal, literal, number, row, costs, trips)
+                        worth = math.exp(-self.model.rationality * (costs[row, number] - saved))
+                        found[thing] = found.get(thing, 0.0) + worth
             held = {t: v for t, v in found.items() if places[space.things.index(t)] == (HOLDS, me)}
             found = held or found
             total = sum(found.values())
             self.pursued[goal] = {t: v / total for t, v in found.items()} if total else {}
         self.normalise()
-        self.me, self.things = me, space.things
+        self.things = space.things
+
+    def saved(self, goal, literal, number, row, costs, trips):
+        """A round trip, or, of more things than are needed, the dearest of the cheapest that are."""
+        me = self.me
+
+        def trip(n):
+            return costs[row, n] if self.places[n] == (HOLDS, me) else trips[row, n]
+
+        met = sum(self.counts(literal, t, p) for t, p in zip(self.all, self.places, strict=True))
+        cheapest = sorted(map(trip, self.able(literal, costs[row])))[: dict(goal)[literal] - met]
+        return min(trip(number), cheapest[-1])
+
+    def able(self, literal, costs):
+        return [
+            n for n, thing in enumerate(self.all)
+            if self.counts(literal, thing, None)
+            and not self.counts(literal, thing, self.places[n])
+            and costs[n] < FAR
+        ]  # fmt: skip
 
     def counts(self, literal, thing, place):
         fits = bool(self.home.instances(literal.subject) >> thing & 1)
@@ -168,7 +188,7 @@ def test_the_posterior_is_that_of_a_plain_count_over_all_goals(world, number):
     probable = []
     for now, other in watched(world, list(goals)[number]):
         fast.observe(now, other)
-        plain.observe(now, other, fast.costs(now, other), space)
+        plain.observe(now, other, fast.costs(now, other), fast.round_trips(now), space)
         assert np.allclose(fast.weights, list(plain.weights.values()), atol=1e-9)
         probable.append(fast.probability(number))
     assert fast.weights.sum() == pytest.approx(1)
@@ -204,12 +224,12 @@ def test_a_plan_fetches_the_nearest_and_brings_it(world):
     other = pose(world, 0)
     posterior = Posterior(space, world.home, 1.0)
     posterior.observe(world, other)
-    planner = Planner(space, world, other, posterior.distances)
-    found = planner.prospect(0, 200.0)
+    planner = Planner(space, posterior.places, world, other, posterior.distances)
+    found = planner.prospect(space.wanted[0], 200.0)
     brought = [edge for edge in found.edges if edge.relation == "ON"]
     assert len(brought) == 2 and not found.later
     assert all(found.edges[edge] > found.edges[Edge(HOLDS, edge.thing, world.agents[0].index)] for edge in brought)
-    near = planner.prospect(0, 1.0)
+    near = planner.prospect(space.wanted[0], 1.0)
     assert not near.edges and {edge.target for edge in near.later} == {brought[0].target}
 
 
@@ -238,7 +258,7 @@ def test_a_goal_that_is_given_is_the_only_one(world):
     assert helper.space.goals == (goal,)
 
 
-@pytest.mark.parametrize("name", sorted(ONLINE))
+@pytest.mark.parametrize("name", PLAIN)
 def test_no_helper_keeps_the_goal_from_being_reached(world, name):
     goals = goals_of(world)
     for number, goal in enumerate(goals):
@@ -246,7 +266,7 @@ def test_no_helper_keeps_the_goal_from_being_reached(world, name):
         assert played.success, goal
 
 
-@pytest.mark.parametrize("name", sorted(ONLINE))
+@pytest.mark.parametrize("name", PLAIN)
 def test_the_seed_decides_everything(world, name):
     goals = goals_of(world)
     goal = next(iter(goals))
@@ -273,8 +293,11 @@ def decided(helper, env):
     return helper.subgoal
 
 
-def test_what_is_wanted_nobody_knows_where_is_handed_over(world):
-    """Figure 7-5a: both goals want an apple, in places that are equally probable, and the one who is helped is near."""
+def test_what_is_wanted_nobody_knows_where_is_handed_over(home):
+    """Figure 7-5a: both goals want the only apple, in places that are equally probable; watching teaches nothing, since
+    the one who is helped can do nothing without it.
+    """
+    world = start(home, {"plate": 3, "apple": 1})
     env, apple = holding(world, "apple")
     goals = {
         wanted(world, "INSIDE", "fridge", apple=1): 0.5,
