@@ -20,20 +20,20 @@ class OnlineKind:
     Attributes:
         make: makes the helper of the goals that there may be.
         about: what it is, for tables.
-        network: whether it asks the goal proposal network, which needs the extra `models`.
+        network: the goal proposal network that it asks, which needs the extra `models`; "" for none.
     """
 
     make: Callable[[GoalsIn], Agent]
     about: str
-    network: bool = False
+    network: str = ""
 
 
-SMALL = "goal-proposals-small"
-"""The network that was trained on 300 episodes."""
+LARGE, SMALL = "goal-proposals", "goal-proposals-small"
+"""The networks that were trained on 6,000 and on 300 episodes."""
 
 
 def _nopa(about: str, settings: Settings) -> OnlineKind:
-    return OnlineKind(lambda goals: Nopa(goals, settings), about, settings.proposals == "gpn")
+    return OnlineKind(lambda goals: Nopa(goals, settings), about, settings.model if settings.proposals == "gpn" else "")
 
 
 ONLINE: dict[str, OnlineKind] = {
@@ -41,10 +41,10 @@ ONLINE: dict[str, OnlineKind] = {
     "nopa": _nopa("NOPA, proposals from the exact posterior", Settings()),
     "nopa_gpn": _nopa("NOPA, proposals from the network", Settings(proposals="gpn")),
     "nopa_gpn_s": _nopa("NOPA, proposals from the network of 300 episodes", Settings(proposals="gpn", model=SMALL)),
-    "hp_gpn": OnlineKind(ProposedPlans, "planner for the network's most probable goal", network=True),
-    "hp_gpn_s": OnlineKind(lambda goals: ProposedPlans(goals, SMALL), "the same, 300 episodes", network=True),
+    "hp_gpn": OnlineKind(ProposedPlans, "planner for the network's most probable goal", network=LARGE),
+    "hp_gpn_s": OnlineKind(lambda goals: ProposedPlans(goals, SMALL), "the same, 300 episodes", network=SMALL),
     "af_gpn": OnlineKind(
-        lambda goals: ProposedPlans(goals, particles=20), "the commonest first action of 20 plans", network=True
+        lambda goals: ProposedPlans(goals, particles=20), "the commonest first action of 20 plans", network=LARGE
     ),
     **{f"nopa_k{k}": _nopa(f"NOPA with {k} particles", Settings(particles=k)) for k in (1, 2, 5, 10, 40)},
     "nopa_uniform": _nopa("NOPA, uniform proposals (RG)", Settings(proposals="uniform")),

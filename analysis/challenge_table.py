@@ -80,9 +80,11 @@ def methods(
 
 
 def _ready(helper: str) -> bool:
-    """Whether the libraries are installed that a helper needs."""
-    asks = helper in ONLINE and ONLINE[helper].network
-    return not asks or all(find_spec(name) is not None for name in ("torch", "safetensors"))
+    """Whether the libraries and the network are there that a helper needs."""
+    from hearth.models.model_registry import trained_names
+
+    network = ONLINE[helper].network if helper in ONLINE else ""
+    return not network or (network in trained_names() and all(map(find_spec, ("torch", "safetensors"))))
 
 
 def by_set(results: Results) -> dict[str, dict[str, float]]:
