@@ -51,7 +51,7 @@ def measure(number: int, helper: str) -> list[float]:
 
 def main() -> None:
     """Measure."""
-    import hearth.agents.online as online
+    from hearth.agents import online
 
     options = parser(__doc__)
     options.add_argument("--tasks", type=int, default=20)
