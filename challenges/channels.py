@@ -14,7 +14,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
-from typing import IO, NoReturn
+from typing import NoReturn
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -34,20 +34,36 @@ class Channel:
     Args:
         read: gives at most so many bytes, none once the other end is gone; it may wait.
         write: takes some of the bytes, and says how many; it may wait.
+        ends: called when nothing is read any more, and when nothing is written any more. Nobody else closes what is
+            read or written: its number could be another file's by the time that a thread uses it.
 
     Attributes:
         open: whether the other end is there, as far as sending and receiving have shown.
     """
 
-    def __init__(self, read: Callable[[int], bytes | None], write: Callable[[bytes], int | None]) -> None:
+    def __init__(
+        self,
+        read: Callable[[int], bytes | None],
+        write: Callable[[bytes], int | None],
+        ends: tuple[Callable[[], None], Callable[[], None]] = (lambda: None, lambda: None),
+    ) -> None:
         self._read, self._write = read, write
         self._received, self._unsent = bytearray(), bytearray()
         self._skipping = False
         self._changed = threading.Condition()
         self.open = True
         self._ended = False
-        for run in (self._reading, self._writing):
-            threading.Thread(target=run, daemon=True).start()
+        runs = zip((self._reading, self._writing), ends, strict=True)
+        self._threads = [threading.Thread(target=self._to_its_end, args=both, daemon=True) for both in runs]
+        for thread in self._threads:
+            thread.start()
+
+    def _to_its_end(self, run: Callable[[], None], end: Callable[[], None]) -> None:
+        try:
+            run()
+        finally:
+            with contextlib.suppress(OSError):
+                end()
 
     def _reading(self) -> None:
         """Read until the end; more than some lines that nobody asks for are left where they are."""
@@ -173,6 +189,8 @@ class SocketChannel(Channel):
         super().close()
         with contextlib.suppress(OSError):
             self._connection.shutdown(socket.SHUT_RDWR)  # who waits for it is woken
+        for thread in self._threads:
+            thread.join()
         self._connection.close()
 
 
@@ -197,12 +215,12 @@ class ProcessChannel(Channel):
             message = f"the agent can't be started: {getattr(error, 'strerror', None) or error}"
             raise HearthError.of(Code.MISSING_FILE, message, file=argv[0][:200]) from error
         assert self.process.stdin is not None and self.process.stdout is not None
-        super().__init__(self.process.stdout.read, self.process.stdin.write)
+        given, taken = self.process.stdout, self.process.stdin
+        super().__init__(given.read, taken.write, (given.close, taken.close))
 
     def close(self, patience: float = 2.0) -> None:
         """Close its input and wait some seconds for its end; then end it and what it started."""
         super().close()
-        self._shut(self.process.stdin)
         for end in (None, *_ENDS):
             if end is not None:
                 with contextlib.suppress(ProcessLookupError, PermissionError):
@@ -210,12 +228,6 @@ class ProcessChannel(Channel):
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(patience)
                 break
-        self._shut(self.process.stdout)
-
-    def _shut(self, pipe: IO[bytes] | None) -> None:
-        if pipe is not None and not pipe.closed:
-            with contextlib.suppress(OSError):
-                pipe.close()
 
 
 def _ends() -> tuple[Callable[[subprocess.Popen[bytes]], None], ...]:

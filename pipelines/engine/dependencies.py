@@ -14,7 +14,7 @@ from hearth.storage.files import file_digest
 ROOT = Path(__file__).resolve().parents[2]
 
 _TYPES_ONLY = re.compile(r"^if TYPE_CHECKING:\n(?:(?:[ \t]+.*)?\n)+", re.MULTILINE)
-_IMPORT = re.compile(r"^[ \t]*(?:from (hearth[\w.]*) import (\([^)]*\)|.*)|import (hearth[\w.]*))", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:from (hearth[\w.]*) import (\([^)]*\)|[^#\n]*)|import (hearth[\w.]*))", re.MULTILINE)
 _NAME = re.compile(r"(?<!as )\b(?!as\b)\w+\b")
 _FOLDER = re.compile(r'files\("hearth\.([\w.]+)"\) / "(\w+)"')
 _DATA = (".csv", ".json", ".sql", ".yaml")

@@ -49,7 +49,7 @@ def test_an_unknown_way_of_reading_is_refused():
 
 def test_tables_are_published_and_answer_queries(tmp_path):
     counts = publish(tmp_path / "wah", "wah", default, limit=1)
-    assert counts == {"tasks": 4, "demonstrations": 4, "episodes": 0, "trajectories": 0}
+    assert counts == {"tasks": 4, "demonstrations": 4, "episodes": 0, "trajectories": 0, "posteriors": 0}
     data = ChallengeData.found(tmp_path / "wah")
     assert data is not None
     _, rows = data.rows("SELECT count(*) FROM tasks JOIN demonstrations USING (task_id) WHERE ticks > 0")

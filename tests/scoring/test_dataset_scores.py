@@ -174,10 +174,10 @@ IDLE = ("empty program", "random legal steps", "sketch alone", "nearest sketch")
 def test_no_score_is_won_by_doing_nothing(ds, monkeypatch, tested):
     of = dict(ds.rows("SELECT execution_id, activity_id FROM executions JOIN programs USING (program_id)")[1])
     half = sorted(set(of.values()))[tested::2]
-    every = yardsticks._examples(ds, "activities", "", False)
+    every = yardsticks.examples(ds, "activities", "", False)
     parts = {part: [each for each in every if (of[each.execution_id] in half) == (part == "test")]
              for part in ("train", "test")}  # fmt: skip
-    monkeypatch.setattr(yardsticks, "_examples", lambda _ds, _split, part, _originals: parts[part])
+    monkeypatch.setattr(yardsticks, "examples", lambda _ds, _split, part, _originals: parts[part])
     monkeypatch.setattr(yardsticks, "BASELINES", {})
     found = {each.baseline: each for each in baselines(ds)}
     assert {*found} == {*IDLE, "planner"} and found["planner"].executable > 0.8
