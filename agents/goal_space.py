@@ -127,6 +127,17 @@ class GoalSpace:
         """(T) the predicates that each thing may count for."""
         return tuple(tuple(np.flatnonzero(column).tolist()) for column in self.fits.T)
 
+    @cached_property
+    def number(self) -> dict[int, int]:
+        """The number of each thing, by its index."""
+        return {thing: number for number, thing in enumerate(self.things)}
+
+    @cached_property
+    def row_at(self) -> dict[Edge, int]:
+        """The predicate that each thing counts for at each place."""
+        pairs = zip(self.things, self.rows_of, strict=True)
+        return {Edge(self.relations[r], thing, int(self.targets[r])): r for thing, rows in pairs for r in rows}
+
     def counts_at(self, row: int, relation: str, node: int) -> bool:
         """Whether a thing that fits a predicate counts for it in some place."""
         return bool(self.targets[row] == node) and self.relations[row] == relation

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Literal as Choice
 
 from hearth.agents.goal_space import Counts, Edge, GoalsIn
+from hearth.agents.helping_plans import USUAL_WEIGHTS, HelpingPlans, Weights
 from hearth.agents.network_proposals import NetworkProposals
 from hearth.agents.online import OnlineHelper
 from hearth.agents.posterior import USUAL_MODEL, ActionModel
 from hearth.agents.prospects import Planner, Prospect
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 
 Source = Choice["exact", "uniform", "likeliest", "gpn"]
@@ -30,10 +30,8 @@ class Settings:
         model: the network that proposes them, where one does: a checkpoint's folder, or a name of `model list`.
         particles: K, how many goals are proposed at once.
         horizon: T_prop, ticks for which a plan is predicted and after which goals are proposed anew.
-        ahead: L_max, ticks after which an edge is expected that no predicted plan brings about.
-        reward, cost, moves: w_r, w_c and w_m of equation 7.1.
+        weights: of equation 7.1.
         inverse_planning: particles are rejected when an action is not of their plan.
-        returns: what turns out not to be wanted is brought back.
         keeps: V that a new subgoal must be better than the present one.
     """
 
@@ -41,12 +39,8 @@ class Settings:
     model: str = "goal-proposals"
     particles: int = 20
     horizon: float = 5.0
-    ahead: float = 100.0
-    reward: float = 1.0
-    cost: float = 1.0
-    moves: float = 5.0
+    weights: Weights = USUAL_WEIGHTS
     inverse_planning: bool = True
-    returns: bool = True
     keeps: float = 0.0
 
 
@@ -70,14 +64,14 @@ class Nopa(OnlineHelper):
         self._age = 0.0
 
     def choose(self, view: View) -> Edge | None:
-        """The best edge; None where none is worth more than waiting."""
+        """The first edge of the best plan; None where none is worth more than waiting."""
         places = self.posterior.places
         planner = Planner(self.space, places, view.world, view.others[0], self.posterior.distances)
         self._reject(view)
         if not self._particles or self._age >= self.settings.horizon:
             self._propose(planner)
         self._age += 1
-        values = self._values(view, self._weighed(planner))
+        values = HelpingPlans(self, view, places, self._weighed(planner), self.settings.weights).values
         if not values:
             return None
         best = max(values, key=lambda edge: (values[edge], edge))
@@ -121,45 +115,7 @@ class Nopa(OnlineHelper):
             shares[goal] += 1 / len(self._particles)
         return dict(shares)
 
-    def _weighed(self, planner: Planner) -> list[tuple[float, Prospect]]:
+    def _weighed(self, planner: Planner) -> list[tuple[float, Counts, Prospect]]:
         """The goals of the particles with their shares and what is predicted under each from now on."""
-        return [(share, planner.prospect(goal, self.settings.horizon)) for goal, share in self.proposed.items()]
-
-    def _values(self, view: View, prospects: list[tuple[float, Prospect]]) -> dict[Edge, float]:
-        """The value of each edge that could be helped with (algorithm 3)."""
-        expected: dict[Edge, float] = {}
-        probable: defaultdict[Edge, float] = defaultdict(float)
-        for share, prospect in prospects:
-            for edge, ticks in (*prospect.edges.items(), *((edge, self.settings.ahead) for edge in prospect.later)):
-                expected[edge] = min(expected.get(edge, self.settings.ahead), ticks)
-                probable[edge] += share
-        held = self.held(view)
-        theirs = view.world.agents[view.others[0].agent]
-        found = {}
-        for edge, share in probable.items():
-            relation, thing, _ = edge
-            if theirs.held >> thing & 1 or (held and thing not in held) or (relation == HOLDS and theirs.held):
-                continue
-            found[edge] = self._value(view, edge, share, expected[edge], thing in held)
-        if self.settings.returns:
-            for edge in map(self._back, held):
-                found[edge] = self.settings.moves - self.settings.cost * self._own(view, edge)
-        return found
-
-    def _value(self, view: View, edge: Edge, share: float, expected: float, moved: bool) -> float:
-        """V(s, e) of equation 7.1; what it holds already is away from its first place as it is."""
-        settings, own = self.settings, self._own(view, edge)
-        saved = max(expected - own, 0.0)
-        changes = 0.0 if moved or not settings.returns else 1.0
-        return settings.reward * share * saved - settings.cost * own - settings.moves * changes
-
-    def _own(self, view: View, edge: Edge) -> float:
-        """L_H(e): ticks in which the helper brings an edge about."""
-        relation, thing, target = edge
-        place = self.belief.where[thing]
-        stops = [] if place.node == self.me else [self.taking(place, view.world)]
-        return self.ticks(view, [*stops, self.putting(relation, target, view.world)])
-
-    def _back(self, thing: int) -> Edge:
-        relation, node = self.first_places[thing]
-        return Edge(relation, thing, node)
+        horizon = self.settings.horizon
+        return [(share, goal, planner.prospect(goal, horizon)) for goal, share in self.proposed.items()]

@@ -94,7 +94,11 @@ class OnlineHelper:
 
     def ticks(self, view: View, stops: Iterable[tuple[int, int]]) -> float:
         """Ticks that it takes to go to some nodes in turn, with those that it needs at each."""
-        cell, total, before = self.distances.cell(view.me.place), 0.0, -1
+        return self.arrivals(view, stops)[-1]
+
+    def arrivals(self, view: View, stops: Iterable[tuple[int, int]]) -> list[float]:
+        """Ticks until each of some stops is done: nodes in turn, with the ticks that it needs there."""
+        cell, total, before, found = self.distances.cell(view.me.place), 0.0, -1, []
         for node, actions in stops:
             if node == self.partner:
                 metres = self._to_partner(view, before)
@@ -103,8 +107,9 @@ class OnlineHelper:
             else:
                 metres, cell = self.distances.leg(cell, node)
             total += self.distances.ticks(metres) + actions
+            found.append(total)
             before = node
-        return total
+        return found
 
     def _to_partner(self, view: View, before: int) -> float:
         """Metres to the partner from a node, or, as the crow flies and a little more, from where it is."""

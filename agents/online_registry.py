@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hearth.agents.empowerment import Empowerment
 from hearth.agents.expected_time import ExpectedTime
 from hearth.agents.goal_space import GoalsIn
+from hearth.agents.helping_plans import Weights
 from hearth.agents.nopa import Nopa, Settings
 from hearth.agents.proposed_plans import ProposedPlans
 from hearth.agents.protocol import Agent
@@ -51,7 +52,7 @@ ONLINE: dict[str, OnlineKind] = {
     "nopa_no_inverse": _nopa(
         "NOPA, uniform proposals, no inverse planning", Settings(proposals="uniform", inverse_planning=False)
     ),
-    "nopa_no_return": _nopa("NOPA, nothing is brought back", Settings(returns=False)),
+    "nopa_no_return": _nopa("NOPA, nothing is brought back", Settings(weights=Weights(returns=False))),
     "likeliest": _nopa("planner for the likeliest goal", Settings(proposals="likeliest", horizon=1.0)),
     "empowerment": OnlineKind(Empowerment, "what most goals have in their plans"),
 }

@@ -61,7 +61,6 @@ class Posterior:
         self.model = model
         self.weights: Floats = space.prior
         self.distances = Distances(home, stride)
-        self._number = {thing: number for number, thing in enumerate(space.things)}
         self._known = home.knowledge
         self._home = home
         self._last: tuple[Step, Failure | None] | None = None
@@ -183,7 +182,7 @@ class Posterior:
         if name in _taking(known):
             taken = np.array([thing == nodes[0] for thing in self.space.things], np.float64)
             return np.broadcast_to(taken, self.pursued.shape)
-        if name in known.group("puts") and len(nodes) > 1 and nodes[0] in self._number:
+        if name in known.group("puts") and len(nodes) > 1 and nodes[0] in self.space.number:
             put = np.array([thing == nodes[0] for thing in self.space.things], np.float64)
             return self._wanted_at(nodes[1]) * put
         return None

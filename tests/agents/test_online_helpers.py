@@ -9,8 +9,9 @@ from small_tasks import ALLOWED, start, target, wanted
 from hearth.agents.empowerment import Empowerment
 from hearth.agents.expected_time import ExpectedTime
 from hearth.agents.goal_space import Edge, GoalSpace
+from hearth.agents.helping_plans import USUAL_WEIGHTS, HelpingPlans, Weights, _Leg
 from hearth.agents.human_like import HumanLike
-from hearth.agents.nopa import Nopa, Settings
+from hearth.agents.nopa import Nopa
 from hearth.agents.online_registry import ONLINE
 from hearth.agents.posterior import FAR, ActionModel, Posterior
 from hearth.agents.prospects import Planner
@@ -208,14 +209,49 @@ def test_goals_count_what_lies_where_they_want_it(world):
     assert space.missing(space.counted(places)).sum() == space.counts.sum()
 
 
-def test_the_value_of_an_edge_is_equation_7_1(world, monkeypatch):
+def test_the_value_of_an_edge_is_equation_7_1():
     """w_r p max(L_M - L_H, 0) - w_c L_H - w_m change, with p .5, L_M 20, L_H 6: .5 * 14 - .5 * 6 - 2 = 2."""
-    helper = Nopa(lambda home: goals_of(world), Settings(reward=1.0, cost=0.5, moves=2.0))
-    monkeypatch.setattr(helper, "_own", lambda view, edge: 6.0)
-    edge = Edge("ON", 1, 2)
-    assert helper._value(None, edge, 0.5, 20.0, False) == pytest.approx(2.0)
-    assert helper._value(None, edge, 0.5, 20.0, True) == pytest.approx(4.0)
-    assert helper._value(None, edge, 0.5, 4.0, True) == pytest.approx(-3.0)
+    edge, plans = Edge("ON", 1, 2), HelpingPlans.__new__(HelpingPlans)
+    plans._weights, plans._expected, plans._held = Weights(reward=1.0, cost=0.5, moves=2.0), {edge: 20.0}, []
+    plans._times, plans._probability = lambda legs: [6.0], lambda edge, brought: 0.5
+    legs = [_Leg(2, 1, edge)]
+    assert plans._value(legs) == pytest.approx(2.0)
+    plans._held = [edge.thing]  # it is away from its first place as it is
+    assert plans._value(legs) == pytest.approx(4.0)
+    plans._expected[edge] = 4.0
+    assert plans._value(legs) == pytest.approx(-3.0)
+
+
+def weighed(world, goals, weights=USUAL_WEIGHTS):
+    """What NOPA thinks of the first tick, with every goal as a particle."""
+    env = Env(partial=False)
+    env.restore(world)
+    view = env.observe(1)
+    helper = Nopa(lambda home: goals)
+    helper.reset(view, None, 0)
+    helper.posterior.observe(view.world, view.others[0])
+    places = helper.posterior.places
+    planner = Planner(helper.space, places, view.world, view.others[0], helper.posterior.distances)
+    prospects = [
+        (share, goal, planner.prospect(goal, 0.0))
+        for share, goal in zip(goals.values(), helper.space.wanted, strict=True)
+    ]
+    return HelpingPlans(helper, view, places, prospects, weights), helper
+
+
+def test_a_second_thing_is_needed_only_where_a_goal_wants_two(world):
+    goals = {wanted(world, "ON", "desk", plate=1): 0.75, wanted(world, "ON", "desk", plate=2): 0.25}
+    plans, helper = weighed(world, goals)
+    one, other, *_ = (edge for edge in helper.space.row_at if edge.thing in plans._places)
+    assert plans._probability(one, {one.thing}) == pytest.approx(1.0)
+    assert plans._probability(other, {one.thing, other.thing}) == pytest.approx(0.25)
+
+
+def test_both_hands_are_used_where_two_are_wanted(world):
+    goals = {wanted(world, "ON", "desk", plate=2): 1.0}
+    both, one = (weighed(world, goals, Weights(hands=hands))[0].values for hands in (2, 1))
+    assert max(both, key=both.get).target == -1 != max(one, key=one.get).target
+    assert max(both.values()) > max(one.values())
 
 
 def test_a_plan_fetches_the_nearest_and_brings_it(world):
