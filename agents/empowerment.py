@@ -6,7 +6,6 @@ from collections import Counter
 
 from hearth.agents.goal_space import Edge, GoalsIn
 from hearth.agents.online import OnlineHelper
-from hearth.agents.prospects import Planner
 from hearth.simulation.observation.views import View
 
 
@@ -19,8 +18,7 @@ class Empowerment(OnlineHelper):
 
     def choose(self, view: View) -> Edge | None:
         """The commonest edge that can still be helped with."""
-        planner = Planner(self.space, self.posterior.places, view.world, view.others[0], self.posterior.distances)
-        theirs = view.world.agents[view.others[0].agent].held
+        planner, theirs = self.planner(), self.theirs
         held = self.held(view)
         found: Counter[Edge] = Counter()
         for goal in (self.chooser.choice(self.space.wanted) for _ in range(self._particles)):

@@ -77,10 +77,11 @@ class ExpectedTime(OnlineHelper):
 
     def _look(self, view: View) -> None:
         """The situation, the goals that stand for all, and how probably the things of each heap are wanted."""
-        posterior, space, other = self.posterior, self.space, view.others[0]
+        posterior, space, other = self.posterior, self.space, self.other
+        assert other is not None
         giving = self.ticks(view, [(self.partner, 1)])
         ways = (posterior.distances, self.distances)
-        self._now = Situation(space, posterior.places, view.world, (other, view.me), ways, giving)
+        self._now = Situation(space, self.scene, (self.partner, self.me), (other, view.me), ways, giving)
         self._forecasts = []
         for goal, share in self._representatives():
             lacking = {row: number for row, number in enumerate(posterior.missing[goal].tolist()) if number}
@@ -113,7 +114,7 @@ class ExpectedTime(OnlineHelper):
             if self._wanted[number] >= settings.keep:
                 likely = [row for row in heaps[number].rows if self._rows[row] > settings.keep]
                 yield from ((Stop(number, row),) for row in likely)
-                if len(likely) > 1 and not view.others[0].holding:
+                if len(likely) > 1 and not (self.other and self.other.holding):
                     yield (Stop(number, GIVE),)
         if len(self.held(view)) == HANDS:
             return

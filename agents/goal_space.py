@@ -15,11 +15,24 @@ from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.states import CLOSED
 from hearth.simulation.world.world import World
 
 Floats = NDArray[np.floating[Any]]
 Numbers = NDArray[np.integer[Any]]
 Flags = NDArray[np.bool_]
+
+
+class Scene(NamedTuple):
+    """What somebody knows of a home.
+
+    Attributes:
+        places: where each thing of a space is.
+        closed: the set of what is closed.
+    """
+
+    places: list[Place]
+    closed: int
 
 
 class Edge(NamedTuple):
@@ -145,6 +158,10 @@ class GoalSpace:
     def places(self, world: World) -> Places:
         """(T) where each thing is now: what it is on or in, who holds it, or its room."""
         return [place_of(world, thing) for thing in self.things]
+
+    def scene(self, world: World) -> Scene:
+        """All of a world, for who sees everything."""
+        return Scene(self.places(world), world.states[CLOSED])
 
     def counted(self, places: Places) -> Flags:
         """(P, T) whether a thing counts for a predicate where it is."""

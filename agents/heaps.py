@@ -1,4 +1,4 @@
-"""What two people who fetch things find in one world: heaps of equal things, and the ticks of ways between them."""
+"""What two people who fetch things find in a home: heaps of equal things, and the ticks of ways between them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import GoalSpace, Places
+from hearth.agents.goal_space import GoalSpace, Scene
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
-from hearth.simulation.world.states import CLOSED
-from hearth.simulation.world.world import World
 
 SHORT = 1.2
 """Metres before the end of a way from which one can already reach what is there, as measured in episodes."""
@@ -43,7 +41,7 @@ class Heap:
 
 
 class Situation:
-    """A world as two people find it who fetch things.
+    """A scene as two people find it who fetch things.
 
     Attributes:
         space: the goals.
@@ -56,18 +54,18 @@ class Situation:
     def __init__(
         self,
         space: GoalSpace,
-        places: Places,
-        world: World,
+        scene: Scene,
+        hands: tuple[int, int],
         poses: tuple[Pose, Pose],
         ways: tuple[Distances, Distances],
         giving: float = FAR,
     ) -> None:
-        """Look at a world.
+        """Look at a scene.
 
         Args:
             space: the goals.
-            places: of the space's things.
-            world: now.
+            scene: where things are.
+            hands: indices of the nodes of the one who is helped, and of the helper.
             poses: of the one who is helped, and of the helper.
             ways: of both.
             giving: ticks until the helper has handed over what it holds.
@@ -75,10 +73,9 @@ class Situation:
         self.space, self.giving = space, giving
         self._ways = ways
         self.starts = ways[MAIN].cell(poses[MAIN].place), ways[HELPER].cell(poses[HELPER].place)
-        self.shut = world.states[CLOSED]
-        hands = [world.home.index[pose.node] for pose in poses]
+        self.shut = scene.closed
         found: defaultdict[tuple[str, int, tuple[int, ...]], list[int]] = defaultdict(list)
-        for number, (relation, node) in enumerate(places):
+        for number, (relation, node) in enumerate(scene.places):
             rows = tuple(row for row in space.rows_of[number] if not space.counts_at(row, relation, node))
             if rows and (relation != HOLDS or node in hands):
                 found[relation, node, rows].append(number)

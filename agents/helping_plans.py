@@ -8,17 +8,16 @@ needed with the probability that a goal lacks as many as the partner and the hel
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 from typing import NamedTuple, Protocol
 
 from hearth.agents.belief import Place
-from hearth.agents.goal_space import Counts, Edge, GoalSpace, Places
+from hearth.agents.goal_space import Counts, Edge, GoalSpace, Scene
 from hearth.agents.prospects import Prospect
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
-from hearth.simulation.world.world import World
 
 HANDS = 2
 
@@ -55,15 +54,20 @@ class Helper(Protocol):
 
     space: GoalSpace
     me: int
-    first_places: Mapping[int, Place]
+    first_places: dict[int, Place]
+    scene: Scene
+
+    @property
+    def theirs(self) -> int:
+        """The set of what the partner holds."""
 
     def arrivals(self, view: View, stops: Iterable[tuple[int, int]]) -> list[float]:
         """Ticks until each of some stops is done (see `online.OnlineHelper`)."""
 
-    def taking(self, place: Place, world: World) -> tuple[int, int]:
+    def taking(self, place: Place) -> tuple[int, int]:
         """The stop at which something is taken."""
 
-    def putting(self, relation: str, target: int, world: World) -> tuple[int, int]:
+    def putting(self, relation: str, target: int) -> tuple[int, int]:
         """The stop at which something is put."""
 
 
@@ -86,7 +90,6 @@ class HelpingPlans:
         self,
         helper: Helper,
         view: View,
-        places: Places,
         prospects: Sequence[tuple[float, Counts, Prospect]],
         weights: Weights,
     ) -> None:
@@ -95,16 +98,15 @@ class HelpingPlans:
         Args:
             helper: who helps.
             view: what it sees.
-            places: of the space's things.
             prospects: goals with their shares, and what is predicted under each.
             weights: of equation 7.1.
         """
         self._helper, self._view, self._weights = helper, view, weights
-        self._places = dict(zip(helper.space.things, places, strict=True))
+        self._places = dict(zip(helper.space.things, helper.scene.places, strict=True))
         self._held = [thing for thing, place in self._places.items() if place == (HOLDS, helper.me)]
-        self._theirs = view.world.agents[view.others[0].agent].held
+        self._theirs = helper.theirs
         self._predicted(prospects)
-        self._lacking(places, prospects)
+        self._lacking(prospects)
         self.values: dict[Edge, float] = {}
         for first, legs in self._plans():
             value = self._value(legs)
@@ -127,10 +129,10 @@ class HelpingPlans:
                 self._expected[edge] = min(self._expected.get(edge, ahead), ticks)
                 self._passing[edge] += share
 
-    def _lacking(self, places: Places, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
+    def _lacking(self, prospects: Sequence[tuple[float, Counts, Prospect]]) -> None:
         """How probably a goal lacks one, two, ... of each predicate beside what the partner carries."""
         space = self._helper.space
-        there = space.counted(places).sum(axis=1).tolist()
+        there = space.counted(self._helper.scene.places).sum(axis=1).tolist()
         carried = [rows for thing, rows in zip(space.things, space.rows_of, strict=True) if self._theirs >> thing & 1]
         self._needs: defaultdict[tuple[int, int], float] = defaultdict(float)
         for share, goal, _ in prospects:
@@ -182,10 +184,10 @@ class HelpingPlans:
             yield first, [*takes, self._put(other, full=True), self._put(one)]
 
     def _take(self, edge: Edge) -> _Leg:
-        return _Leg(*self._helper.taking(self._places[edge.thing], self._view.world))
+        return _Leg(*self._helper.taking(self._places[edge.thing]))
 
     def _put(self, edge: Edge, full: bool = False) -> _Leg:
-        node, ticks = self._helper.putting(edge.relation, edge.target, self._view.world)
+        node, ticks = self._helper.putting(edge.relation, edge.target)
         return _Leg(node, ticks + OPENING * (full and ticks > 1), edge)
 
     def _times(self, legs: Sequence[_Leg]) -> list[float]:

@@ -65,13 +65,12 @@ class Nopa(OnlineHelper):
 
     def choose(self, view: View) -> Edge | None:
         """The first edge of the best plan; None where none is worth more than waiting."""
-        places = self.posterior.places
-        planner = Planner(self.space, places, view.world, view.others[0], self.posterior.distances)
+        planner = self.planner()
         self._reject(view)
         if not self._particles or self._age >= self.settings.horizon:
             self._propose(planner)
         self._age += 1
-        values = HelpingPlans(self, view, places, self._weighed(planner), self.settings.weights).values
+        values = HelpingPlans(self, view, self._weighed(planner), self.settings.weights).values
         if not values:
             return None
         best = max(values, key=lambda edge: (values[edge], edge))

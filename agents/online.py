@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from hearth.agents.belief import Belief, Place, place_of
+from hearth.agents.belief import Belief, Place
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace
+from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace, Scene
 from hearth.agents.posterior import USUAL_MODEL, ActionModel, Posterior
+from hearth.agents.prospects import Planner
 from hearth.agents.regression import Regression
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, HOLDS, Literal
 from hearth.schemas.program import Step
 from hearth.schemas.rng import rng
 from hearth.simulation.actions.legal import Legal
-from hearth.simulation.observation.views import View
+from hearth.simulation.observation.views import Pose, View
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import mask_of
 from hearth.simulation.world.states import CLOSED
-from hearth.simulation.world.world import World
 
 CROOKED = 1.3
 """How much longer a way is than a straight line."""
@@ -36,6 +36,9 @@ class OnlineHelper:
 
     Attributes:
         posterior: over all goals, by what was seen.
+        other: how its partner stands, as last seen; None before that.
+        scene: where things are, as far as it knows.
+        first_places: where it saw things first.
         subgoal: what it is doing; None if it waits.
     """
 
@@ -46,27 +49,40 @@ class OnlineHelper:
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode; a goal that it is given is the only one that there may be (see `agents.protocol`)."""
-        world, home = observation.world, observation.world.home
+        home = observation.world.home
         self.space = GoalSpace.of({goal: 1.0} if goal is not None else self._goals(home), home)
         self.chooser = rng(seed, "helper", observation.agent)
-        partner = next(agent for n, agent in enumerate(world.agents) if n != observation.agent)
+        partner = next(agent for n, agent in enumerate(observation.world.agents) if n != observation.agent)
         self.me, self.partner = home.index[observation.me.node], partner.index
         self.posterior = Posterior(self.space, home, partner.stride, self._model)
         self.distances = Distances(home, observation.me.stride)
         self.belief = Belief(home, mask_of(self.space.things), self.chooser)
-        self.first_places = {thing: place_of(world, thing) for thing in self.space.things}
+        self.first_places: dict[int, Place] = {}
+        self.other: Pose | None = None
         self.subgoal = None
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The first instruction towards what helps most."""
-        self.belief.observe(observation)
-        if not observation.others:
+        if not self.look(observation):
             return None
-        self.posterior.observe(observation.world, observation.others[0])
         self.subgoal = self.choose(observation)
         if self.subgoal is None:
             return None
         return self._first(Regression(observation, legal, self.belief, self._spare(observation)), self.subgoal)
+
+    def look(self, view: View) -> bool:
+        """Take in what is seen now; whether its partner is."""
+        self.belief.observe(view)
+        known, where = self.belief.known, self.belief.where
+        for thing in self.space.things:
+            if known >> thing & 1:
+                self.first_places.setdefault(thing, where[thing])
+        self.scene = Scene([where[thing] for thing in self.space.things], self.belief.states[CLOSED])
+        if not view.others:
+            return False
+        self.other = view.others[0]
+        self.posterior.observe(self.scene, self.other)
+        return True
 
     @property
     def proposed(self) -> dict[Counts, float]:
@@ -90,7 +106,17 @@ class OnlineHelper:
 
     def held(self, view: View) -> tuple[int, ...]:
         """What it holds, of the things that goals are about."""
-        return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i in self.first_places)
+        return tuple(i for i in rows.held_indices(view.world.agents[view.agent]) if i in self.space.number)
+
+    def planner(self) -> Planner:
+        """Of the partner's plans, from where it was last seen."""
+        assert self.other is not None
+        return Planner(self.space, self.scene, self.partner, self.other, self.posterior.distances)
+
+    @property
+    def theirs(self) -> int:
+        """The set of what its partner holds, of the things that goals are about."""
+        return mask_of(thing for thing in self.space.things if self.belief.where[thing] == (HOLDS, self.partner))
 
     def ticks(self, view: View, stops: Iterable[tuple[int, int]]) -> float:
         """Ticks that it takes to go to some nodes in turn, with those that it needs at each."""
@@ -113,17 +139,17 @@ class OnlineHelper:
 
     def _to_partner(self, view: View, before: int) -> float:
         """Metres to the partner from a node, or, as the crow flies and a little more, from where it is."""
-        mine, theirs = view.me.place, view.others[0].place
+        mine, theirs = view.me.place, self.other.place if self.other else None
         if before >= 0 and before != self.me:
             return self.distances.leg(self.distances.cell(theirs), before)[0]
         if mine is None or theirs is None:
             return self.distances.stride
         return CROOKED * math.dist(mine.point, theirs.point)
 
-    def taking(self, place: Place, world: World) -> tuple[int, int]:
+    def taking(self, place: Place) -> tuple[int, int]:
         """The stop at which something is taken: where, and the ticks of opening and grabbing."""
-        return place.node, 1 + bool(place.relation == "INSIDE" and world.states[CLOSED] >> place.node & 1)
+        return place.node, 1 + bool(place.relation == "INSIDE" and self.scene.closed >> place.node & 1)
 
-    def putting(self, relation: str, target: int, world: World) -> tuple[int, int]:
+    def putting(self, relation: str, target: int) -> tuple[int, int]:
         """The stop at which something is put."""
-        return target, 1 + bool(relation == "INSIDE" and world.states[CLOSED] >> target & 1)
+        return target, 1 + bool(relation == "INSIDE" and self.scene.closed >> target & 1)

@@ -13,15 +13,13 @@ from functools import lru_cache
 import numpy as np
 
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers, Places
+from hearth.agents.goal_space import Flags, Floats, GoalSpace, Numbers, Places, Scene
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import HANDS, HOLDS
 from hearth.schemas.program import Step
 from hearth.simulation.observation.views import Pose
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.states import CLOSED
-from hearth.simulation.world.world import World
 
 MOST = 1_000
 """Things of a predicate that goals want, at most."""
@@ -66,27 +64,27 @@ class Posterior:
         self._last: tuple[Step, Failure | None] | None = None
         self.places: Places = []
 
-    def observe(self, world: World, other: Pose) -> None:
-        """Take in what somebody has just tried, and the world since then.
+    def observe(self, scene: Scene, other: Pose) -> None:
+        """Take in what somebody has just tried, and the home since then.
 
         Args:
-            world: now.
+            scene: now.
             other: how that one stands, with what it last tried.
         """
         last = None if other.last is None else (other.last.instruction, other.last.failure)
         if last is not None and self.places and last != self._last:
             self._weigh(last[0])
         self._last = last
-        places = self.space.places(world)
+        places = scene.places
         if places != self.places:
             self.places = places
             counted = self.space.counted(places)
             self.missing = self.space.missing(counted)
             self._keep(np.asarray(self.missing.any(axis=1), np.float64))
-            self._expect(world, other, counted)
+            self._expect(scene, other, counted)
             self._last = None
 
-    def _expect(self, world: World, other: Pose, counted: Flags) -> None:
+    def _expect(self, scene: Scene, other: Pose, counted: Flags) -> None:
         """What is fetched or carried next under each goal.
 
         Whoever must fetch all of some things saves most by beginning with those that are near now, but far from where
@@ -95,9 +93,9 @@ class Posterior:
         """
         space, me = self.space, self._home.index[other.node]
         self._held = np.array([place == (HOLDS, me) for place in self.places])
-        cost = self.costs(world, other)
+        cost = self.costs(scene.closed, other)
         able = space.fits & ~counted & (cost < FAR)
-        trips = np.where(self._held, cost, self.round_trips(world))
+        trips = np.where(self._held, cost, self.round_trips(scene.closed))
         ordered = np.sort(np.where(able, trips, FAR), axis=1)
         last = able.sum(axis=1) - 1
         goals, rows = np.nonzero(self.missing)
@@ -117,10 +115,10 @@ class Posterior:
         total = found.sum(axis=1, keepdims=True)
         self.pursued = np.divide(found, total, out=np.zeros_like(found), where=total > 0)
 
-    def costs(self, world: World, other: Pose) -> Floats:
+    def costs(self, closed: int, other: Pose) -> Floats:
         """(P, T) ticks until a thing counts for a predicate, if it is brought there next; FAR if it can't be."""
         start = self.distances.cell(other.place)
-        me, closed = self._home.index[other.node], world.states[CLOSED]
+        me = self._home.index[other.node]
         found = np.full(self.space.fits.shape, FAR)
         for number, (relation, node) in enumerate(self.places):
             if relation == HOLDS and node != me:
@@ -136,9 +134,9 @@ class Posterior:
                 found[row, number] = fetched + carried + 1 + shut
         return found
 
-    def round_trips(self, world: World) -> Floats:
+    def round_trips(self, closed: int) -> Floats:
         """(P, T) ticks in which a thing is fetched from where a predicate wants it; FAR of what somebody holds."""
-        distances, closed = self.distances, world.states[CLOSED]
+        distances = self.distances
         found = np.full(self.space.fits.shape, FAR)
         for number, (relation, node) in enumerate(self.places):
             if relation == HOLDS:

@@ -11,11 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hearth.agents.distances import Distances
-from hearth.agents.goal_space import Counts, Edge, Flags, GoalSpace, Places
+from hearth.agents.goal_space import Counts, Edge, Flags, GoalSpace, Scene
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import Pose
-from hearth.simulation.world.states import CLOSED
-from hearth.simulation.world.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,19 +52,27 @@ class _Plan:
 
 
 class Planner:
-    """Predicts plans in one world.
+    """Predicts plans in one scene.
 
     Attributes:
         space: the goals.
     """
 
-    def __init__(self, space: GoalSpace, places: Places, world: World, other: Pose, distances: Distances) -> None:
+    def __init__(self, space: GoalSpace, scene: Scene, me: int, other: Pose, distances: Distances) -> None:
+        """Ask about somebody.
+
+        Args:
+            space: the goals.
+            scene: where things are.
+            me: index of that one's node.
+            other: how that one stands.
+            distances: of that one's ways.
+        """
         self.space = space
-        self._world, self._distances = world, distances
-        self._me = world.home.index[other.node]
+        self._closed, self._distances, self._me = scene.closed, distances, me
         self._start = distances.cell(other.place)
-        self._places = places
-        counted = space.counted(places)
+        self._places = scene.places
+        counted = space.counted(scene.places)
         self._found = counted.sum(axis=1).tolist()
         self._away: Flags = space.fits & ~counted
         self._taken = {t for t, (relation, node) in enumerate(self._places) if relation == HOLDS and node != self._me}
@@ -105,7 +111,7 @@ class Planner:
         if plan.now <= horizon:
             plan.nodes.add(target)
         metres, plan.cell = self._distances.leg(plan.cell, target)
-        shut = relation == "INSIDE" and self._world.states[CLOSED] >> target & 1 and target not in plan.opened
+        shut = relation == "INSIDE" and self._closed >> target & 1 and target not in plan.opened
         plan.now += self._distances.ticks(metres) + 1.0 + bool(shut)
         plan.opened.add(target)
         if plan.now <= horizon:
@@ -128,6 +134,6 @@ class Planner:
                 self._known[key] = 0.0, cell
             else:
                 metres, end = self._distances.leg(cell, node)
-                shut = relation == "INSIDE" and self._world.states[CLOSED] >> node & 1
+                shut = relation == "INSIDE" and self._closed >> node & 1
                 self._known[key] = self._distances.ticks(metres) + 1.0 + bool(shut), end
         return self._known[key]

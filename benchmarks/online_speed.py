@@ -13,6 +13,7 @@ from agents_speed import Timed, figures
 from measuring import as_line, finish, parser
 
 from hearth.agents.agent_registry import MAIN
+from hearth.agents.goal_space import Scene
 from hearth.agents.online_registry import ONLINE
 from hearth.agents.posterior import Posterior
 from hearth.challenges.definition import challenge
@@ -20,7 +21,6 @@ from hearth.challenges.play import Player, play
 from hearth.challenges.tasks import task
 from hearth.kb.loading.load import default
 from hearth.simulation.observation.views import Pose
-from hearth.simulation.world.world import World
 
 OWAH = challenge("owah")
 
@@ -30,10 +30,10 @@ class TimedPosterior(Posterior):
 
     seconds: list[float] = []  # noqa: RUF012
 
-    def observe(self, world: World, other: Pose) -> None:
+    def observe(self, scene: Scene, other: Pose) -> None:
         """As a posterior does."""
         start = process_time()
-        super().observe(world, other)
+        super().observe(scene, other)
         self.seconds.append(process_time() - start)
 
 

@@ -8,7 +8,7 @@ from small_tasks import ALLOWED, start, wanted
 from hearth.agents.distances import Distances
 from hearth.agents.expected_time import ExpectedTime
 from hearth.agents.forecast import MOST, Forecast, Stop
-from hearth.agents.goal_space import GoalSpace
+from hearth.agents.goal_space import GoalSpace, Scene
 from hearth.agents.heaps import HELPER, Situation
 from hearth.agents.human_like import HumanLike
 from hearth.challenges.play import Player, play
@@ -25,10 +25,14 @@ def goal(world):
     return wanted(world, "ON", "coffee_table", plate=2, fork=2)
 
 
+def hands(world):
+    return tuple(agent.index for agent in world.agents)
+
+
 def forecast(world, goal, pursued=-1):
     space = GoalSpace.of({goal: 1.0}, world.home)
     ways = Distances(world.home, 1.0), Distances(world.home, 3.0)
-    here = Situation(space, space.places(world), world, (pose(world, 0), pose(world, 1)), ways)
+    here = Situation(space, space.scene(world), hands(world), (pose(world, 0), pose(world, 1)), ways)
     return Forecast(here, dict(enumerate(space.counts[0].tolist())), pursued), here
 
 
@@ -64,6 +68,6 @@ def test_watching_somebody_who_can_do_nothing_is_in_vain(world, goal):
     space = GoalSpace.of({goal: 1.0}, world.home)
     places = [("HOLDS", world.agents[1].index) for _ in space.things]
     ways = Distances(world.home, 1.0), Distances(world.home, 3.0)
-    here = Situation(space, places, world, (pose(world, 0), pose(world, 1)), ways)
+    here = Situation(space, Scene(places, 0), hands(world), (pose(world, 0), pose(world, 1)), ways)
     found = Forecast(here, {0: 1})
     assert found.finish((), 2.0) == MOST > found.finish()

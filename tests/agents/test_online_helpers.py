@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_tasks import ALLOWED, start, target, wanted
 
+from hearth.agents.belief import Place
 from hearth.agents.empowerment import Empowerment
 from hearth.agents.expected_time import ExpectedTime
 from hearth.agents.goal_space import Edge, GoalSpace
@@ -188,8 +189,9 @@ def test_the_posterior_is_that_of_a_plain_count_over_all_goals(world, number):
     plain.all = space.things
     probable = []
     for now, other in watched(world, list(goals)[number]):
-        fast.observe(now, other)
-        plain.observe(now, other, fast.costs(now, other), fast.round_trips(now), space)
+        scene = space.scene(now)
+        fast.observe(scene, other)
+        plain.observe(now, other, fast.costs(scene.closed, other), fast.round_trips(scene.closed), space)
         assert np.allclose(fast.weights, list(plain.weights.values()), atol=1e-9)
         probable.append(fast.probability(number))
     assert fast.weights.sum() == pytest.approx(1)
@@ -229,14 +231,13 @@ def weighed(world, goals, weights=USUAL_WEIGHTS):
     view = env.observe(1)
     helper = Nopa(lambda home: goals)
     helper.reset(view, None, 0)
-    helper.posterior.observe(view.world, view.others[0])
-    places = helper.posterior.places
-    planner = Planner(helper.space, places, view.world, view.others[0], helper.posterior.distances)
+    helper.look(view)
+    planner = helper.planner()
     prospects = [
         (share, goal, planner.prospect(goal, 0.0))
         for share, goal in zip(goals.values(), helper.space.wanted, strict=True)
     ]
-    return HelpingPlans(helper, view, places, prospects, weights), helper
+    return HelpingPlans(helper, view, prospects, weights), helper
 
 
 def test_a_second_thing_is_needed_only_where_a_goal_wants_two(world):
@@ -259,8 +260,8 @@ def test_a_plan_fetches_the_nearest_and_brings_it(world):
     space = GoalSpace.of(goals, world.home)
     other = pose(world, 0)
     posterior = Posterior(space, world.home, 1.0)
-    posterior.observe(world, other)
-    planner = Planner(space, posterior.places, world, other, posterior.distances)
+    posterior.observe(space.scene(world), other)
+    planner = Planner(space, space.scene(world), world.agents[0].index, other, posterior.distances)
     found = planner.prospect(space.wanted[0], 200.0)
     brought = [edge for edge in found.edges if edge.relation == "ON"]
     assert len(brought) == 2 and not found.later
@@ -349,7 +350,7 @@ def test_what_is_not_wanted_is_brought_back(home):
     helper = ExpectedTime(lambda home: goals)
     helper.reset(env.observe(1), None, 0)
     desk = env.world.home.index[target(env.world, "desk")]
-    helper.first_places[apple] = helper.first_places[apple]._replace(relation="ON", node=desk)
+    helper.first_places[apple] = Place("ON", desk)
     helper.act(env.observe(1), legal(env.world, 1, env.rules))
     assert helper.subgoal == Edge("ON", apple, desk)
 
