@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
@@ -11,9 +12,11 @@ from hearth.agents.learned import Hybrid, Learned
 from hearth.agents.population import PEOPLE
 from hearth.agents.protocol import Agent
 from hearth.agents.random_helper import RandomHelper
+from hearth.agents.talking import Answering
 
-MainAgent = HumanLike
-"""Who is helped: an agent that says what it is doing (`subgoal`)."""
+
+class MainAgent(Agent, Partner, Protocol):
+    """Who is helped: an agent of which it is known what it is doing (`subgoal`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,7 @@ SEES_ALL = replace(HELPING, sees_all=True)
 MAIN: dict[str, Callable[[], MainAgent]] = {
     "human_like": HumanLike,
     "oracle": lambda: HumanLike(Habits(sees_all=True)),
+    "answering": Answering,
     **PEOPLE,
 }
 """Who is helped."""

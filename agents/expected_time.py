@@ -8,6 +8,7 @@ given it is the planner of HP_GT.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -54,26 +55,36 @@ USUAL = Settings()
 
 
 class ExpectedTime(OnlineHelper):
-    """Does what is expected to let its partner finish soonest."""
+    """Does what is expected to let its partner finish soonest.
+
+    Attributes:
+        value: the expected ticks until then, of what it chose last.
+    """
 
     def __init__(self, goals: GoalsIn, settings: Settings = USUAL, model: ActionModel = USUAL_MODEL) -> None:
         super().__init__(goals, model)
         self.settings = settings
+        self.value = math.inf
 
     def choose(self, view: View) -> Edge | None:
         """The first step of the best plan; None to wait."""
         self._look(view)
         if not self._forecasts:
             return self._back(view)
-        best, chosen = float("inf"), None
-        if self._forecasts[0][0] < CERTAIN:
-            best = self._expected((), self.settings.patience)
+        best, chosen = self._waiting(view)
         for stops in self._plans(view):
             edge = self._edge(stops[0])
             value = self._expected(stops) - self.settings.loyalty * (edge == self.subgoal)
             if value < best:
                 best, chosen = value, edge
+        self.value = best
         return chosen or self._back(view)
+
+    def _waiting(self, view: View) -> tuple[float, Edge | None]:
+        """The expected ticks if it only watches at first, and what it does for that."""
+        if self._forecasts[0][0] >= CERTAIN:
+            return math.inf, None
+        return self._expected((), self.settings.patience), None
 
     def _look(self, view: View) -> None:
         """The situation, the goals that stand for all, and how probably the things of each heap are wanted."""

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from hearth.agents.belief import Place
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.subgoals import Missing, Subgoal
+from hearth.agents.whereabouts import note_others
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import Pose, View
-from hearth.simulation.world.bits import indices
 
 
 class Partner(Protocol):
@@ -57,16 +56,8 @@ class Hierarchical(HumanLike):
 
     def _note_other(self, view: View) -> None:
         """Where the other one is: as last seen; in any other room, if it is not where it was."""
-        home = view.world.home
-        for other in view.others:
-            self._other = other
-            if other.room is not None:
-                self.belief.where[home.index[other.node]] = Place("INSIDE", home.index[other.room])
-        for node in indices(home.characters & ~view.mask):
-            place = self.belief.where.get(node)
-            if place is None or home.ids[place.node] == view.me.room:
-                rooms = [i for i in indices(home.rooms) if home.ids[i] != view.me.room]
-                self.belief.where[node] = Place("INSIDE", self.chooser.choice(rooms))
+        self._other = view.others[-1] if view.others else self._other
+        note_others(self.belief, view, self.chooser)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
         """The subgoals but those of its partner; those too, if there are no others."""

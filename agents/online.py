@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from hearth.agents.belief import Belief, Place
 from hearth.agents.distances import Distances
 from hearth.agents.goal_space import Counts, Edge, GoalsIn, GoalSpace, Scene
 from hearth.agents.posterior import USUAL_MODEL, ActionModel, Posterior
 from hearth.agents.prospects import Planner
+from hearth.agents.protocol import Choice
 from hearth.agents.regression import Regression
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HANDS, HOLDS, Literal
@@ -49,7 +51,7 @@ class OnlineHelper:
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode; a goal that it is given is the only one that there may be (see `agents.protocol`)."""
-        home = observation.world.home
+        home = self.home = observation.world.home
         self.space = GoalSpace.of({goal: 1.0} if goal is not None else self._goals(home), home)
         self.chooser = rng(seed, "helper", observation.agent)
         partner = next(agent for n, agent in enumerate(observation.world.agents) if n != observation.agent)
@@ -61,7 +63,7 @@ class OnlineHelper:
         self.other: Pose | None = None
         self.subgoal = None
 
-    def act(self, observation: View, legal: Legal) -> Step | None:
+    def act(self, observation: View, legal: Legal) -> Choice:
         """The first instruction towards what helps most."""
         if not self.look(observation):
             return None
@@ -77,12 +79,18 @@ class OnlineHelper:
         for thing in self.space.things:
             if known >> thing & 1:
                 self.first_places.setdefault(thing, where[thing])
-        self.scene = Scene([where[thing] for thing in self.space.things], self.belief.states[CLOSED])
+        self.scene = Scene([self._believed(thing) for thing in self.space.things], self.belief.states[CLOSED])
         if not view.others:
+            if self.other is not None:
+                self.posterior.observe(self.scene, replace(self.other, last=None))
             return False
         self.other = view.others[0]
         self.posterior.observe(self.scene, self.other)
         return True
+
+    def _believed(self, thing: int) -> Place:
+        """Where it believes a thing to be."""
+        return self.belief.where[thing]
 
     @property
     def proposed(self) -> dict[Counts, float]:

@@ -12,6 +12,8 @@ from hearth.agents.helping_plans import Weights
 from hearth.agents.nopa import Nopa, Settings
 from hearth.agents.proposed_plans import ProposedPlans
 from hearth.agents.protocol import Agent
+from hearth.agents.talking import Asking
+from hearth.agents.watchful import Watchful, Watching
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +41,11 @@ def _nopa(about: str, settings: Settings) -> OnlineKind:
 
 ONLINE: dict[str, OnlineKind] = {
     "expected_time": OnlineKind(ExpectedTime, "saves the most expected ticks, over the exact posterior"),
+    "watchful": OnlineKind(Watchful, "the same for who sees its own room only: goes to watch where that saves time"),
+    "watchful_stays": OnlineKind(
+        lambda goals: Watchful(goals, Watching(seeks=False)), "the same, watches who is in view anyway"
+    ),
+    "asking": OnlineKind(Asking, "the same, and asks where an answer is worth two ticks"),
     "nopa": _nopa("NOPA, proposals from the exact posterior", Settings()),
     "nopa_gpn": _nopa("NOPA, proposals from the network", Settings(proposals="gpn")),
     "nopa_gpn_s": _nopa("NOPA, proposals from the network of 300 episodes", Settings(proposals="gpn", model=SMALL)),

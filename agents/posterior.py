@@ -35,10 +35,12 @@ class ActionModel:
     Attributes:
         rationality: how much less probable a thing becomes with each tick that it is farther.
         slip: probability of an action that the model does not explain.
+        searching: how probably it looks for a thing in a place where the thing is not, since it does not see all.
     """
 
     rationality: float = 0.3
     slip: float = 0.02
+    searching: float = 0.0
 
 
 USUAL_MODEL = ActionModel()
@@ -80,9 +82,15 @@ class Posterior:
             self.places = places
             counted = self.space.counted(places)
             self.missing = self.space.missing(counted)
-            self._keep(np.asarray(self.missing.any(axis=1), np.float64))
+            self._keep(np.asarray(self.missing.any(axis=1) & self._possible(counted), np.float64))
             self._expect(scene, other, counted)
             self._last = None
+
+    def _possible(self, counted: Flags) -> Flags:
+        """(G,) whether there are as many things as a goal lacks."""
+        left = (self.space.fits & ~counted).sum(axis=1)
+        found: Flags = (self.missing <= left).all(axis=1)
+        return found
 
     def _expect(self, scene: Scene, other: Pose, counted: Flags) -> None:
         """What is fetched or carried next under each goal.
@@ -161,6 +169,16 @@ class Posterior:
         total = explained[:, None]
         self.pursued = np.where(total > 0, joint / np.where(total > 0, total, 1.0), self.pursued)
 
+    def notice(self, row: int) -> None:
+        """Weigh the goals by a thing that somebody has brought unseen to where a predicate wants it."""
+        slip = self.model.slip
+        self._keep((1 - slip) * (self.space.counts[:, row] > 0) + slip)
+
+    def told(self, row: int, count: int) -> None:
+        """Weigh the goals by what somebody says: a predicate that is still wanted, and how many are missing."""
+        slip, lacking = self.model.slip, np.maximum(1, (self.missing > 0).sum(axis=1))
+        self._keep((1 - slip) * (self.missing[:, row] == count) / lacking + slip * slip)
+
     def _keep(self, likelihood: Floats) -> None:
         weights = self.weights * likelihood
         total = weights.sum()
@@ -195,14 +213,18 @@ class Posterior:
             ],
             np.float64,
         )
-        carried = self._wanted_at(node) if self._held.any() else np.zeros((1, 1))
+        fetched = np.maximum(fetched, self.model.searching)
+        carried = self._wanted_at(node, of_room) if self._held.any() else np.zeros((1, 1))
+        if of_room:
+            carried = np.maximum(carried, self.model.searching)
         found: Floats = np.where(self._held, carried, fetched)
         return found
 
-    def _wanted_at(self, node: int) -> Floats:
-        """(G, T) whether a goal lacks a thing on or in some furniture."""
-        here = (self.space.targets == node).astype(np.float64)
-        lacking = (self.missing > 0) * here
+    def _wanted_at(self, node: int, of_room: bool = False) -> Floats:
+        """(G, T) whether a goal lacks a thing on or in some furniture, or in a room."""
+        inside, targets = self._home.inside, self.space.targets
+        here = np.array([node == each or (of_room and bool(inside[each] >> node & 1)) for each in targets.tolist()])
+        lacking = (self.missing > 0) * here.astype(np.float64)
         found: Floats = (lacking @ self.space.fits.astype(np.float64) > 0).astype(np.float64)
         return found
 

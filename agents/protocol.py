@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import Protocol
 
 from hearth.schemas.goals import Goal
+from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
+
+Choice = Step | Message | None
+"""What an agent chooses in a tick."""
 
 
 class Resigned(Exception):  # noqa: N818 - nothing is wrong
@@ -30,8 +34,8 @@ class Agent(Protocol):
             seed: of all that it does at random.
         """
 
-    def act(self, observation: View, legal: Legal) -> Step | None:
-        """The instruction that it tries in this tick; None to wait.
+    def act(self, observation: View, legal: Legal) -> Choice:
+        """The instruction that it tries in this tick, or what it says instead; None to wait.
 
         Args:
             observation: what it sees now, with what it and those it sees last tried.

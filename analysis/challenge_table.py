@@ -26,7 +26,7 @@ CONFIDENT = 1.96
 
 
 TABLES: dict[str, dict[str, Any]] = packaged("hearth.analysis", "challenge_table.yaml")["tables"]
-"""By challenge: the split, the number of the thesis's figure, and the methods."""
+"""By challenge: the split, the number of the thesis's figure, who is helped, and the methods."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +68,15 @@ def methods(
     """
     folder.mkdir(parents=True, exist_ok=True)
     alone: Results | None = None
-    for row in TABLES[table or suite.challenge]["methods"]:
+    given = TABLES[table or suite.challenge]
+    main = given.get("main", Lineup.main)
+    for row in given["methods"]:
         helper, found = row["helper"], None
         if helper in (NOBODY, *HELPERS, *ONLINE) and _ready(helper):
             seen = watch(row["name"]) if watch else unseen
             goal = row.get("goal", "")
             out = inside(folder, f"{helper}{goal and '-'}{goal}.jsonl")
-            found = run(suite, Lineup(helper=helper, goal=goal), seeds, out, known, workers, seen, alone)
+            found = run(suite, Lineup(main, helper, goal), seeds, out, known, workers, seen, alone)
             alone = alone or found
         yield Method(row["name"], helper, row.get("thesis", ""), found)
 

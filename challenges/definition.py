@@ -21,6 +21,9 @@ from hearth.simulation.world.home import Home
 NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
 
+VARIANTS = ("owah_partial", "owah_messages")
+"""Challenges beyond the thesis: each is one of `NAMES` with what its file says otherwise."""
+
 
 @dataclass(frozen=True)
 class Split:
@@ -50,6 +53,7 @@ class Challenge:
         never_at: classes of furniture that no thing of a goal is put at.
         ticks: after which an episode ends.
         partial: whether agents see only what is around them.
+        messages: whether agents may say something instead of doing something (see `schemas.messages`).
         bodies: whether agents stand in each other's way.
         strides: metres that each agent walks in a tick.
         actions: the group of actions that agents may try.
@@ -66,6 +70,7 @@ class Challenge:
     never_at: frozenset[str]
     ticks: int
     partial: bool
+    messages: bool
     bodies: bool
     strides: tuple[float, ...]
     actions: str
@@ -110,9 +115,12 @@ def challenge(name: str) -> Challenge:
     Raises:
         HearthError: BAD_ARGUMENT: there is none of that name.
     """
-    if name not in NAMES:
-        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no challenge `{name[:40]}`", suggestion=" or ".join(NAMES))
+    if name not in (*NAMES, *VARIANTS):
+        remedy = ", ".join((*NAMES, *VARIANTS))
+        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no challenge `{name[:40]}`", suggestion=remedy)
     data = packaged("hearth.challenges", f"{name}.yaml")
+    if "like" in data:
+        data = {**packaged("hearth.challenges", f"{data['like']}.yaml"), **data}
     homes = {part: tuple(names) for part, names in data["homes"].items()}
     splits = {
         part: Split(given["tasks"], given["sets"], homes[given["homes"]], given["goals"])
@@ -126,6 +134,7 @@ def challenge(name: str) -> Challenge:
         frozenset(data["never_at"]),
         data["ticks"],
         data["partial"],
+        data.get("messages", False),
         data["bodies"],
         tuple(data["strides"]),
         data["actions"],

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from hearth.agents.agent_registry import MainAgent
+from hearth.agents.protocol import Choice
 from hearth.challenges.definition import Challenge, challenge
 from hearth.challenges.failure_analysis import analysed
 from hearth.challenges.lineup import Lineup
@@ -18,6 +19,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.messages import Message
+from hearth.schemas.messages import read as read_message
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import derive
 from hearth.simulation.env import Env, Tick
@@ -87,11 +90,20 @@ def played(job: Job) -> Record:
     seed = derive(job.task.seed, "episode", job.seed)
     allowed = which.allowed(knowledge)
     done = play(
-        start, goals[0], players, seed, actions=allowed, partial=which.partial, limit=which.ticks, rules=which.rules
+        start,
+        goals[0],
+        players,
+        seed,
+        actions=allowed,
+        partial=which.partial,
+        limit=which.ticks,
+        rules=which.rules,
+        messages=which.messages,
     )
     found = measured(which, start, done.env.ticks, goals, done.progress)
     actions = tuple(
-        tuple(map(written, (tick.instructions.get(n) for n in range(len(players))))) for tick in done.env.ticks
+        tuple(written(said.get(n) or tick.instructions.get(n)) for n in range(len(players)))
+        for tick, said in zip(done.env.ticks, done.said, strict=True)
     )
     asked = None if job.helper_goal is None or not job.helped else which.grammar.written(job.helper_goal)
     fault = done.fault
@@ -127,8 +139,7 @@ def replayed(
     for number, texts in enumerate(record.actions):
         if progress[-1].satisfied or number >= which.ticks or len(texts) != len(start.agents):
             raise HearthError.of(Code.REPLAY_DIFFERS, f"tick {number + 1} comes after the end, or has other agents")
-        steps = {n: read_instruction(text, n, home, allowed) for n, text in enumerate(texts) if text is not None}
-        done = env.step(steps)
+        done = env.step(read_choices(texts, home, allowed, which.messages)[0])
         tried = [step for n, step in done.instructions.items() if n not in done.failures]
         progress.append(progress[-1].then(done.before, done.world, tried))
     if not progress[-1].satisfied and len(env.ticks) < which.ticks and record.end is None:
@@ -157,9 +168,20 @@ def _goals(which: Challenge, task: Task, helper_goal: Goal | None, home: Home, h
     return goals
 
 
-def written(step: Step | None) -> str | None:
-    """An instruction as records have it: `Grab 41`."""
-    return None if step is None else " ".join([step.action, *(str(ref.node) for ref in step.objects)])
+def read_choices(
+    texts: Sequence[str | None], home: Home, allowed: frozenset[str], messages: bool
+) -> tuple[dict[int, Step], dict[int, Message]]:
+    """What each agent did, and what each said, in a tick of a record; errors as of `read_instruction`."""
+    said = {n: told for n, text in enumerate(texts) if messages and text and (told := read_message(text)) is not None}
+    rest = {n: text for n, text in enumerate(texts) if text is not None and n not in said}
+    return {n: read_instruction(text, n, home, allowed) for n, text in rest.items()}, said
+
+
+def written(choice: Choice) -> str | None:
+    """What was done as records have it: `Grab 41`; what was said as `schemas.messages` has it."""
+    if choice is None or isinstance(choice, Message):
+        return None if choice is None else str(choice)
+    return " ".join([choice.action, *(str(ref.node) for ref in choice.objects)])
 
 
 def read_instruction(text: str, agent: int, home: Home, allowed: frozenset[str]) -> Step:

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from hearth.agents.protocol import Agent
+from hearth.agents.protocol import Agent, Choice
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
@@ -40,8 +41,11 @@ class Guarded:
         refused: its instructions that were not tried: actions that the challenge lacks, things that it does not see.
     """
 
-    def __init__(self, agent: Agent, number: int, allowed: frozenset[str], seconds: float = SECONDS) -> None:
+    def __init__(
+        self, agent: Agent, number: int, allowed: frozenset[str], seconds: float = SECONDS, messages: bool = False
+    ) -> None:
         self.agent, self.number, self.allowed, self.seconds = agent, number, allowed, seconds
+        self.messages = messages
         self.refused = 0
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
@@ -54,16 +58,16 @@ class Guarded:
         with self._watched():
             self.agent.reset(observation, goal, seed)
 
-    def act(self, observation: View, legal: Legal) -> Step | None:
-        """Its instruction, if it may be tried; None otherwise.
+    def act(self, observation: View, legal: Legal) -> Choice:
+        """What it says, where that is allowed, or its instruction, if it may be tried; None otherwise.
 
         Raises:
             AgentError: there is no instruction: AGENT_FAILED, TIMED_OUT, BAD_ARGUMENT.
         """
         with self._watched():
             step = self.agent.act(observation, legal)
-            if step is None:
-                return None
+            if step is None or (isinstance(step, Message) and self.messages):
+                return step
             if not isinstance(step, Step):
                 raise HearthError.of(Code.BAD_ARGUMENT, f"the answer is {type(step).__name__}, not a Step or None")
             if step in legal or self._may_try(step, observation):

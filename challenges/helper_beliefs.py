@@ -10,7 +10,7 @@ from hearth.agents.goal_space import Counts
 from hearth.agents.online import OnlineHelper
 from hearth.agents.online_registry import ONLINE
 from hearth.challenges.definition import challenge
-from hearth.challenges.episodes import Record, read_instruction, start_of
+from hearth.challenges.episodes import Record, read_choices, start_of
 from hearth.challenges.play import Playing
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
@@ -60,7 +60,15 @@ def beliefs(task: Task, record: Record, helper: str, knowledge: Knowledge) -> Be
     which = challenge(task.challenge)
     start = start_of(task, knowledge, None)
     goal, allowed = task.goal_in(start.home), which.allowed(knowledge)
-    playing = Playing(start, goal, [which.partial] * 2, actions=allowed, limit=which.ticks, rules=which.rules)
+    playing = Playing(
+        start,
+        goal,
+        [which.partial] * 2,
+        actions=allowed,
+        limit=which.ticks,
+        rules=which.rules,
+        messages=which.messages,
+    )
     agent = ONLINE[helper].make(which.goals_in)
     assert isinstance(agent, OnlineHelper)
     agent.reset(playing.view(1), None, derive(derive(task.seed, "episode", record.seed), "agent", 1))
@@ -69,8 +77,8 @@ def beliefs(task: Task, record: Record, helper: str, knowledge: Knowledge) -> Be
     for texts in record.actions:
         agent.act(playing.view(1), playing.legal(1))
         moments.append(_moment(agent, number))
-        steps = {n: read_instruction(text, n, start.home, allowed) for n, text in enumerate(texts) if text is not None}
-        playing.step(steps)
+        steps, said = read_choices(texts, start.home, allowed, which.messages)
+        playing.step({**steps, **said})
     names = tuple(f"{each.name}({each.subject}, {start.home.classes[start.home.index[int(str(each.target))]]})"
                   for each in agent.space.predicates)  # fmt: skip
     return Beliefs(names, agent.space.wanted[number], tuple(moments))

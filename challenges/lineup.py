@@ -82,10 +82,12 @@ class Lineup:
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
         main = (make or MAIN[known.main if helped and known and known.main else self.main])()
-        found = [Player(Guarded(main, 0, allowed, self.seconds), goal, partial_of(main))]
+        found = [Player(Guarded(main, 0, allowed, self.seconds, which.messages), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
             agent: Agent = known.make(main) if known else self._own(which)
-            found.append(Player(Guarded(agent, 1, allowed, self.seconds), helper_goal, partial_of(agent)))
+            found.append(
+                Player(Guarded(agent, 1, allowed, self.seconds, which.messages), helper_goal, partial_of(agent))
+            )
         return found
 
     def _own(self, which: Challenge) -> Agent:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from hearth.agents.protocol import Agent, Resigned
+from hearth.agents.protocol import Agent, Choice, Resigned
 from hearth.challenges.guard import AgentError
 from hearth.schemas.goals import Goal
-from hearth.schemas.program import Step
+from hearth.schemas.messages import Message
 from hearth.schemas.rng import derive
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.env import Env, Tick
@@ -44,11 +44,13 @@ class Played:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
         fault: why an agent could not go on, which ended the episode; None where all could.
+        said: what was said in each tick, by number.
     """
 
     env: Env
     progress: tuple[Progress, ...]
     fault: AgentError | None = None
+    said: tuple[Mapping[int, Message], ...] = ()
 
     @property
     def success(self) -> bool:
@@ -67,6 +69,7 @@ class Playing:
     Attributes:
         env: with its ticks.
         progress: of the goal in the real world, at the start and after each tick.
+        said: what was said in each tick, by number.
 
     Args:
         start: a world in which character n belongs to player n.
@@ -75,6 +78,7 @@ class Playing:
         partial: for each player, whether it sees only what is around it.
         limit: ticks after which it ends.
         rules: of actions.
+        messages: whether agents may say something instead of doing something; it is dropped otherwise.
     """
 
     def __init__(
@@ -86,11 +90,14 @@ class Playing:
         actions: Iterable[str] | None = None,
         limit: int = MOST_TICKS,
         rules: Rules = DEFAULT,
+        messages: bool = False,
     ) -> None:
         self.env = Env(rules)
         self.env.restore(start)
         self.progress = [Progress.start(goal, start)]
         self.limit = limit
+        self.said: list[Mapping[int, Message]] = []
+        self._messages = messages
         self._partial = tuple(partial)
         self._allowed = None if actions is None else frozenset(actions)
 
@@ -102,16 +109,20 @@ class Playing:
     def view(self, number: int) -> View:
         """What a player sees now."""
         self.env.partial = self._partial[number]
-        return self.env.observe(number)
+        seen = self.env.observe(number)
+        last = self.said[-1] if self.said else {}
+        return replace(seen, heard=tuple((n, said) for n, said in last.items() if n != number)) if last else seen
 
     def legal(self, number: int) -> Legal:
         """What a player may do now."""
         self.env.partial = self._partial[number]
         return self.env.legal(number, actions=self._allowed)
 
-    def step(self, chosen: Mapping[int, Step | None]) -> Tick:
-        """Let each player do one instruction (see `Env.step`)."""
-        done = self.env.step(chosen)
+    def step(self, chosen: Mapping[int, Choice]) -> Tick:
+        """Let each player do one instruction (see `Env.step`), or say something."""
+        said = {number: each for number, each in chosen.items() if isinstance(each, Message)}
+        done = self.env.step({n: each for n, each in chosen.items() if not isinstance(each, Message)})
+        self.said.append(said if self._messages else {})
         tried = [step for number, step in done.instructions.items() if number not in done.failures]
         self.progress.append(self.progress[-1].then(done.before, done.world, tried))
         return done
@@ -127,6 +138,7 @@ def play(
     partial: bool = True,
     limit: int = MOST_TICKS,
     rules: Rules = DEFAULT,
+    messages: bool = False,
 ) -> Played:
     """Let agents act in a world, one instruction each a tick, until a goal is reached or an agent ends it.
 
@@ -139,9 +151,10 @@ def play(
         partial: whether agents see only what is around them.
         limit: ticks after which it ends.
         rules: of actions.
+        messages: whether agents may say something instead of doing something.
     """
     seen = [partial if player.partial is None else player.partial for player in players]
-    playing = Playing(start, goal, seen, actions=actions, limit=limit, rules=rules)
+    playing = Playing(start, goal, seen, actions=actions, limit=limit, rules=rules, messages=messages)
     fault = None
     try:
         for number, player in enumerate(players):
@@ -155,4 +168,4 @@ def play(
         fault = found
     except Resigned:
         pass
-    return Played(playing.env, tuple(playing.progress), fault)
+    return Played(playing.env, tuple(playing.progress), fault, tuple(playing.said))

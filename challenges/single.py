@@ -14,6 +14,7 @@ from hearth.challenges.session import Session, Setting
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.libraries import library
+from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 
@@ -98,7 +99,9 @@ class HomeEnv(Env[Arrays, Number]):
         """
         session = self.session
         chosen: dict[int, Step | Failure | None] = {self.learner: session.read(self.learner, action)}
-        chosen |= {number: partner.act(*session.seen(number)) for number, partner in self.partners.items()}
+        for number, partner in self.partners.items():
+            choice = partner.act(*session.seen(number))
+            chosen[number] = None if isinstance(choice, Message) else choice
         rewards = session.act(chosen)
         return (self._now()[0], rewards[self.learner], session.succeeded, session.cut_off, session.info(self.learner))
 

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation import reach
@@ -66,6 +67,7 @@ class View:
         me: its own pose.
         others: the poses of the other characters it sees, by number.
         tick: how many ticks have passed.
+        heard: what others said in the last tick, by number.
     """
 
     world: World
@@ -74,6 +76,7 @@ class View:
     me: Pose
     others: tuple[Pose, ...]
     tick: int = 0
+    heard: tuple[tuple[int, Message], ...] = ()
 
     @cached_property
     def ids(self) -> tuple[int, ...]:

@@ -69,6 +69,14 @@ def goals_of(world):
     }
 
 
+def test_a_goal_that_wants_more_than_there_is_is_nobody_s(world):
+    goals = {wanted(world, "ON", "desk", plate=4): 0.9, wanted(world, "ON", "desk", plate=3): 0.1}
+    space = GoalSpace.of(goals, world.home)
+    posterior = Posterior(space, world.home, 1.0)
+    posterior.observe(space.scene(world), pose(world, 0))
+    assert posterior.probability(0) == 0.0 and posterior.probability(1) == 1.0
+
+
 def watched(world, goal, seed=0):
     """Each world of an episode of one agent, with what it has just tried."""
     played = play(world, goal, [HumanLike(), None], seed)
@@ -101,7 +109,7 @@ class Plain:
         rows = list(dict.fromkeys(literal for goal in self.goals for literal, _ in goal))
         for goal in self.goals:
             lacking = self.lacking(goal, places)
-            if not lacking:
+            if not lacking or any(self.too_few(goal, literal, places) for literal in lacking):
                 self.weights[goal] = 0.0
             found = {}
             for number, thing in enumerate(space.things):
@@ -128,6 +136,10 @@ class Plain:
         met = sum(self.counts(literal, t, p) for t, p in zip(self.all, self.places, strict=True))
         cheapest = sorted(map(trip, self.able(literal, costs[row])))[: dict(goal)[literal] - met]
         return min(trip(number), cheapest[-1])
+
+    def too_few(self, goal, literal, places):
+        """Whether a goal wants more of some things than there are."""
+        return dict(goal)[literal] > sum(self.counts(literal, thing, None) for thing in self.all)
 
     def able(self, literal, costs):
         return [
