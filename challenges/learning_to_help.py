@@ -1,12 +1,14 @@
 """Training of Hybrid and HRL: the planner's choices are imitated, then A2C goes on from there (thesis B.3.3 to B.3.5).
 
 The thesis begins with episodes in which the agent is alone; imitating the planner takes their place. It trains with
-RMSprop and 126,000 episodes, here it is AdamW and what two cores give.
+RMSprop and 126,000 episodes, here it is AdamW and what two cores give. The weights of imitation stay where practice
+earns no more on the tasks for validation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -150,7 +152,11 @@ def learn(
     imitated = _imitate(policy, traces, how, effort, trained)
     rollout: Rollout = partial(_PLAYED[chooses], policy, known)
     before = _score(rollout, held)
+    imitating = deepcopy(policy.network.state_dict())
     practised = _practise(policy, tasks[: -len(held)], held, rollout, how, effort, trained)
+    better = max(practised["curves"]["score"], default=before) > before
+    if not better:
+        policy.network.load_state_dict(imitating)
     facts = {
         "challenge": name,
         "tasks": len(tasks) - len(held),
@@ -158,6 +164,7 @@ def learn(
         "seed": how.seed,
         "episodes": practised["epochs"] * effort.updates * effort.episodes,
         "return_imitated": round(before, 4),
+        "kept": "practice" if better else "imitation",
         "imitation": imitated,
         **practised,
     }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import challenge_online, output
+from hearth.commands import challenge_checks, challenge_online, output
 from hearth.commands.challenge_film import film
 
 if TYPE_CHECKING:
@@ -19,9 +19,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Help somebody at home: tasks of Watch-And-Help and Online Watch-And-Help, agents, and their scores.",
 )
-
-app.command()(challenge_online.infer)
-app.command()(challenge_online.people)
 
 
 @app.command()
@@ -113,33 +110,6 @@ def score(results: Path, *, as_json: bool = False) -> None:
     from hearth.challenges.result_files import read
 
     _print(read(results), as_json)
-
-
-@app.command()
-def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bool = False) -> None:
-    """Do all episodes of a run again, and compute every metric again; the status is 1 if anything differs.
-
-    \b
-    Example:
-      python cli.py challenge verify hp.jsonl
-    """
-    from hearth.challenges.result_files import read
-    from hearth.challenges.verification import verify as differences
-    from hearth.commands.progress_line import bar
-    from hearth.kb.loading.load import default
-
-    found = read(results)
-    with bar("tasks") as seen:
-        faults = differences(found, str(results), default, workers, agents, seen)
-    if as_json:
-        header = found.header
-        shown = {"episodes": len(found.records), "published": header.suite.published, "suite": header.suite.digest}
-        output.emit({**shown, "differences": [fault.message for fault in faults]})
-    else:
-        output.report(faults)
-        which = "the published tasks" if found.header.suite.published else "other tasks than the published ones"
-        print(f"{len(found.records):,} episodes of {which} done again: {len(faults)} differ")
-    output.status(len(faults), strict=True)
 
 
 @app.command()
@@ -426,46 +396,14 @@ def table(
     output.table(("method", *(each.replace("_", " ") for each in shown), "t", "p", "effect", "thesis"), cells)
 
 
-@app.command()
-def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> None:
-    """Rank runs by speedup, each done again and its metrics computed again; the status is 1 if one is false.
-
-    \b
-    Example:
-      python cli.py challenge board hp.jsonl mine.jsonl
-    """
-    from hearth.challenges.metrics import summary
-    from hearth.challenges.result_files import read
-    from hearth.challenges.verification import verify as differences
-    from hearth.kb.loading.load import default
-
-    rows: list[dict[str, Any]] = []
-    for path in results:
-        found = read(path)
-        header = found.header
-        figures = summary(found.outcomes(False), found.outcomes(True))
-        rows.append(
-            {
-                "file": path.name,
-                "suite": f"{header.suite.challenge} {header.suite.split}",
-                "published": header.suite.published,
-                "main": header.lineup.main,
-                "helper": header.lineup.helper,
-                "goal": header.lineup.goal,
-                "episodes": figures["episodes"],
-                "success": figures["success"],
-                "speedup": figures["speedup"],
-                "speedup_se": figures["speedup_se"],
-                "reward": figures["reward"],
-                "verified": not differences(found, str(path), default, workers),
-            }
-        )
-    rows.sort(key=lambda row: (not row["verified"], -row["speedup"], row["file"]))
-    if as_json:
-        output.emit(rows)
-    else:
-        output.records(rows)
-    output.status(sum(not row["verified"] for row in rows), strict=True)
+for _command in (
+    challenge_checks.verify,
+    challenge_checks.board,
+    challenge_checks.solvable,
+    challenge_online.infer,
+    challenge_online.people,
+):
+    app.command()(_command)
 
 
 def _print(results: Results, as_json: bool) -> None:

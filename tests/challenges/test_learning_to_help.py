@@ -14,6 +14,7 @@ from hearth.agents.human_like import HumanLike  # noqa: E402
 from hearth.agents.learned import Hybrid, Learned  # noqa: E402
 from hearth.agents.scene_reading import vocabulary  # noqa: E402
 from hearth.analysis.training_curves import drawn, runs  # noqa: E402
+from hearth.challenges import learning_to_help  # noqa: E402
 from hearth.challenges.learning_to_help import (  # noqa: E402
     Effort,
     Lesson,
@@ -146,3 +147,22 @@ def test_a_training_is_repeated_and_kept(tmp_path, chooses):
     assert (run.seed, [len(scores) for scores in run.scores.values()]) == (5, [2, 2])
     assert drawn([run, run]).count("<polyline") == 4
     assert "helps somebody" in (tmp_path / "made" / "README.md").read_text()
+
+
+@pytest.mark.parametrize("gain", [-1.0, 1.0])
+def test_what_was_imitated_stays_where_practice_earns_no_more(monkeypatch, gain):
+    """Practice that sets all weights to 0, and earns less or more."""
+    kept = {}
+
+    def practise(policy, *rest):
+        kept.update({name: value.clone() for name, value in policy.network.state_dict().items()})
+        for value in policy.network.state_dict().values():
+            value.zero_()
+        return {"epochs": 1, "curves": {"score": [gain]}}
+
+    monkeypatch.setattr(learning_to_help, "_practise", practise)
+    monkeypatch.setattr(learning_to_help, "_score", lambda rollout, tasks: 0.0)
+    effort = Effort(imitation=1, epochs=1, updates=1, episodes=1)
+    policy = learn("wah", "subgoals", default, Training(seed=5), effort, limit=2)
+    same = all(torch.equal(kept[name], value) for name, value in policy.network.state_dict().items())
+    assert same == (gain < 0) and policy.facts["kept"] == ("imitation" if gain < 0 else "practice")
