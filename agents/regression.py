@@ -214,9 +214,9 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
     """The actions that make a literal true, or false, with the variables of its terms: those that the thesis animates
     first, and none that only does more than a plainer one.
     """
-    found = _effects(knowledge, HANDS[0] if name == HOLDS else name, negated)
+    found = _effects(knowledge, HANDS[0] if name == HOLDS else name, terms, negated)
     if not found and negated and terms == 1:  # nothing makes it false but what makes its opposite true
-        found = _effects(knowledge, OPPOSITE[name], negated=False)
+        found = _effects(knowledge, OPPOSITE[name], terms, negated=False)
     avoided = knowledge.group("variant") | knowledge.group("unplanned")
     ways = {
         (action.name, variables): (action, variables)
@@ -226,14 +226,15 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
     return tuple(sorted(ways.values(), key=lambda way: ("animated" not in way[0].groups, way[0].id)))
 
 
-def _effects(knowledge: Knowledge, name: str, negated: bool) -> list[tuple[Action, Effect]]:
-    """The effects on a predicate of the things that an action names."""
+def _effects(knowledge: Knowledge, name: str, terms: int, negated: bool) -> list[tuple[Action, Effect]]:
+    """The effects on a predicate of the things that an action names; `ON` of one thing is its state, of two a relation."""
     return [
         (action, effect)
         for action in knowledge.actions.values()
         for effect in action.effects
         if effect.literal.negated == negated
         and _name(effect) == name
+        and (effect.literal.name == "state") == (terms == 1)
         and not effect.variables
         and not any(term.function for term in effect.literal.terms)
     ]

@@ -10,6 +10,9 @@ from small_tasks import play, scrambled, standing, start, target, wanted
 
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.mcts import Search
+from hearth.challenges.definition import challenge
+from hearth.challenges.play import Player
+from hearth.challenges.play import play as played_by
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Literal
 from hearth.simulation.env import Env
@@ -183,3 +186,14 @@ def test_what_one_part_of_a_goal_needs_is_not_taken_for_another(kitchen, seed):
     assert played.progress.satisfied
     put = [t.instructions[0].objects[0].node for t in played.ticks if t.instructions[0].action in PUTS]
     assert len(put) == len(set(put))
+
+
+def test_what_is_switched_on_is_switched_off_before_it_is_opened(maple):
+    """Another may have switched the freezer on; while it is on it can't be opened."""
+    world = start(maple, {"apple": 1}, seed=3)
+    apple, freezer = target(world, "apple"), target(world, "freezer")
+    world = edit(world, place={apple: ("INSIDE", freezer)}, set=[(freezer, "ON")], check=False)
+    goal = wanted(world, "ON", "kitchen_counter", apple=1)
+    done = played_by(world, goal, [Player(HumanLike(), goal)], 0, actions=challenge("wah").allowed(maple.knowledge))
+    assert done.success
+    assert [t.instructions[0].action for t in done.env.ticks].count("SwitchOff") == 1
