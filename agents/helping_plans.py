@@ -39,7 +39,7 @@ class Weights:
 
     reward: float = 1.0
     cost: float = 1.0
-    moves: float = 5.0
+    moves: float = 20.0
     ahead: float = 100.0
     returns: bool = True
     hands: int = HANDS

@@ -227,7 +227,7 @@ def _making(knowledge: Knowledge, name: str, terms: int, negated: bool) -> tuple
 
 
 def _effects(knowledge: Knowledge, name: str, terms: int, negated: bool) -> list[tuple[Action, Effect]]:
-    """The effects on a predicate of the things that an action names; `ON` of one thing is its state, of two a relation."""
+    """The effects on a predicate of the things that an action names; `ON` of one is its state, of two a relation."""
     return [
         (action, effect)
         for action in knowledge.actions.values()

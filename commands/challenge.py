@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import challenge_checks, challenge_online, output
+from hearth.commands import challenge_checks, challenge_export, challenge_online, output
 from hearth.commands.challenge_film import film
 
 if TYPE_CHECKING:
@@ -400,6 +400,7 @@ for _command in (
     challenge_checks.verify,
     challenge_checks.board,
     challenge_checks.solvable,
+    challenge_export.export,
     challenge_online.infer,
     challenge_online.people,
 ):

@@ -12,6 +12,7 @@ from hearth.schemas.failures import Code
 EXTRAS = {
     "agents": ("gymnasium", "pettingzoo"),
     "dask": ("dask", "distributed"),
+    "episodes": ("minari", "h5py"),
     "models": ("torch", "safetensors"),
     "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
     "plan": ("unified_planning",),

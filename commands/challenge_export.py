@@ -1,0 +1,32 @@
+"""`challenge export`: episodes in the forms that libraries of learning read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hearth.commands import output
+
+
+def export(
+    results: Path,
+    form: str = "minari",
+    agent: int = 1,
+    *,
+    out: Path,
+    limit: int | None = None,
+    as_json: bool = False,
+) -> None:
+    """Write what an agent saw, did and earned in each tick of a run, for Minari or LeRobot.
+
+    \b
+    Examples:
+      python cli.py challenge export hp.jsonl --format minari --out hp-minari
+      python cli.py challenge export hp.jsonl --format lerobot --agent 0 --limit 50 --out alice
+    """
+    from hearth.challenges.episode_export import export as written
+    from hearth.challenges.result_files import read
+    from hearth.kb.loading.load import default
+
+    count = written(read(results), form, out, agent, default(), limit)
+    document = {"out": out, "format": form, "agent": agent, "episodes": count}
+    output.emit(document) if as_json else output.figures(document)
