@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from hearth.challenges.definition import challenge
-from hearth.challenges.episodes import Job, Known, Record, played, start_of
-from hearth.challenges.failure_analysis import Columns
+from hearth.challenges.episode_spread import Spread, here
+from hearth.challenges.episodes import Job, Known, Record
 from hearth.challenges.lineup import Lineup
-from hearth.challenges.metrics import outcome
 from hearth.challenges.result_files import Header, Results, first_line, line, read, read_records
 from hearth.challenges.task_files import Suite
 from hearth.challenges.tasks import Task
@@ -20,9 +16,8 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import rng
-from hearth.simulation.world.digest import digest
 from hearth.storage.files import TEMPORARY, commit
-from hearth.storage.parallel import Seen, begin, context, spread, unseen
+from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
 """How the demonstration is read, by what the helper is asked to do (see `agents.demonstrations`)."""
@@ -37,6 +32,7 @@ def run(
     workers: int = 1,
     seen: Seen = unseen,
     alone: Results | None = None,
+    over: Spread | None = None,
 ) -> Results:
     """Play every task several times, without the helper and with it, and write all that was done.
 
@@ -51,6 +47,7 @@ def run(
         workers: processes.
         seen: called with the number of episodes done.
         alone: results of the same main agent on the same tasks, whose episodes without a helper are taken.
+        over: where episodes are played; over the processes of this machine where None.
 
     Raises:
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
@@ -67,7 +64,7 @@ def run(
         if not kept:
             file.truncate(0)
             file.write(first_line(header))
-        for done, record in enumerate(_with(taken, jobs, workers), kept + 1):
+        for done, record in enumerate(_with(taken, jobs, over or here(workers)), kept + 1):
             file.write(line(header, record))
             file.flush()
             seen(done, kept + len(jobs))
@@ -121,36 +118,8 @@ def helper_goal(kind: str, task: Task, seed: int, tasks: Sequence[Task]) -> Goal
     return rng(task.seed, "random goal", seed).choice(others)
 
 
-def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], workers: int) -> Iterator[Record]:
+def _with(taken: Mapping[tuple[str, int], Record], jobs: Sequence[Job], over: Spread) -> Iterator[Record]:
     """The episodes in the order of the jobs; those alone that are there already are not played again."""
     found = [None if job.helped else taken.get((job.task.id, job.seed)) for job in jobs]
-    rest = _results([job for job, record in zip(jobs, found, strict=True) if record is None], workers)
+    rest = over([job for job, record in zip(jobs, found, strict=True) if record is None])
     return (record or next(rest) for record in found)
-
-
-def _results(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
-    """The episodes in the order of the jobs; one whose process dies is played alone, and ends with a code if it dies
-    again.
-    """
-    done = 0
-    while done < len(jobs):
-        try:
-            for record in spread(played, jobs[done:], workers):
-                yield record
-                done += 1
-        except BrokenProcessPool:
-            yield _alone(jobs[done])
-            done += 1
-
-
-def _alone(job: Job) -> Record:
-    try:
-        with ProcessPoolExecutor(1, context(), begin) as pool:
-            return pool.submit(played, job).result()
-    except BrokenProcessPool:
-        which, knowledge = challenge(job.task.challenge), job.known()
-        end = {"agent": 1, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
-        goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)
-        start = start_of(job.task, knowledge, None if job.helped else 1)
-        metrics = outcome(which, False, 0, Columns()).as_json()
-        return Record(job.task.id, job.seed, job.helped, goal, (), digest(start), metrics, end)

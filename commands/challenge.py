@@ -72,6 +72,8 @@ def run_tasks(
     seconds: float = 30.0,
     proposals: str = "",
     workers: int = 0,
+    engine: str = "local",
+    scheduler: str = "",
     as_json: bool = False,
 ) -> None:
     """Let an agent do tasks alone and with a helper, and write all that they did.
@@ -84,7 +86,9 @@ def run_tasks(
       python cli.py challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
       python cli.py challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
       python cli.py challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
+      python cli.py challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
+    from hearth.challenges.episode_spread import spread_over
     from hearth.challenges.lineup import Lineup
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
@@ -94,8 +98,9 @@ def run_tasks(
     suite = read(file)
     if proposals not in ("", "exact"):
         helper = f"{helper}_{proposals}"
-    with bar("episodes") as seen:
-        found = run(suite, Lineup(main, helper, goal, seconds), seeds, out, default, workers, seen)
+    lineup = Lineup(main, helper, goal, seconds)
+    with bar("episodes") as seen, spread_over(engine, workers, scheduler) as over:
+        found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
     _print(found, as_json)
 
 
