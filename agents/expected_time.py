@@ -18,7 +18,7 @@ from hearth.agents.forecast import GIVE, HANDS, TAKE, Forecast, Stop
 from hearth.agents.goal_space import Edge, GoalsIn
 from hearth.agents.heaps import HELPER, Situation
 from hearth.agents.online import OnlineHelper
-from hearth.agents.posterior import USUAL_MODEL, ActionModel
+from hearth.agents.posterior import ActionModel
 from hearth.schemas.literals import HOLDS
 from hearth.simulation.observation.views import View
 
@@ -53,6 +53,9 @@ class Settings:
 
 USUAL = Settings()
 
+PARTNER = ActionModel(rationality=0.45)
+"""How its partner is thought to choose."""
+
 
 class ExpectedTime(OnlineHelper):
     """Does what is expected to let its partner finish soonest.
@@ -61,7 +64,7 @@ class ExpectedTime(OnlineHelper):
         value: the expected ticks until then, of what it chose last.
     """
 
-    def __init__(self, goals: GoalsIn, settings: Settings = USUAL, model: ActionModel = USUAL_MODEL) -> None:
+    def __init__(self, goals: GoalsIn, settings: Settings = USUAL, model: ActionModel = PARTNER) -> None:
         super().__init__(goals, model)
         self.settings = settings
         self.value = math.inf

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.goals import Goal
-from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hearth.agents.expected_time import CERTAIN, ExpectedTime, Settings
+from hearth.agents.expected_time import CERTAIN, PARTNER, ExpectedTime, Settings
 from hearth.agents.goal_space import GoalsIn
 from hearth.agents.human_like import HumanLike
-from hearth.agents.posterior import USUAL_MODEL, ActionModel
+from hearth.agents.posterior import ActionModel
 from hearth.agents.protocol import Choice
 from hearth.agents.subgoals import Subgoal, Wanted
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.goals import Goal
-from hearth.schemas.messages import Message
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
@@ -41,7 +41,7 @@ class Answering:
 
     def act(self, observation: View, legal: Legal) -> Choice:
         """An answer, if it was asked and there is something to be told; otherwise what it does anyway."""
-        if any(message.wanted is None for _, message in observation.heard):
+        if any(message.wanted is None for _, message in observation.messages):
             answer = self._answer(observation)
             if answer is not None:
                 return answer
@@ -86,7 +86,7 @@ USUAL = Talk()
 class Asking(ExpectedTime):
     """Does what lets its partner finish soonest, in expectation; asks where an answer is worth more than its price."""
 
-    def __init__(self, goals: GoalsIn, settings: Talk = USUAL, model: ActionModel = USUAL_MODEL) -> None:
+    def __init__(self, goals: GoalsIn, settings: Talk = USUAL, model: ActionModel = PARTNER) -> None:
         super().__init__(goals, settings, model)
         self.talk = settings
 
@@ -114,7 +114,7 @@ class Asking(ExpectedTime):
 
     def _hear(self, view: View) -> None:
         """Take in an answer; who does not answer is not asked again."""
-        for _, message in view.heard:
+        for _, message in view.messages:
             if message.wanted in self.space.predicates and self.posterior.places:
                 self.posterior.told(self.space.predicates.index(message.wanted), message.count)
                 self._asked = None

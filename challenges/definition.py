@@ -53,7 +53,7 @@ class Challenge:
         never_at: classes of furniture that no thing of a goal is put at.
         ticks: after which an episode ends.
         partial: whether agents see only what is around them.
-        messages: whether agents may say something instead of doing something (see `schemas.messages`).
+        messages: whether agents may say something instead of doing something (see `schemas.agent_messages`).
         bodies: whether agents stand in each other's way.
         strides: metres that each agent walks in a tick.
         actions: the group of actions that agents may try.

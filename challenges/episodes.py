@@ -16,11 +16,11 @@ from hearth.challenges.metrics import Outcome, outcome
 from hearth.challenges.play import play
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.agent_messages import Message
+from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.messages import Message
-from hearth.schemas.messages import read as read_message
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import derive
 from hearth.simulation.env import Env, Tick
@@ -178,7 +178,7 @@ def read_choices(
 
 
 def written(choice: Choice) -> str | None:
-    """What was done as records have it: `Grab 41`; what was said as `schemas.messages` has it."""
+    """What was done as records have it: `Grab 41`; what was said as `schemas.agent_messages` has it."""
     if choice is None or isinstance(choice, Message):
         return None if choice is None else str(choice)
     return " ".join([choice.action, *(str(ref.node) for ref in choice.objects)])

@@ -9,10 +9,10 @@ from contextlib import contextmanager
 from types import FrameType
 
 from hearth.agents.protocol import Agent, Choice
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from hearth.agents.protocol import Agent, Choice, Resigned
 from hearth.challenges.guard import AgentError
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.goals import Goal
-from hearth.schemas.messages import Message
 from hearth.schemas.rng import derive
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.env import Env, Tick
@@ -111,7 +111,7 @@ class Playing:
         self.env.partial = self._partial[number]
         seen = self.env.observe(number)
         last = self.said[-1] if self.said else {}
-        return replace(seen, heard=tuple((n, said) for n, said in last.items() if n != number)) if last else seen
+        return replace(seen, messages=tuple((n, said) for n, said in last.items() if n != number)) if last else seen
 
     def legal(self, number: int) -> Legal:
         """What a player may do now."""

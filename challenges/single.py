@@ -11,10 +11,10 @@ from hearth.challenges.parallel import MOST_SEED
 from hearth.challenges.plan_pictures import MODES, PLAN, Pictures
 from hearth.challenges.seen_arrays import Arrays
 from hearth.challenges.session import Session, Setting
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.libraries import library
-from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 

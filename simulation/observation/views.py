@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
+from hearth.schemas.agent_messages import Message
 from hearth.schemas.failures import Failure
 from hearth.schemas.graph import EnvironmentGraph
-from hearth.schemas.messages import Message
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation import reach
@@ -67,7 +67,7 @@ class View:
         me: its own pose.
         others: the poses of the other characters it sees, by number.
         tick: how many ticks have passed.
-        heard: what others said in the last tick, by number.
+        messages: what others said in the last tick, by number.
     """
 
     world: World
@@ -76,7 +76,7 @@ class View:
     me: Pose
     others: tuple[Pose, ...]
     tick: int = 0
-    heard: tuple[tuple[int, Message], ...] = ()
+    messages: tuple[tuple[int, Message], ...] = ()
 
     @cached_property
     def ids(self) -> tuple[int, ...]:

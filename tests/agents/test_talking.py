@@ -11,8 +11,8 @@ from hearth.agents.human_like import HumanLike
 from hearth.agents.posterior import Posterior
 from hearth.agents.talking import Answering, Asking
 from hearth.challenges.play import Player, play
+from hearth.schemas.agent_messages import Message, read
 from hearth.schemas.literals import Literal
-from hearth.schemas.messages import Message, read
 from hearth.simulation.observation.views import pose
 
 

@@ -19,10 +19,6 @@ class Message:
     Attributes:
         wanted: what the one who speaks still wants, naming furniture by its id; None asks the other for that.
         count: how many are still wanted.
-
-    Examples:
-        >>> str(Message(Literal("ON", ("plate", 72)), 2)), str(Message())
-        ('Tell ON(plate, 72) 2', 'Ask')
     """
 
     wanted: Literal[Name] | None = None
@@ -35,7 +31,7 @@ class Message:
 
 
 def read(text: str) -> Message | None:
-    """The inverse of `str`; None of what is no message."""
+    """The inverse of `str`; None of any other text."""
     if text == ASK:
         return Message()
     found = _TOLD.fullmatch(text)
