@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,11 @@ from hearth.kb.modifiers import numbers
 from hearth.rendering.cameras.camera import Camera, top_view
 from hearth.rendering.cameras.viewpoints import best_view, home_box, room_views
 from hearth.rendering.modalities import check_modalities, pictures_of
-from hearth.rendering.people.acting import Actor, initial_actors, moved
+from hearth.rendering.people.acting import Actor, elsewhere, initial_actors, moved, outermost
+from hearth.rendering.people.clearance import faults
+from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.holding import held_things
-from hearth.rendering.people.reaching import posed
+from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.added_furniture import furnished
@@ -235,16 +238,60 @@ def advanced(
     """Actors and places after a tick, by the graph and the poses of the world after it."""
     by_agent = {step.agent: step for step in steps}
     after: list[Actor] = []
+    known = replace(places, graph=graph)
     # Actors first walk, then objects are placed near them, then hands reach for the objects.
     for number, actor in enumerate(actors):
         others = [a.spot for a in (*after, *actors[number + 1 :])]
-        known = replace(places, graph=graph)
-        after.append(moved(actor, graph, known, floor.reachable_from(actor.spot), by_agent.get(number), others))
+        within, step = floor.reachable_from(actor.spot), by_agent.get(number)
+        there = moved(actor, graph, known, within, step, others)
+        if step is not None and world.agents[number].pose is None:
+            there = _with_room(there, actors, places, graph, step, elsewhere(there, graph, known, within, step, others))
+        after.append(there)
     after = list(standing(after, world))
-    near = {actor.node.id: actor.position for actor in after}
-    put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
-    settled = places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
+    settled = _settled(places, graph, after, steps)
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
+
+
+def _settled(places: Places, graph: EnvironmentGraph, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
+    """The places after steps: what is put down is put down beside the actors, or where the steps say."""
+    near = {actor.node.id: actor.position for actor in actors}
+    put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
+    return places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
+
+
+TRIED = 10
+"""Spots that are tried for an act."""
+
+
+def _with_room(
+    actor: Actor,
+    actors: Sequence[Actor],
+    places: Places,
+    graph: EnvironmentGraph,
+    step: Step,
+    others: Iterator[Actor],
+) -> Actor:
+    """The actor where it acts with the fewest joints in solid things: as it is, or at one of some other spots."""
+    if actor.body_pose.posture != "standing" or not gesture_of(step).near:
+        return actor
+    near = {ref.node for ref in step.objects if ref.node}
+    reached = near | {outermost(node, places)[0] for node in near}
+
+    def worth(tried: Actor) -> int:
+        all_ = [tried if other.node.id == tried.node.id else other for other in actors]
+        settled = _settled(places, graph, all_, (step,))
+        there = posed(tried, graph, settled, step)
+        arriving = reach_for(tried, there, places, step)
+        return faults(there, settled.solids, reached) + faults(arriving, places.solids, reached)
+
+    best, least = actor, worth(actor)
+    for tried in islice(others if least else (), TRIED):
+        found = worth(tried)
+        if found < least:
+            best, least = tried, found
+        if not least:
+            break
+    return best
 
 
 def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...]) -> Scene:

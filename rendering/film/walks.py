@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.film.snapshots import Keyframe
-from hearth.rendering.models.looks import Model
 from hearth.rendering.people.motion import Frame
 from hearth.rendering.scene.floor_cells import HEADROOM, IGNORED
 from hearth.rendering.scene.prepared import PreparedScene
+from hearth.rendering.scene.solids import Solid, solids_of
 from hearth.schemas.graph import Spot
-from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 
 DEEP = 0.05
 """Metres inside a thing from which on a body's middle counts as walking through it."""
@@ -25,43 +24,24 @@ LOW = 0.25
 MOVED = 0.01
 """Metres between two frames from which on a character walks."""
 
-UNSEEN = (ROOM_CATEGORY, CHARACTER_CATEGORY, "BodyParts", "Ceiling", "Floor", "Floors")
 
-
-class Solid(NamedTuple):
-    """The outline of a solid thing on the floor: its middle, half its width and depth, and its direction, degrees."""
-
-    node: int
-    class_name: str
-    middle: Spot
-    half: Spot
-    yaw: float
-
-    def contains(self, spot: Spot) -> bool:
-        """Whether a point of the floor is deeper than `DEEP` inside."""
-        x, z = spot[0] - self.middle[0], spot[1] - self.middle[1]
-        c, s = cos(radians(self.yaw)), sin(radians(self.yaw))
-        # Thin things, such as walls and leaves, are entered by their middle.
-        deep = [min(DEEP, half / 2) for half in self.half]
-        return abs(x * c - z * s) < self.half[0] - deep[0] and abs(x * s + z * c) < self.half[1] - deep[1]
-
-
-def solids_of(prepared: PreparedScene, keyframe: Keyframe) -> list[Solid]:
-    """The solid things of a keyframe as they are drawn: furniture, walls around their openings, leaves of doors."""
+def on_the_floor(prepared: PreparedScene, keyframe: Keyframe) -> list[Solid]:
+    """The solid things of a keyframe that a walk can lead through."""
     floor = min(room.box.center[1] - room.box.size[1] / 2 for room in prepared.rooms.values() if room.box)
-    found = []
-    for node in keyframe.places.nodes():
-        if node.box is None or node.category in UNSEEN or node.class_name in IGNORED:
-            continue
-        for thing in prepared.things(node):
-            if not isinstance(thing.model, Model):
-                continue
-            width, height, depth = thing.model.look.size
-            low = thing.position[1] - floor
-            if low < HEADROOM and low + height > LOW:
-                middle = (thing.position[0], thing.position[2])
-                found.append(Solid(node.id, node.class_name, middle, (width / 2, depth / 2), thing.yaw))
-    return found
+    return [
+        solid
+        for solid in solids_of(prepared, keyframe.places.nodes()).all
+        if solid.class_name not in IGNORED and solid.low - floor < HEADROOM and solid.high - floor > LOW
+    ]
+
+
+def contains(solid: Solid, spot: Spot) -> bool:
+    """Whether a point of the floor is deeper than `DEEP` inside."""
+    x, z = spot[0] - solid.middle[0], spot[1] - solid.middle[1]
+    c, s = cos(radians(solid.yaw)), sin(radians(solid.yaw))
+    # Thin things, such as walls and leaves, are entered by their middle.
+    deep = [min(DEEP, half / 2) for half in solid.half]
+    return abs(x * c - z * s) < solid.half[0] - deep[0] and abs(x * s + z * c) < solid.half[1] - deep[1]
 
 
 class Walk(NamedTuple):
@@ -96,8 +76,8 @@ def walks(prepared: PreparedScene, keyframes: Sequence[Keyframe], frames: Iterab
         steps = [hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(trail)]
         if sum(step for step in steps if step > MOVED) < 0.3:
             continue
-        solids = solids_of(prepared, keyframes[max(tick - 1, 0)])
-        through = {(s.node, s.class_name) for s in solids for spot in _between(trail) if s.contains(spot)}
+        solids = on_the_floor(prepared, keyframes[max(tick - 1, 0)])
+        through = {(s.node, s.class_name) for s in solids for spot in _between(trail) if contains(s, spot)}
         found.append(Walk(tick, agent, np.array(trail), tuple(sorted(through))))
     return found
 

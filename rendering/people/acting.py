@@ -1,5 +1,6 @@
 """Characters through a program: position, posture and body pose after each tick."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
 
@@ -131,6 +132,20 @@ def moved(
         spot = floor.spot_for(pose.box, front, there, now, others, outermost(target, places)[0])
         actor = replace(actor, spot=spot or actor.spot, room=there)
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
+
+
+def elsewhere(
+    actor: Actor, graph: EnvironmentGraph, places: Places, floor: FreeFloor, step: Step, others: list[Spot]
+) -> Iterator[Actor]:
+    """The character at other spots from which it can act, best first."""
+    target = _goal(step)
+    pose, front = reachable(target, places) if target else (None, None)
+    if pose is None:
+        return
+    room, top = room_of(graph, target) or actor.room, outermost(target, places)[0]
+    for spot in floor.spots_for(pose.box, front, room, actor.spot, others, top):
+        if _gap(spot, pose.box) < ARM:
+            yield replace(actor, spot=spot, yaw=_towards(spot, pose.box.center, actor.yaw), room=room)
 
 
 def _goal(step: Step | None) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from hearth.schemas.graph import Point
@@ -98,6 +98,7 @@ class BodyPose:
         right_hand, left_hand: form and direction of the hands.
         effort: 0 to 1, how far the body stoops; None is the least with which the hands reach.
         between: the pose that this one is changing from; None if it has.
+        tucked: 0 to 1, how far the right and the left arm are drawn in before the body, where there is no room for them.
     """
 
     posture: str = "standing"
@@ -112,6 +113,7 @@ class BodyPose:
     left_hand: Hand = HANGING
     effort: float | None = None
     between: Between | None = None
+    tucked: tuple[float, float] = (0.0, 0.0)
 
     def target(self, side: str) -> Point | None:
         """The target of the `r` or `l` palm."""
@@ -121,5 +123,23 @@ class BodyPose:
         """The `r` or `l` hand."""
         return self.right_hand if side == "r" else self.left_hand
 
+    def tuck(self, side: str) -> float:
+        """How far the `r` or `l` arm is drawn in."""
+        return self.tucked[side == "l"]
+
 
 STILL = BodyPose()
+
+
+def drawn_in(pose: BodyPose, tucked: tuple[float, float]) -> BodyPose:
+    """A pose with arms drawn in, also those that carry something with one hand."""
+    right, left = (
+        _nearer(pose.target(side), pose.hand(side), tuck) for side, tuck in zip("rl", tucked, strict=True)
+    )  # fmt: skip
+    return replace(pose, right=right, left=left, tucked=tucked)
+
+
+def _nearer(target: Point | None, hand: Hand, tuck: float) -> Point | None:
+    if target is None or not tuck or hand.grip == "two hands":
+        return target
+    return target[0] * (1 - 0.6 * tuck), target[1], target[2] * (1 - 0.3 * tuck)

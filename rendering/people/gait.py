@@ -8,8 +8,9 @@ from itertools import pairwise
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 from typing import NamedTuple
 
+from hearth.rendering.arrays import Floats
 from hearth.rendering.people.acting import Actor
-from hearth.rendering.people.body_pose import Foot
+from hearth.rendering.people.body_pose import BodyPose, Foot, drawn_in
 from hearth.rendering.people.skeleton import STEP, effort_of, feet_of
 from hearth.schemas.graph import Spot
 
@@ -30,6 +31,16 @@ SWING = (0.08, 0.92)
 
 LIFT, HEEL, TOE = 0.045, 38.0, -14.0
 """Height of a swinging foot as a share of the body's height; pitches in degrees with which it leaves and lands."""
+
+
+SAMPLED = 0.1
+"""Seconds between the moments of a walk at which it is looked whether there is room for arms."""
+
+SETTLING = 0.4
+"""Seconds in which arms change from how they are held before a walk, and to how they are held after it."""
+
+SMOOTHED = ((-0.13, 0.25), (0.0, 0.5), (0.13, 0.25))
+"""Seconds before and after a moment, and their weights, over which the swing of the arms is averaged."""
 
 
 class Place(NamedTuple):
@@ -60,6 +71,9 @@ def between(a: Spot, b: Spot, share: float) -> Spot:
 def eased(share: float) -> float:
     """0 to 1, slow at both ends."""
     return (1 - cos(pi * min(max(share, 0.0), 1.0))) / 2
+
+
+Arms = Callable[[Sequence[Place]], Floats]
 
 
 class Route:
@@ -126,10 +140,14 @@ def turning(place: Place, yaw: float) -> Movement:
 def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> Movement:
     """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`."""
     route = Route(points, speed)
+    middle = place.yaw + angle(place.yaw, yaw) / 2
+    aside = abs(angle(middle, route.heading(route.length / 2)))
+    # Few steps are made without turning that way and back.
+    turned = 0.0 if route.length <= SIDEWAYS else min(1.0, TURNING * route.seconds / 4 / max(aside, 1.0))
 
     def at(time: float) -> Place:
         way = route.way(time)
-        ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * min(1.0, route.length / 0.6)
+        ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * turned
         straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
         return Place(*route.spot(way), straight + angle(straight, route.heading(way)) * ends)
 
@@ -166,16 +184,38 @@ class Gait:
     Args:
         actor: who moves, standing; its feet begin where they are.
         moves: what its body does.
+        arms: how far both arms are drawn in at places every `SAMPLED` seconds, (n, 2); None draws in none.
+        end: how far they are drawn in at the end.
     """
 
-    def __init__(self, actor: Actor, moves: Sequence[Movement], step_time: float = STEP_TIME) -> None:
-        self.actor, self.moves = actor, moves
+    def __init__(
+        self, actor: Actor, moves: Sequence[Movement], arms: Arms | None = None, end: tuple[float, float] = (0.0, 0.0)
+    ) -> None:
+        self.actor, self.moves, self.end = actor, moves, end
         self.effort = effort_of(actor.body_pose, actor.body.proportions)
         self.moving = sum(move.seconds for move in moves)
-        self.count = max(1, ceil(self.moving / step_time))
+        self.count = max(1, ceil(self.moving / STEP_TIME))
         self.step = self.moving / self.count
         self.seconds = self.moving + self.step
         self.prints = self._prints()
+        self.arms = None
+        if arms is not None:
+            count = ceil(self.moving / SAMPLED) + 1
+            self.arms = arms([self.place(min(k * SAMPLED, self.moving)) for k in range(count)])
+
+    def tucked(self, time: float) -> tuple[float, float]:
+        """How far the right and the left arm are drawn in."""
+        early, late = eased(time / SETTLING), eased((self.seconds - time) / SETTLING)
+        found: list[float] = []
+        for side, (start, end) in enumerate(zip(self.actor.body_pose.tucked, self.end, strict=True)):
+            way = 0.0
+            if self.arms is not None:
+                at = min(time / SAMPLED, len(self.arms) - 1)
+                low = int(at)
+                high = min(low + 1, len(self.arms) - 1)
+                way = float(self.arms[low, side] + (self.arms[high, side] - self.arms[low, side]) * (at - low))
+            found.append(min(way * early * late + start * (1 - early) + end * (1 - late), 1.0))
+        return found[0], found[1]
 
     def place(self, time: float) -> Place:
         """The body's place."""
@@ -235,6 +275,21 @@ class Gait:
             pitch = HEEL * min(ahead / (0.35 * length), 1.0) * eased(1 - (later.start - time) / (0.45 * self.step))
         return _local(place, here.place, 0.0, pitch)
 
+    def stride(self, time: float) -> float:
+        """The swing of the arms: as far as the feet are apart on average over some moments, -1.3 to 1.3."""
+        found = 0.0
+        for shift, weight in SMOOTHED:
+            now = min(max(time + shift, 0.0), self.moving)
+            right, left = self.feet(now, self.place(now))
+            found += weight * (right.z - left.z) / (2 * STEP * self.actor.body.height)
+        return min(max(found, -1.3), 1.3) * eased(min(time, self.seconds - time) / SETTLING)
+
+    def carried(self, tucked: tuple[float, float]) -> BodyPose:
+        """The pose of trunk and arms, drawn in by some shares more than at the start."""
+        pose, start = self.actor.body_pose, self.actor.body_pose.tucked
+        more = tuple(max(now - was, 0.0) for now, was in zip(tucked, start, strict=True))
+        return replace(drawn_in(pose, (more[0], more[1])), tucked=tucked)
+
     def at(self, time: float) -> Actor:
         """The actor after some seconds."""
         if time >= self.seconds:
@@ -242,8 +297,7 @@ class Gait:
         else:
             place = self.place(min(time, self.moving))
             feet = self.feet(time, place)
-        stride = (feet[0].z - feet[1].z) / (2 * STEP * self.actor.body.height) if feet else 0.0
-        pose = replace(self.actor.body_pose, feet=feet, stride=min(max(stride, -1.3), 1.3), effort=self.effort)
+        pose = replace(self.carried(self.tucked(time)), feet=feet, stride=self.stride(time), effort=self.effort)
         return replace(self.actor, spot=(place.x, place.z), yaw=place.yaw, body_pose=pose)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from hearth.kb.modifiers import value
 from hearth.rendering.people.acting import Actor, dressed_for, reachable
 from hearth.rendering.people.body_pose import BodyPose, Hand, Held
+from hearth.rendering.people.clearance import at_rest
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.holding import Hold, grip_point, hold_of_node
 from hearth.rendering.people.rotations import unit
@@ -50,13 +51,15 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
     look = target_point(step, gesture.gaze, places, actor) if gesture.gaze else None
     gaze = actor.local(look) if look else None
     aims: dict[str, Aim] = {}
+    acting: dict[str, Aim] = {}
     if pose.posture != "lying":
         held = held_by(graph, actor.node.id)
-        aims = dict(_carrying(actor, held, graph, places))
-        aims |= _gesturing(gesture, actor, held, graph, places, step)
+        acting = _gesturing(gesture, actor, held, graph, places, step)
+        aims = _carrying(actor, held, graph, places) | acting
         if gesture.hand == "read":
             gaze = aims["right"].palm if "right" in aims else gaze
-    return replace(actor, body_pose=replace(with_aims(pose, aims), gaze=gaze), body=body)
+    found = replace(actor, body_pose=replace(with_aims(pose, aims), gaze=gaze), body=body)
+    return at_rest(found, places.solids, [side[0] for side in acting])
 
 
 def with_aims(pose: BodyPose, aims: Aims) -> BodyPose:
@@ -64,6 +67,7 @@ def with_aims(pose: BodyPose, aims: Aims) -> BodyPose:
     right, left = aims.get("right"), aims.get("left")
     return replace(
         pose,
+        tucked=(0.0, 0.0),
         right=right.palm if right else None,
         left=left.palm if left else None,
         right_hand=right.hand if right else Hand(),
@@ -367,7 +371,8 @@ def reach_for(here: Actor, there: Actor, places: Places, step: Step) -> Actor:
         return there
     aim = thing_aim(here, hold_of_node(_node(places.graph, target), places, side), pose, side)
     aims = {s: Aim(at, there.body_pose.hand(s[0])) for s in SIDES if (at := there.body_pose.target(s[0])) and s in held}
-    return replace(there, body_pose=replace(with_aims(there.body_pose, aims | {side: aim}), gaze=aim.palm))
+    reaching = replace(there, body_pose=replace(with_aims(there.body_pose, aims | {side: aim}), gaze=aim.palm))
+    return at_rest(reaching, places.solids, [side[0]])
 
 
 def nearest_point(actor: Actor, pose: Pose) -> Point:

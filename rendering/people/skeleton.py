@@ -205,7 +205,7 @@ def _arm(found: Joints, side: str, sign: float, body: Proportions, body_pose: Bo
         middle = target - palm * body.palm
     else:
         along, palm, middle = ahead, np.zeros(3), target
-    pole = np.array((sign * 0.28, -1.0, -0.65))
+    pole = np.array((sign * (0.28 - 0.4 * body_pose.tuck(side)), -1.0, -0.65))
     if hand.swivel:
         pole = about(ahead, -sign * hand.swivel) @ pole
     goal = middle - along * body.hand
@@ -222,7 +222,17 @@ def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body
     knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
     share = seated(body_pose, body)
     on_thigh: Vector = hip + (knee - hip) * 0.62 + np.array((0, 0.05 * h, 0))
-    return hanging * (1 - share) + on_thigh * share
+    rests = hanging * (1 - share) + on_thigh * share
+    tuck = body_pose.tuck(side)
+    return rests + (_before_belly(found, sign, body) - rests) * tuck if tuck else rests
+
+
+def _before_belly(found: Joints, sign: float, body: Proportions) -> Vector:
+    """Where the hand of an arm that is drawn in rests."""
+    up = unit(found["chest"] - found["spine"])
+    forward = np.cross((1.0, 0.0, 0.0), up)
+    here: Vector = found["spine"] + forward * 0.11 * body.height + (sign * 0.035 * body.height, 0.0, 0.0)
+    return here
 
 
 def _head(found: Joints, body: Proportions, gaze: Point | None, lean: float) -> None:

@@ -12,11 +12,13 @@ import numpy as np
 from hearth.kb.modifiers import SPEEDS, value
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.body_pose import Between, BodyPose, Hand, Held
+from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.gait import Gait, Place, angle, between, eased, movements, planted, stepping
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
 from hearth.rendering.scene.routes import WalkableFloor, path
+from hearth.rendering.scene.solids import Solids
 from hearth.schemas.graph import Point, Spot
 from hearth.schemas.program import Step
 
@@ -75,7 +77,7 @@ def track(one: Actor, other: Actor, before: Keyframe, step: Step | None) -> Trac
     rest = _resting(one, before)
     if rest.body_pose != one.body_pose:
         segments.append(blended(one, rest, RELAX))
-    here = _approach(segments, rest, other, step, before.floor.walkable)
+    here = _approach(segments, rest, other, step, before)
     if step is not None:
         reach = reach_for(here, other, before.places, step)
         if reach.body_pose != here.body_pose:
@@ -128,10 +130,10 @@ def _resting(actor: Actor, keyframe: Keyframe) -> Actor:
 
 
 def _approach(
-    segments: list[Segment], one: Actor, other: Actor, step: Step | None, ways: WalkableFloor | None
+    segments: list[Segment], one: Actor, other: Actor, step: Step | None, keyframe: Keyframe
 ) -> Actor:
     """Append the segments up to the acting position; returns the actor there, hands in default pose."""
-    before, after = one.body_pose.posture, other.body_pose.posture
+    before, after, ways = one.body_pose.posture, other.body_pose.posture, keyframe.floor.walkable
     if before == after and before != "standing" and one.place == other.place and one.spot == other.spot:
         return replace(other, body_pose=_with_hands(other.body_pose, one.body_pose))
     if "standing" not in (before, after) and one.place == other.place:
@@ -142,13 +144,12 @@ def _approach(
     if before != "standing":
         one = _got_up(segments, one, ways)
     if after == "standing":
-        there = replace(other, body_pose=_with_hands(BodyPose(), one.body_pose))
-        _walked(segments, one, there, path(ways, one.spot, other.spot), speed)
-        return there
+        there = replace(other, body_pose=_with_hands(BodyPose(tucked=other.body_pose.tucked), one.body_pose))
+        return _walked(segments, one, there, path(ways, one.spot, other.spot), speed, keyframe.places.solids)
     stop = _beside(other, ways, one.spot)
     side = other if after == "sitting" else _on_edge(other, stop)
     turned = replace(side, spot=stop, body_pose=_with_hands(BodyPose(), one.body_pose), place=0)
-    _walked(segments, one, turned, path(ways, one.spot, stop), speed)
+    turned = _walked(segments, one, turned, path(ways, one.spot, stop), speed, keyframe.places.solids)
     down = replace(side, body_pose=_with_hands(BodyPose("sitting", other.body_pose.seat), one.body_pose))
     segments.append(_seating(turned, down))
     there = replace(other, body_pose=_with_hands(other.body_pose, one.body_pose))
@@ -157,15 +158,21 @@ def _approach(
     return there
 
 
-def _walked(segments: list[Segment], one: Actor, other: Actor, route: Sequence[Spot], speed: float) -> None:
-    """Append turns and a walk to where another actor stands."""
+def _walked(
+    segments: list[Segment], one: Actor, other: Actor, route: Sequence[Spot], speed: float, solids: Solids
+) -> Actor:
+    """Append turns and a walk to where another actor stands; returns the actor there, with arms as they are then."""
+    arms = one.body_pose
     route = route if hypot(route[-1][0] - other.spot[0], route[-1][1] - other.spot[1]) < 0.01 else (*route, other.spot)
     moves = movements(Place(*one.spot, one.yaw), route, speed, other.yaw)
     if moves:
-        gait = Gait(one, moves)
+        gait = Gait(one, moves, lambda places: arms_on_the_way(one, places, solids), other.body_pose.tucked)
         segments.append(Segment(gait.seconds, lambda share: gait.at(share * gait.seconds)))
+        arms = gait.carried(gait.end)
+    other = replace(other, body_pose=_with_hands(other.body_pose, arms))
     if one.level != other.level:
         segments.append(blended(replace(other, level=one.level), other, RELAX))
+    return other
 
 
 def _got_up(segments: list[Segment], one: Actor, ways: WalkableFloor | None) -> Actor:
@@ -269,10 +276,16 @@ def blend(one: Actor, other: Actor, share: float) -> Actor:
         left_hand=_turned(one, other, "l", share),
         gaze=_gaze(one, other, share),
         effort=_effort(one, other, share),
+        tucked=_tucked(a, b, share),
     )
     yaw = one.yaw + angle(one.yaw, other.yaw) * share
     level = one.level + (other.level - one.level) * share
     return replace(other, spot=between(one.spot, other.spot, share), level=level, yaw=yaw, body_pose=body_pose)
+
+
+def _tucked(one: BodyPose, other: BodyPose, share: float) -> tuple[float, float]:
+    right, left = (a + (b - a) * share for a, b in zip(one.tucked, other.tucked, strict=True))
+    return right, left
 
 
 def _with_hands(body_pose: BodyPose, other: BodyPose) -> BodyPose:
@@ -280,7 +293,12 @@ def _with_hands(body_pose: BodyPose, other: BodyPose) -> BodyPose:
     if body_pose.posture == "lying" or other.posture == "lying":
         return body_pose
     return replace(
-        body_pose, right=other.right, left=other.left, right_hand=other.right_hand, left_hand=other.left_hand
+        body_pose,
+        right=other.right,
+        left=other.left,
+        right_hand=other.right_hand,
+        left_hand=other.left_hand,
+        tucked=other.tucked,
     )
 
 
@@ -293,7 +311,7 @@ def _hand(one: Actor, other: Actor, side: str, share: float) -> Point | None:
     a, b = (actor.body_pose.target(side) for actor in (one, other))
     if (a is None and b is None) or one.body_pose.posture == "lying":
         return b
-    start, end = (at or _hanging(actor, side) for at, actor in ((a, one), (b, other)))
+    start, end = (_reached(actor, side) if at else _hanging(actor, side) for at, actor in ((a, one), (b, other)))
     x, y, z = (p + (q - p) * share for p, q in zip(start, end, strict=True))
     # Hands move in arcs in front of the body.
     lift = 0.06 * sin(pi * share) * min(1.0, hypot(end[0] - start[0], end[2] - start[2]) / 0.3)
@@ -327,9 +345,18 @@ def _palm(actor: Actor, side: str) -> Point:
     return ((-1.0 if side == "r" else 1.0) * (1 - level), -level, -0.35 * (1 - level))
 
 
+def _reached(actor: Actor, side: str) -> Point:
+    """Position of a palm, in the figure's frame: its target as far as it is in reach."""
+    x, y, z = actor.figure().joints()[f"palm_{side}"]
+    return float(x), float(y), float(z)
+
+
 def _hanging(actor: Actor, side: str) -> Point:
     """Position of the hand of a hanging arm, in the figure's frame."""
-    body_pose = replace(actor.body_pose, right=None, left=None, right_hand=Hand(), left_hand=Hand())
+    effort = effort_of(actor.body_pose, actor.body.proportions)
+    body_pose = replace(
+        actor.body_pose, right=None, left=None, right_hand=Hand(), left_hand=Hand(), effort=effort
+    )  # fmt: skip
     x, y, z = replace(actor, body_pose=body_pose).figure().joints()[f"palm_{side}"]
     return float(x), float(y), float(z)
 

@@ -14,6 +14,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Region
 from hearth.rendering.models.looks import recipe_of
 from hearth.rendering.scene.prepared import LIQUIDS, PreparedScene, liquid, local_size
+from hearth.rendering.scene.solids import Solids, solids_of
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
@@ -68,6 +69,11 @@ class Places:
     def building(self) -> frozenset[int]:
         """Floors, walls and the like: supports that actors do not walk to."""
         return frozenset(node.id for node in self.graph.nodes if node.class_name in BUILDING)
+
+    @cached_property
+    def solids(self) -> Solids:
+        """The solid things, as far as their shapes are known."""
+        return Solids(()) if self.prepared is None else solids_of(self.prepared, self.nodes())
 
     @cached_property
     def holds(self) -> Mapping[int, Mapping[int, str]]:

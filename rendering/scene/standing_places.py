@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
 from random import Random
@@ -20,6 +20,10 @@ NEAR, FAR = 0.32, 1.1
 
 SIDE = 0.26
 """Metres from a character's middle within which a door touches it."""
+
+
+APART = 0.19
+"""Metres between spots among which one chooses."""
 
 
 def nothing(node: int) -> Floats:
@@ -103,7 +107,14 @@ class FreeFloor:
     def spot_for(
         self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
     ) -> Spot | None:
-        """The best spot for using an object: near it, in front of it if it has a front, and close to `now`.
+        """The best of `spots_for`; None if there is no floor."""
+        return next(self.spots_for(box, yaw, room, now, taken, opens), None)
+
+    def spots_for(
+        self, box: Box, yaw: float | None, room: int, now: Spot | None, taken: Iterable[Spot] = (), opens: int = 0
+    ) -> Iterator[Spot]:
+        """Spots for using an object, `APART` metres from each other, best first: near it, in front of it if it has a
+        front, and close to `now`.
 
         Args:
             box: the object's.
@@ -113,26 +124,17 @@ class FreeFloor:
             taken: positions of other characters.
             opens: the node whose doors may swing there: the object or its outermost container.
         """
-        mine = self.centers[self.rooms == room]
+        # Where no way leads into the room, one comes as near as one can.
+        mine = self.centers[self.rooms == room] if (self.rooms == room).any() else self.centers
         if not len(mine):
-            # No way leads into the room: one comes as near as one can.
-            mine = self.centers
-        if not len(mine):
-            return None
-        middle, half = np.array((box.center[0], box.center[2])), np.array((box.size[0], box.size[2])) / 2
-        offset = mine - middle
-        gap = np.linalg.norm(np.maximum(np.abs(offset) - half, 0), axis=1)
-        cost = np.where(gap < NEAR, (NEAR - gap) * 1.5, (gap - NEAR) * 2.0) + np.where(gap > FAR, 4.0, 0.0)
-        if yaw is not None:
-            front = np.array((sin(radians(yaw)), cos(radians(yaw))))
-            way = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
-            cost += (1 - way @ front) * 0.9
-            # Prefer spots straight in front.
-            cost += np.maximum(np.abs(offset @ np.array((front[1], -front[0]))) - 0.2, 0) * 0.6
+            return
+        cost = _distances(mine, box, yaw) + _crowding(mine, taken) + self._hit(mine, opens)
         if now is not None:
             cost += np.linalg.norm(mine - np.array(now), axis=1) * 0.08
-        x, z = mine[int((cost + _crowding(mine, taken) + self._hit(mine, opens)).argmin())]
-        return float(x), float(z)
+        while np.isfinite(cost).any():
+            x, z = mine[int(cost.argmin())]
+            yield float(x), float(z)
+            cost[np.linalg.norm(mine - (x, z), axis=1) < APART] = np.inf
 
     def _hit(self, centers: NDArray[np.float64], opens: int) -> NDArray[np.float64]:
         """A cost for standing in the swept area of a door."""
@@ -141,6 +143,22 @@ class FreeFloor:
             return np.zeros(len(centers))
         near = np.linalg.norm(centers[:, None] - passed, axis=2).min(axis=1) < SIDE
         return np.where(near, 2.0, 0.0)
+
+
+def _distances(centers: NDArray[np.float64], box: Box, yaw: float | None) -> NDArray[np.float64]:
+    """A cost for standing far from an object, or not in front of it."""
+    middle, half = np.array((box.center[0], box.center[2])), np.array((box.size[0], box.size[2])) / 2
+    offset = centers - middle
+    gap = np.linalg.norm(np.maximum(np.abs(offset) - half, 0), axis=1)
+    cost: NDArray[np.float64] = np.where(gap < NEAR, (NEAR - gap) * 1.5, (gap - NEAR) * 2.0)
+    cost += np.where(gap > FAR, 4.0, 0.0)
+    if yaw is not None:
+        front = np.array((sin(radians(yaw)), cos(radians(yaw))))
+        way = offset / np.maximum(np.linalg.norm(offset, axis=1, keepdims=True), 1e-6)
+        cost += (1 - way @ front) * 0.9
+        # Prefer spots straight in front.
+        cost += np.maximum(np.abs(offset @ np.array((front[1], -front[0]))) - 0.2, 0) * 0.6
+    return cost
 
 
 def _crowding(centers: NDArray[np.float64], taken: Iterable[Spot]) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from hearth.grounding.trial import attempt
 from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.film.snapshots import trajectory_of
-from hearth.rendering.film.walks import solids_of, walks
+from hearth.rendering.film.walks import contains, on_the_floor, walks
 from hearth.rendering.people import tracks
 from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import parse_program
@@ -38,8 +38,8 @@ def test_straight_lines_are_found_out(trajectory, monkeypatch):
 
 
 def test_walls_are_solid_beside_their_doorways_only(trajectory):
-    solids = solids_of(trajectory.prepared, trajectory.keyframes[0])
+    solids = on_the_floor(trajectory.prepared, trajectory.keyframes[0])
     doorway = next(node for node in trajectory.prepared.graph.nodes if node.class_name == "doorjamb").box.center
-    assert not any(solid.contains((doorway[0], doorway[2])) for solid in solids)
+    assert not any(contains(solid, (doorway[0], doorway[2])) for solid in solids)
     wall = next(solid for solid in solids if solid.class_name == "wall")
-    assert wall.contains(wall.middle)
+    assert contains(wall, wall.middle)
