@@ -26,6 +26,9 @@ TURNING = 130.0
 ROUNDED = 0.16
 """Metres on either side over which the corners of a route are rounded."""
 
+AROUND = 0.32
+"""Metres before and after a point of a route between which its direction is measured."""
+
 SWING = (0.08, 0.92)
 """The part of a step's time in which a foot is in the air."""
 
@@ -106,7 +109,7 @@ class Route:
 
     def heading(self, way: float) -> float:
         """The direction of walking after some metres, degrees."""
-        a, b = self.spot(max(way - 0.2, 0.0)), self.spot(min(way + 0.2, self.length))
+        a, b = self.spot(max(way - AROUND, 0.0)), self.spot(min(way + AROUND, self.length))
         return degrees(atan2(b[0] - a[0], b[1] - a[1]))
 
     def way(self, time: float) -> float:
@@ -206,6 +209,7 @@ class Gait:
     def tucked(self, time: float) -> tuple[float, float]:
         """How far the right and the left arm are drawn in."""
         early, late = eased(time / SETTLING), eased((self.seconds - time) / SETTLING)
+        brief = min(1.0, self.seconds / (4 * SETTLING))
         found: list[float] = []
         for side, (start, end) in enumerate(zip(self.actor.body_pose.tucked, self.end, strict=True)):
             way = 0.0
@@ -214,7 +218,7 @@ class Gait:
                 low = int(at)
                 high = min(low + 1, len(self.arms) - 1)
                 way = float(self.arms[low, side] + (self.arms[high, side] - self.arms[low, side]) * (at - low))
-            found.append(min(way * early * late + start * (1 - early) + end * (1 - late), 1.0))
+            found.append(min(way * brief * early * late + start * (1 - early) + end * (1 - late), 1.0))
         return found[0], found[1]
 
     def place(self, time: float) -> Place:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from hearth.homes.plans import raster
 from hearth.homes.plans.floor import Floor
 from hearth.rendering.arrays import Floats
-from hearth.rendering.scene.floor_cells import CELL, cells_of, eroded, is_in_the_way
+from hearth.rendering.scene.floor_cells import BODY, CELL, cells_of, eroded, is_in_the_way
 from hearth.schemas.graph import Box, Node, Spot
 from hearth.simulation.motion.navigation import Ways
 
@@ -44,11 +44,13 @@ class WalkableFloor:
 
     Attributes:
         free: bool, (columns, rows): where nothing stands.
-        wide: the cells with space around for a body.
+        roomy: those with space around for a body and its arms.
+        wide: those with space for a body.
         narrow: those with space to squeeze through.
     """
 
     free: Cells
+    roomy: Cells
     wide: Ways
     narrow: Ways
 
@@ -78,6 +80,10 @@ class WalkableFloor:
         shares = np.linspace(0, 1, max(2, int(np.ceil(dist(a, b) / CELL * 2)) + 1))
         points = np.asarray(a) + shares[:, None] * (np.asarray(b) - np.asarray(a))
         return bool(self._at(ways.floor.walkable, points).all())
+
+    def has_room(self, spot: Spot) -> bool:
+        """Whether there is room for a body and its arms."""
+        return bool(self._at(self.roomy, np.array([spot]))[0])
 
     def _at(self, cells: Cells, points: NDArray[np.float64]) -> Cells:
         index = ((points - self.wide.floor.origin) // CELL).astype(int)
@@ -132,7 +138,7 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None 
     def ways(walkable: Cells) -> Ways:
         return Ways(Floor(origin, CELL, free, walkable, np.where(free, 0, -1).astype(np.int16)))
 
-    return WalkableFloor(free, ways(eroded(free)), ways(eroded(free, NARROW)))
+    return WalkableFloor(free, eroded(free, BODY + 1), ways(eroded(free)), ways(eroded(free, NARROW)))
 
 
 def blocks_walks(node: Node, floor: float) -> bool:
@@ -186,7 +192,25 @@ def _found(
     found = ways.path(first, last, others) if first and last else None
     if not found:
         return None
-    return (start, *_straightened(floor, ways, found), goal)
+    corners = _straightened(floor, ways, found)
+    for k in range(1, len(corners) - 1):
+        corners[k] = _roomier(floor, ways, corners[k - 1], corners[k], corners[k + 1])
+    return (start, *corners, goal)
+
+
+def _roomier(floor: WalkableFloor, ways: Ways, before: Spot, corner: Spot, after: Spot) -> Spot:
+    """A point beside a corner of a path with room for arms, if the path can lead over it."""
+    for x, z in BESIDE:
+        point = corner[0] + x, corner[1] + z
+        if floor.has_room(point) and floor.clear(before, point, ways) and floor.clear(point, after, ways):
+            return point
+    return corner
+
+
+BESIDE = sorted(
+    ((x * CELL, z * CELL) for x in range(-2, 3) for z in range(-2, 3)), key=lambda at: (at[0] ** 2 + at[1] ** 2, at)
+)
+"""From a corner to the points that are tried instead, nearest first."""
 
 
 def _nearest(floor: WalkableFloor, start: Spot, goal: Spot) -> tuple[Spot, ...]:
