@@ -98,7 +98,7 @@ class BodyPose:
         right_hand, left_hand: form and direction of the hands.
         effort: 0 to 1, how far the body stoops; None is the least with which the hands reach.
         between: the pose that this one is changing from; None if it has.
-        tucked: 0 to 1, how far the right and the left arm are drawn in before the body, where there is no room for them.
+        tucked: 0 to 1, how far the right and the left arm are drawn in before the body, for want of room.
     """
 
     posture: str = "standing"

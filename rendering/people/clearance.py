@@ -67,16 +67,18 @@ def at_rest(actor: Actor, solids: Solids, acting: Sequence[str] = ()) -> Actor:
 def _arms_inside(actor: Actor, solids: Solids) -> list[bool]:
     joints = actor.figure().joints()
     points = in_world(actor, [joints[f"{name}_{side}"] for side in SIDES for name in ARM])
-    return [bool(found) for found in solids.contain(points, ROOM).reshape(2, -1).any(axis=1)]
+    inside = solids.contain(points, ROOM)
+    return [bool(part.any()) for part in (inside[: len(ARM)], inside[len(ARM) :])]
 
 
 def _elbow_turned(actor: Actor, side: str, solids: Solids) -> Actor:
     """The actor with the least turn of an elbow that keeps it out of solid things; unchanged if none does."""
     hand = actor.body_pose.hand(side)
-    name = "right_hand" if side == "r" else "left_hand"
     for swivel in (0.0, *ELBOWS):
         turned = hand._replace(swivel=hand.swivel + swivel)
-        other = replace(actor, body_pose=replace(actor.body_pose, **{name: turned}))
+        pose = actor.body_pose
+        pose = replace(pose, right_hand=turned) if side == "r" else replace(pose, left_hand=turned)
+        other = replace(actor, body_pose=pose)
         elbow = in_world(other, [other.figure().joints()[f"elbow_{side}"]])
         if not solids.contain(elbow).any():
             return other
@@ -92,8 +94,8 @@ def arms_on_the_way(actor: Actor, places: Sequence[Place], solids: Solids) -> ND
     turns = np.stack([yawed(place.yaw) for place in places])
     at = np.einsum("pij,kj->pki", turns, own)
     at += np.column_stack((spots[:, 0], np.full(len(spots), actor.level), spots[:, 1]))[:, None]
-    inside = near.contain(at.reshape(-1, 3), ROOM).reshape(len(places), len(SWINGS), 2, len(ARM)).any(axis=(1, 3))
-    return _soft(inside)
+    inside = near.contain(at.reshape(-1, 3), ROOM).reshape(len(places), len(SWINGS), 2, len(ARM))
+    return _soft(np.asarray(inside.any(axis=(1, 3))))
 
 
 def _hanging(actor: Actor, swing: float) -> Floats:

@@ -17,6 +17,9 @@ from hearth.schemas.graph import Spot
 STEP_TIME = 0.52
 """Seconds of a walking step."""
 
+ADULT = 1.65
+"""Metres of height below which steps are shorter."""
+
 STARTING = 0.35
 """Seconds in which walking speed is reached, and lost."""
 
@@ -197,7 +200,8 @@ class Gait:
         self.actor, self.moves, self.end = actor, moves, end
         self.effort = effort_of(actor.body_pose, actor.body.proportions)
         self.moving = sum(move.seconds for move in moves)
-        self.count = max(1, ceil(self.moving / STEP_TIME))
+        # Who has shorter legs takes more steps.
+        self.count = max(1, ceil(self.moving / (STEP_TIME * min(actor.body.height / ADULT, 1.0))))
         self.step = self.moving / self.count
         self.seconds = self.moving + self.step
         self.prints = self._prints()

@@ -129,9 +129,7 @@ def _resting(actor: Actor, keyframe: Keyframe) -> Actor:
     return posed(actor, keyframe.places.graph, keyframe.places, None)
 
 
-def _approach(
-    segments: list[Segment], one: Actor, other: Actor, step: Step | None, keyframe: Keyframe
-) -> Actor:
+def _approach(segments: list[Segment], one: Actor, other: Actor, step: Step | None, keyframe: Keyframe) -> Actor:
     """Append the segments up to the acting position; returns the actor there, hands in default pose."""
     before, after, ways = one.body_pose.posture, other.body_pose.posture, keyframe.floor.walkable
     if before == after and before != "standing" and one.place == other.place and one.spot == other.spot:

@@ -13,7 +13,7 @@ from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.lights import SPILL, Daylight, Light, daylight, lamp, window
-from hearth.rendering.scene.room_shell import OPENINGS, around_openings, walls_of
+from hearth.rendering.scene.room_shell import OPENINGS, around_openings, hung_doors, walls_of
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
 from hearth.schemas.rng import derive
@@ -91,6 +91,11 @@ class PreparedScene:
         return tuple(node for node in self.graph.nodes if node.class_name == "doorjamb" and node.box)
 
     @cached_property
+    def hung(self) -> frozenset[int]:
+        """The doors that hang in doorways."""
+        return hung_doors(self.graph.nodes)
+
+    @cached_property
     def openings(self) -> tuple[Box, ...]:
         """Boxes of doors and windows in walls."""
         return tuple(node.box for node in self.graph.nodes if node.class_name in OPENINGS and node.box)
@@ -148,7 +153,7 @@ class PreparedScene:
                 yield from self.things(replace(node, box=part))
             return
         box, yaw = node.box, node.yaw or 0.0
-        turned = self._leaf(box, 0.0 if "CLOSED" in node.states else ajar) if choice.recipe == "door" else None
+        turned = self._leaf(box, 0.0 if "CLOSED" in node.states else ajar) if node.id in self.hung else None
         if turned:
             box, yaw = turned
         building = choice.recipe in BUILDING

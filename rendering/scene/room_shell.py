@@ -1,6 +1,7 @@
 """Walls, floors and ceilings for the rooms of graphs without them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from math import dist
 
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
@@ -11,7 +12,33 @@ from hearth.schemas.rng import derive
 THICK = 0.06
 OPENINGS = ("window", "door", "maindoor", "balcony_door", "doorjamb")
 
+DOORS = frozenset({"door", "maindoor", "balcony_door"})
+"""Classes of doors."""
+
+HUNG = 1.2
+"""Metres from the middle of a doorway within which a door hangs in it."""
+
 Hole = tuple[float, float, float, float]
+
+
+def hung_doors(nodes: Iterable[Node]) -> frozenset[int]:
+    """The doors that hang in a doorway: the nearest to each. Others stand in the way like furniture."""
+    doors: list[tuple[int, Box]] = []
+    jambs: list[Box] = []
+    for node in nodes:
+        if node.box and node.class_name in DOORS:
+            doors.append((node.id, node.box))
+        elif node.box and node.class_name == "doorjamb":
+            jambs.append(node.box)
+    found = set()
+    for jamb in jambs:
+        far = [(_apart(box, jamb), number) for number, box in doors]
+        found |= {number for _, number in sorted(known for known in far if known[0] < HUNG)[:1]}
+    return frozenset(found)
+
+
+def _apart(one: Box, other: Box) -> float:
+    return dist(one.center[::2], other.center[::2])
 
 
 def walls_of(graph: EnvironmentGraph, rooms: Sequence[Node]) -> list[Thing]:

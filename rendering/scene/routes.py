@@ -14,14 +14,9 @@ from hearth.homes.plans import raster
 from hearth.homes.plans.floor import Floor
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.floor_cells import BODY, CELL, cells_of, eroded, is_in_the_way
+from hearth.rendering.scene.room_shell import hung_doors
 from hearth.schemas.graph import Box, Node, Spot
 from hearth.simulation.motion.navigation import Ways
-
-DOORS = frozenset({"door", "maindoor", "balcony_door"})
-"""Classes of doors. Open leaves are in the way; closed ones are opened, or passed where the rules ignore doors."""
-
-HUNG = 1.2
-"""Metres from the middle of a doorway within which a door hangs in it; others are in the way like furniture."""
 
 STEPPED_OVER = 0.25
 """Height in metres up to which things that one can carry do not block a walk, such as a pillow on the floor."""
@@ -127,7 +122,8 @@ def ways_of(rooms: Iterable[Node], nodes: Sequence[Node], leaves: Floats | None 
     free = np.zeros((int((high[0] - low[0]) / CELL) + 1, int((high[2] - low[2]) / CELL) + 1), np.bool_)
     for box in [*boxes, *(_deeper(node.box) for node in nodes if node.class_name == "doorjamb" and node.box)]:
         free[cells_of(box, origin)] = True
-    hung = {node.id for node in nodes if node.class_name in DOORS and _hangs(node, nodes)}
+    # Open leaves are in the way; closed ones are opened, or passed where the rules ignore doors.
+    hung = hung_doors(nodes)
     for node in nodes:
         if node.box and (node.id not in hung or "OPEN" in node.states) and blocks_walks(node, low[1] + 2 * CELL):
             free[cells_of(_thick(node.box), origin)] = False
@@ -146,13 +142,6 @@ def blocks_walks(node: Node, floor: float) -> bool:
     assert node.box is not None
     top = node.box.center[1] + node.box.size[1] / 2 - floor
     return is_in_the_way(node, floor) and not ("GRABBABLE" in node.properties and top < STEPPED_OVER)
-
-
-def _hangs(door: Node, nodes: Sequence[Node]) -> bool:
-    """Whether a door hangs in a doorway."""
-    jambs = [node.box.center for node in nodes if node.class_name == "doorjamb" and node.box]
-    box = door.box
-    return box is not None and any(dist((x, z), (box.center[0], box.center[2])) < HUNG for x, _, z in jambs)
 
 
 def _thick(box: Box) -> Box:
