@@ -23,7 +23,7 @@ HEIGHTS = ((1.5, 1.0), (1.05, 0.93), (2.1, 0.86))
 WIDEST, NARROWEST = 72.0, 14.0
 """Degrees of the vertical field of view."""
 
-CLOSEST = 0.6
+CLOSEST = 0.4
 """Metres of height that a picture shows at least."""
 
 INSET = 0.12
@@ -75,9 +75,12 @@ def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) 
         # A small thing needs a closer view: of it, and of the upper body.
         target = min(near, key=lambda one: _needed(one, aspect))
         head = who.points[who.points[:, 1].argmax()]
-        middle = 0.55 * _point(target, who) + 0.45 * head
         reach = float(np.abs(_point(target, who) - head).max())
-        height = max(small, CLOSEST, 0.8 * reach + 0.4)
+        whole = 0.8 * reach + 0.4
+        # Of who holds a tiny thing, such as a coin, the hands are enough.
+        share = 0.45 * min(small / whole, 1.0)
+        middle = (1 - share) * _point(target, who) + share * head
+        height = max(min(small, whole), CLOSEST) if small < whole else max(small, whole)
     return middle, height
 
 

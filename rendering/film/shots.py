@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.candidates import around, free, preference
+from hearth.rendering.cameras.recognition import CLOSE
 from hearth.rendering.cameras.sight import Obstacles, Target, person, thing, values
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
@@ -35,6 +36,9 @@ ELSEWHERE = -0.4
 
 CUT = 0.5
 """Cost of a cut."""
+
+IN_THE_WAY = 1.5
+"""Loss of value of a camera at a moment at which a person is close in front of it."""
 
 SEEN, SEEN_AT_ALL = 0.6, 4.0
 """The value from which on an act is seen, and how much more what exceeds it counts at the best moment of an act."""
@@ -104,8 +108,7 @@ class Planner:
                 tried += [frozenset(range(span[0] - AROUND, span[-1] + AROUND + 1))] * len(found)
         for room in sorted({room for moment in self.moments for room in moment.rooms}):
             cameras += self.views.get(room, ())
-            within = frozenset(n for n, moment in enumerate(self.moments) if room in moment.rooms)
-            tried += [within] * len(self.views.get(room, ()))
+            tried += self._unobstructed(room)
         if not cameras:
             raise LookupError
         worth = np.full((len(cameras), len(self.moments)), ELSEWHERE)
@@ -114,6 +117,17 @@ class Planner:
             worth[some, number] = self._values([cameras[k] for k in some], number, self._acting(number))
         worth = self._weighted(worth, ticks)
         return Shots(tuple(cameras[number] for number in best_cut(worth, SHORTEST, CUT)))
+
+    def _unobstructed(self, room: int) -> list[frozenset[int]]:
+        """For each fixed camera of a room the moments at which somebody is in the room and nothing in its way."""
+        views = self.views.get(room, ())
+        found: list[set[int]] = [set() for _ in views]
+        for tick in sorted({moment.frame.tick for moment in self.moments}):
+            within = [n for n, known in enumerate(self.moments) if known.frame.tick == tick and room in known.rooms]
+            good = free(views, self._obstacles(self.moments[within[0]].frame)) if within else ()
+            for camera, moments in zip(views, found, strict=True):
+                moments.update(within if camera in good else ())
+        return [frozenset(moments) for moments in found]
 
     def _weighted(self, found: NDArray[np.float64], ticks: Sequence[int]) -> NDArray[np.float64]:
         """(cameras, moments) values; what shows a tick's act counts more at the moment that shows it best."""
@@ -188,7 +202,16 @@ class Planner:
         for agent in agents if cameras else ():
             who, objects = self._targets(frame, agent)
             total += values(cameras, who, objects, self._obstacles(frame)) * preference(cameras, frame.actors[agent])
+        for actor in frame.actors if cameras else ():
+            total -= IN_THE_WAY * _too_near(cameras, person(actor))
         return total
+
+
+def _too_near(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
+    """(cameras,) whether a person is so near that it fills the picture."""
+    eyes = np.array([camera.eye for camera in cameras])
+    near = np.linalg.norm(eyes[:, None] - who.points[None], axis=2).min(axis=1)
+    return np.asarray(near < CLOSE + 0.15)
 
 
 def _together(found: Sequence[Target]) -> Target:

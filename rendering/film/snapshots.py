@@ -20,6 +20,7 @@ from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.added_furniture import furnished
+from hearth.rendering.scene.effects import changes
 from hearth.rendering.scene.history import graphs
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.places import Places
@@ -172,11 +173,11 @@ def check_geometry(home: EnvironmentGraph) -> None:
 
 
 def _static_things(scenes: Sequence[Scene]) -> tuple[Thing, ...]:
-    """The things that are equal in all scenes."""
+    """The things that are equal in all scenes, and from moment to moment."""
     common = set(scenes[0].things)
     for scene in scenes[1:]:
         common &= set(scene.things)
-    return tuple(thing for thing in scenes[0].things if thing in common)
+    return tuple(thing for thing in scenes[0].things if thing in common and not changes(thing))
 
 
 def _keyframes(

@@ -10,7 +10,7 @@ from hearth.rendering.models.leaf import leaf
 from hearth.rendering.models.look import Look, Region, nowhere, over, shelves, top
 from hearth.rendering.models.mesh import Mesh
 from hearth.rendering.models.paint import PAINTS, Paint
-from hearth.rendering.models.pictures import PAINTINGS, SHOWS
+from hearth.rendering.models.pictures import DESKTOPS, PAINTINGS, PROGRAMMES
 
 Value = TypeVar("Value")
 
@@ -48,7 +48,8 @@ FUNCTIONS: Values = {
     "region": Region,
     **PAINTS,
     "PAINTINGS": PAINTINGS,
-    "SHOWS": SHOWS,
+    "PROGRAMMES": PROGRAMMES,
+    "DESKTOPS": DESKTOPS,
 }
 """Names that every expression of a model may use."""
 
@@ -60,7 +61,7 @@ def names_of(look: Look) -> Values:
         **FUNCTIONS,
         "w": w, "h": h, "d": d,
         "kind": look.kind, "color": look.color, "variant": look.variant, "seed": look.seed, "hole": look.hole,
-        "open": look.open, "on": look.on, "closed": "CLOSED" in look.states,
+        "open": look.open, "on": look.on, "closed": "CLOSED" in look.states, "moment": look.moment,
         "rest_height": look.seat, "pick": look.pick, "painted": look.paint, "tint": look.tint,
         "top": partial(top, look), "nowhere": partial(nowhere, look), "over": partial(_over, look),
         "shelves": partial(shelves, look), "bottom": partial(_bottom, look),

@@ -6,7 +6,7 @@ from math import atan2, cos, degrees, radians, sin
 
 from hearth.homes.forms import form
 from hearth.rendering.models.look import Look
-from hearth.rendering.models.looks import recipe_of
+from hearth.rendering.models.looks import choice_of, recipe_of
 from hearth.rendering.people.body import Body
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
@@ -200,30 +200,31 @@ def _seated(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | 
     foot = pose.box.center[1] - pose.box.size[1] / 2
     known = form(node.class_name, places.knowledge)
     level = known.levels[0] if known and known.levels and known.levels[0] < size[1] else 0.0
-    regions = recipe_of(node.class_name, places.knowledge).on(Look(size, level=level))
-    region = regions[0]
+    region = recipe_of(node.class_name, places.knowledge).on(Look(size, level=level))[0]
     frame = replace(actor, spot=(pose.box.center[0], pose.box.center[2]), level=foot, yaw=yaw, place=seat)
     seat_height = foot - actor.level + region.y
-    if "LYING" in states:
-        along = yaw if size[2] >= 1.5 else yaw + 90
+    if choice_of(node.class_name, places.knowledge).recipe == "bathtub":
+        # In a bathtub one sits, with the back at the end without the tap and the knees drawn up.
+        turn, rests = (-90.0 if size[0] >= size[2] else 0.0), BodyPose("sitting", seat_height)
+        at = (size[0] / 2 - BACK, 0.0, 0.0) if turn else (0.0, 0.0, BACK - size[2] / 2)
+    elif "LYING" in states:
+        turn = 0.0 if size[2] >= 1.5 else 90.0
         side = size[0] * -0.22 if size[0] > 1.25 and size[2] >= 1.5 else 0.0
-        x, _, z = frame.world((side, 0.0, 0.0))
-        return replace(actor, spot=(x, z), yaw=along, place=seat, body_pose=BodyPose("lying", seat_height))
-    places_free = [(region.x0 + region.x1) / 2]
-    if region.x1 - region.x0 > 1.0:
-        places_free = [places_free[0], region.x0 + 0.35, region.x1 - 0.35]
-    if size[2] >= 1.5 and size[0] > 0.85:
+        at, rests = (side, 0.0, 0.0), BodyPose("lying", seat_height)
+    elif size[2] >= 1.5 and size[0] > 0.85:
         # Sitting on the side of a bed, feet on the floor.
-        x, _, z = frame.world((size[0] / 2 - 0.2, 0.0, 0.15))
-        return replace(actor, spot=(x, z), yaw=yaw + 90, place=seat, body_pose=BodyPose("sitting", seat_height))
-    x, _, z = frame.world(
-        (
-            min(places_free, key=lambda at: _crowd(frame.world((at, 0, 0)), places, seat)),
-            0.0,
-            _depth(region.z0, region.z1),
-        )
-    )
-    return replace(actor, spot=(x, z), yaw=yaw, place=seat, body_pose=BodyPose("sitting", seat_height))
+        at, turn, rests = (size[0] / 2 - 0.2, 0.0, 0.15), 90.0, BodyPose("sitting", seat_height)
+    else:
+        middle = (region.x0 + region.x1) / 2
+        free = [middle, region.x0 + 0.35, region.x1 - 0.35] if region.x1 - region.x0 > 1.0 else [middle]
+        across = min(free, key=lambda x: _crowd(frame.world((x, 0, 0)), places, seat))
+        at, turn, rests = (across, 0.0, _depth(region.z0, region.z1)), 0.0, BodyPose("sitting", seat_height)
+    x, _, z = frame.world(at)
+    return replace(actor, spot=(x, z), yaw=yaw + turn, place=seat, body_pose=rests)
+
+
+BACK = 0.42
+"""Metres from the end of a bathtub to the hips of who sits in it."""
 
 
 def _depth(z0: float, z1: float) -> float:

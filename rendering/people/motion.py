@@ -8,6 +8,7 @@ from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor
 from hearth.rendering.people.holding import held_things
 from hearth.rendering.people.tracks import HOLD, Track, motionless, track
+from hearth.rendering.scene.effects import at_time
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Node
@@ -64,7 +65,9 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
             actors = tuple(track.at(past) for track in tracks)
             keyframe, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
             ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
-            yield Frame(time, span.tick, span.steps, set_.scene(keyframe, actors, ajar), actors, keyframe.places.holds)
+            yield Frame(
+                time, span.tick, span.steps, set_.scene(keyframe, actors, ajar, time), actors, keyframe.places.holds
+            )
             number += 1
 
 
@@ -110,8 +113,8 @@ class _SceneCache:
         self.trajectory = trajectory
         self.known: dict[tuple[int, frozenset[int], frozenset[int]], tuple[tuple[Thing, ...], Scene]] = {}
 
-    def scene(self, keyframe: Keyframe, actors: tuple[Actor, ...], ajar: Mapping[int, float]) -> Scene:
-        """A keyframe's scene with actors as in a frame, and some things partly open."""
+    def scene(self, keyframe: Keyframe, actors: tuple[Actor, ...], ajar: Mapping[int, float], time: float) -> Scene:
+        """A keyframe's scene with actors as in a frame, some things partly open, and effects as they are at a time."""
         prepared, places = self.trajectory.prepared, keyframe.places
         held = held_things(prepared, places, actors)
         things, base = self._rest(keyframe, frozenset(held), frozenset(ajar))
@@ -123,7 +126,8 @@ class _SceneCache:
         ]
         hands = [thing for things in held.values() for thing in things]
         people = [Thing(a.node.id, a.node.class_name, a.figure(), a.position, a.yaw) for a in actors]
-        return replace(base, things=(*things, *hands, *swung, *people), static=self.trajectory.static)
+        shown = tuple(now for thing in (*things, *hands, *swung) for now in at_time(thing, time))
+        return replace(base, things=(*shown, *people), static=self.trajectory.static)
 
     def _rest(self, keyframe: Keyframe, held: frozenset[int], swung: frozenset[int]) -> tuple[tuple[Thing, ...], Scene]:
         key = (keyframe.tick, held, swung)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 WALKING, RUNNING = 1.1, 1.8
 """Metres per second."""
 
-RELAX, RISE, LAY, REACH, BACK, HOLD = 0.3, 1.2, 1.8, 0.6, 0.4, 0.3
+RELAX, RISE, LAY, REACH, BACK, HOLD = 0.3, 1.2, 1.8, 0.6, 0.4, 0.5
 """Seconds, at least."""
 
 HEADS, HANDS = 1.1, 1.7

@@ -87,10 +87,14 @@ SPILL = 2.0
 
 
 def lamp(
-    position: Point, strength: float = 1.5, room: tuple[float, float, float, float] | None = None, spill: float = SPILL
+    position: Point,
+    strength: float = 1.5,
+    room: tuple[float, float, float, float] | None = None,
+    spill: float = SPILL,
+    color: LinearColor = LAMP_COLOR,
 ) -> Light:
     """A lamp that lights its room and `spill` metres around it."""
-    red, green, blue = (strength * c for c in LAMP_COLOR)
+    red, green, blue = (strength * c for c in color)
     beyond = room and (room[0] - spill, room[1] + spill, room[2] - spill, room[3] + spill)
     return Light(position, (red, green, blue), room=beyond)
 

@@ -9,10 +9,12 @@ from hearth.homes.forms import form
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.models.look import Look, Size
 from hearth.rendering.models.looks import Model, choice_of, model_of
+from hearth.rendering.models.paint import linear
 from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.people.figure import Figure
+from hearth.rendering.scene.effects import light_point, shining
 from hearth.rendering.scene.instances import Thing
-from hearth.rendering.scene.lights import SPILL, Daylight, Light, daylight, lamp, window
+from hearth.rendering.scene.lights import LAMP_COLOR, SPILL, Daylight, Light, LinearColor, daylight, lamp, window
 from hearth.rendering.scene.room_shell import OPENINGS, around_openings, hung_doors, walls_of
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, Point, Spot
@@ -30,9 +32,6 @@ LIQUIDS: dict[str, str] = packaged("hearth.rendering.scene", "liquids.yaml")
 
 SURFACE = 0.004
 """Height of the box of a liquid in a vessel: only its surface is drawn."""
-
-STRENGTH = {"ceiling_lamp": 2.3, "ceiling_fan": 1.8, "floor_lamp": 1.4, "candle": 0.15, "fireplace": 1.2}
-"""Brightness of lamps by recipe; 0.7 for others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,16 +181,15 @@ class PreparedScene:
         if node.box is None:
             return
         choice = choice_of(node.class_name, self.knowledge)
-        (x, y, z), size = node.box.center, node.box.size
-        room = self.rooms.get(self.room_of.get(node.id, -1))
-        share = RECIPES[choice.recipe].lamp
-        if share is not None and "ON" in node.states:
+        room, bulb = self.rooms.get(self.room_of.get(node.id, -1)), RECIPES[choice.recipe].lamp
+        for shine, up in shining(choice.recipe, frozenset(node.states), bulb):
             bounds = _bounds(room.box) if room and room.box else None
             spill = 0.0 if self.day.sun else SPILL
-            yield lamp((x, y + (share - 0.5) * size[1], z), STRENGTH.get(choice.recipe, 0.7), bounds, spill)
+            color = _linear(shine.color) if shine.color else LAMP_COLOR
+            yield lamp(light_point(shine, up, node.box, node.yaw or 0.0), shine.strength, bounds, spill, color)
         if choice.recipe == "window" and room and room.box and node.yaw is not None:
             facing = (sin(radians(node.yaw)), 0.0, cos(radians(node.yaw)))
-            yield window(node.box.center, size, _rounded(facing), _bounds(room.box), self.day)
+            yield window(node.box.center, node.box.size, _rounded(facing), _bounds(room.box), self.day)
 
     def _level(self, class_name: str, height: float) -> float:
         """Height of the supporting surface if the class's form gives one below the top, else 0."""
@@ -304,6 +302,11 @@ def _local_hole(basin: Box, counter: Box, yaw: float) -> tuple[float, float, flo
 def _bounds(box: Box) -> tuple[float, float, float, float]:
     (x, _, z), (w, _, d) = box.center, box.size
     return x - w / 2 - 0.07, x + w / 2 + 0.07, z - d / 2 - 0.07, z + d / 2 + 0.07
+
+
+def _linear(color: str) -> LinearColor:
+    red, green, blue = (float(value) for value in linear(color))
+    return red, green, blue
 
 
 def _rounded(direction: Point) -> Point:
