@@ -26,7 +26,7 @@ SOFT = IGNORED - {"window", "doorjamb"}
 """Classes that give way."""
 
 THIN = 0.04
-"""Height in metres below which a thing is no obstacle, such as paper and cloths."""
+"""Height in metres below which a thing stops nobody, such as paper and cloths."""
 
 Found = NDArray[np.bool_]
 
