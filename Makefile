@@ -139,20 +139,21 @@ docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, comman
 # What comes with torch, which .venv/.models installs.
 TORCHES := ^(torch|triton|nvidia-|cuda-)
 
-lock: ## pin the newest versions allowed by pyproject.toml in requirements.lock and requirements-tools.lock
-	@rm -rf build/lock && mkdir -p build/lock
-	@$(PYTHON) -m venv build/lock/all && $(PYTHON) -m venv build/lock/base
-	@build/lock/all/bin/python -m pip install -q -e '.[agents,pictures,web,test,tools]' setuptools
-	@build/lock/all/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | grep -Ev '$(TORCHES)' | sort \
-	  > build/lock/all.txt
-	@build/lock/base/bin/python -m pip install -q -c build/lock/all.txt -e '.[agents,pictures,web,test]' setuptools
-	@build/lock/base/bin/python -m pip uninstall -q -y $(NOTEBOOK)
-	@build/lock/base/bin/python -m pip freeze --all --exclude pip --exclude hearth-home-programs | sort > build/lock/base.txt
-	@{ sed '/^#/!d' requirements.lock; \
-	   sed "s/^open3d-cpu==.*/& ; platform_system == 'Linux' and platform_machine == 'x86_64'/" build/lock/base.txt; \
-	   } > build/lock/requirements.lock
-	@{ sed '/^#/!d' requirements-tools.lock; comm -13 build/lock/base.txt build/lock/all.txt; } > requirements-tools.lock
-	@mv build/lock/requirements.lock requirements.lock && rm -rf build/lock
+# uv resolves for every Python and machine that is supported, and writes the hashes of all files.
+COMPILE = build/lock/bin/uv pip compile -q pyproject.toml build/lock/build.in --universal --python-version 3.11 \
+  --generate-hashes --no-annotate --no-header
+SET_UP = $(foreach extra,agents pictures web test,--extra $(extra))
+without = $$(sed -n 's/^\([A-Za-z0-9._-]*\)==.*/\1/p' $(1) | sort -u | grep -E '$(2)' | sed 's/^/--no-emit-package /')
+
+lock: ## pin the newest versions allowed by pyproject.toml, with hashes, in requirements.lock and requirements-tools.lock
+	@rm -rf build/lock && $(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install -q uv
+	@echo setuptools > build/lock/build.in
+	@$(COMPILE) $(SET_UP) --extra tools -o build/lock/all.txt
+	@$(COMPILE) $(SET_UP) -c build/lock/all.txt $(NOTEBOOK:%=--no-emit-package %) -o build/lock/base.txt
+	@$(COMPILE) --extra tools -c build/lock/all.txt $(call without,build/lock/all.txt,$(TORCHES)) \
+	  $(call without,build/lock/base.txt,.) -o build/lock/tools.txt
+	@for name in base:requirements.lock tools:requirements-tools.lock; do \
+	   { sed '/^#/!d' $${name#*:}; cat build/lock/$${name%:*}.txt; } > build/lock/whole && mv build/lock/whole $${name#*:}; done
 
 web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
 	@npm ci --prefix web --loglevel error && $(PY) -m hearth.web.third_party_scripts && du -sh web/fetched

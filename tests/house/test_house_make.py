@@ -1,6 +1,7 @@
 """The Makefile and the set-up script, with a Python that only writes down what it was asked to do."""
 
 import os
+import re
 import shutil
 import subprocess
 from itertools import pairwise
@@ -274,10 +275,13 @@ def test_set_up_says_what_debian_leaves_out(bare):
     assert not (bare / ".venv").exists()
 
 
-def test_the_lock_pins_everything_and_says_nothing_of_where_it_came_from():
-    lines = [line for line in (ROOT / "requirements.lock").read_text().splitlines() if not line.startswith("#")]
-    assert len(lines) > 50
-    for line in lines:
-        name, exact, rest = line.partition("==")
-        assert exact and name and rest[0].isdigit(), line
-        assert "://" not in line and "@" not in line and not line.startswith("-")
+@pytest.mark.parametrize("file", ["requirements.lock", "requirements-tools.lock"])
+def test_the_lock_pins_everything_with_hashes_and_says_nothing_of_where_it_came_from(file):
+    text = (ROOT / file).read_text()
+    assert "://" not in text and "@" not in text
+    pins = text.replace("\\\n", "").splitlines()
+    pins = [line for line in pins if not line.startswith("#")]
+    assert len(pins) > 50
+    for line in pins:
+        found = re.fullmatch(r"[\w.\[\]-]+==[\w.!+]+(?: ; [^-]+?)?((?: +--hash=sha256:[0-9a-f]{64})+) *", line)
+        assert found, line[:80]
