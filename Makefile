@@ -134,7 +134,8 @@ bench: full  ## measure everything into benchmarks/RESULTS.md; fails if a ratio 
 
 docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, commands and knowledge
 	@$(PY) -m pip install -qq --no-compile 'mkdocs-material>=9.6' 'mkdocs<2' 'mkdocstrings[python]>=0.28'
-	@NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build -q && echo build/site/index.html
+	@mkdir -p build && NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict >build/docs.log 2>&1 \
+	  && echo build/site/index.html || { grep -v ^INFO build/docs.log >&2; exit 1; }
 
 # What comes with torch, which .venv/.models installs.
 TORCHES := ^(torch|triton|nvidia-|cuda-)

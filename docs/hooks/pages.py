@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import inspect
+import os
 import re
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from pkgutil import resolve_name
 from textwrap import dedent
@@ -14,7 +16,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "analysis",
+    "pipelines", "models", "agents", "challenges", "analysis", "studies", "web",
 )  # fmt: skip
 
 ENTRY_POINTS = {
@@ -300,13 +302,56 @@ def modules() -> dict[str, str]:
     return pages
 
 
-def index() -> str:
-    """The README, with links to pictures relative to the documentation."""
-    return (ROOT / "README.md").read_text("utf-8").replace("](docs/", "](")
+COPIED = {
+    "README.md": "index.md",
+    "CONTRIBUTING.md": "about/contributing.md",
+    "CHANGELOG.md": "about/changes.md",
+    "benchmarks/RESULTS.md": "about/speed.md",
+}
+"""Documents of the checkout that are pages, too."""
+
+ELSEWHERE = {"docs/examples": "examples/own-corpus.md", "NOTICE": "about/notice.md", "LICENSE": "about/notice.md"}
+"""What documents link to and the documentation has elsewhere."""
+
+
+def copied(file: str) -> str:
+    """A document of the checkout, its links relative to its place in the documentation."""
+    place = Path(COPIED[file]).parent
+    known = COPIED | ELSEWHERE
+
+    def moved(match: re.Match[str]) -> str:
+        found = known.get(match[1], match[1].removeprefix("docs/"))
+        return f"]({os.path.relpath(found, place)})"
+
+    return re.sub(r"\]\(((?:docs/|[A-Z]+)[^)#\s]*)\)", moved, (ROOT / file).read_text("utf-8"))
+
+
+def cost() -> str:
+    """What large datasets and many episodes take."""
+    return str(beside("cost_page").page())
+
+
+def beside(name: str) -> Any:
+    """Another script of this folder; mkdocs does not put it on the path."""
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    found = spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+    assert found and found.loader
+    loaded = module_from_spec(found)
+    found.loader.exec_module(loaded)
+    return loaded
+
+
+def notice() -> str:
+    """The sources of facts, the licence, and the licences of what is needed."""
+    texts = [(name, (ROOT / name).read_text("utf-8").rstrip()) for name in ("NOTICE", "LICENSE")]
+    return "# Sources and licences\n" + "".join(f"\n## {name}\n\n```text\n{text}\n```\n" for name, text in texts)
 
 
 PAGES: dict[str, Callable[[], str]] = {
-    "index.md": index,
+    **{page: partial(copied, file) for file, page in COPIED.items()},
+    "about/notice.md": notice,
+    "about/cost.md": cost,
     "python-api.md": python_api,
     "reference/commands.md": commands,
     "reference/actions.md": actions,

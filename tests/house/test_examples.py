@@ -1,92 +1,52 @@
-"""The worked examples of docs/examples do what they say, in a folder of their own."""
+"""The worked examples and the tutorial do what they say, in a folder of their own, and make the pictures they show."""
 
 from __future__ import annotations
 
-import os
-import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.md"))
-FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.DOTALL | re.MULTILINE)
+TUTORIAL = sorted((ROOT / "docs/tutorial").glob("*.md"))
 APART = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__", "build", "dist", "data_out", "benchmarks")
 
-pytestmark = pytest.mark.slow
+
+@pytest.fixture(scope="module")
+def followed(module):
+    return module("docs/hooks/followed.py")
 
 
-def blocks(page: Path) -> list[tuple[str, str, str]]:
-    """(language, title, text) of every fenced block."""
-    return [match.groups(default="") for match in FENCE.finditer(page.read_text("utf-8"))]
-
-
-def ran(script: str, folder: Path, checkout: Path) -> str:
-    """Run a block as its reader would, `hearth` and `python` on the path; its output."""
-    tools = folder.parent / "bin"
-    tools.mkdir(exist_ok=True)
-    for name, words in (("hearth", f'"{checkout / "cli.py"}"'), ("python", "")):
-        (tools / name).write_text(f'#!/bin/sh\nexec "{sys.executable}" {words} "$@"\n')
-        (tools / name).chmod(0o755)
-    # In a copy the package is the copy, not the checkout that .venv knows.
-    site = folder.parent / "site"
-    site.mkdir(exist_ok=True)
-    if not (site / "hearth").is_symlink():
-        (site / "hearth").symlink_to(checkout)
-    environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "PYTHONPATH": str(site)}
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment, capture_output=True, text=True,
-        timeout=900, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, f"{script}\n{done.stdout}\n{done.stderr}"
-    return done.stdout + done.stderr
-
-
-def test_there_are_seven():
-    assert len(EXAMPLES) == 7
-
-
-@pytest.mark.parametrize("page", EXAMPLES, ids=lambda page: page.stem)
-def test_an_example_does_what_it_says(page, tmp_path):
-    folder, checkout = tmp_path / "here", ROOT
-    if "stable_baselines3" in page.read_text("utf-8"):
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [*EXAMPLES, *TUTORIAL], ids=lambda page: page.stem)
+def test_a_page_does_what_it_says(followed, page, tmp_path):
+    text, folder, checkout = page.read_text("utf-8"), tmp_path / "here", ROOT
+    if "stable_baselines3" in text:
         pytest.importorskip("stable_baselines3", reason="nothing to learn with: stable-baselines3 is not installed")
-    if "python cli.py" in page.read_text("utf-8"):
+    if "hearth model train" in text:
+        pytest.importorskip("torch", reason="nothing to train with: torch is not installed")
+    if "python cli.py" in text and page in EXAMPLES:
         checkout = shutil.copytree(ROOT, folder, ignore=APART)
     folder.mkdir(exist_ok=True)
-    printed = ""
-    for language, title, text in blocks(page):
-        if title:
-            (folder / title).write_text(text, "utf-8")
-        elif language == "bash":
-            printed = ran(text, folder, checkout)
-        elif language == "text":
-            assert shown(text, printed), f"{text}\nis not in\n{printed}"
+    assert not list(followed.follow(page, folder, checkout))
+    for file, made in followed.pictures(page):
+        assert file.is_file() and (folder / made).stat().st_size > 1000, made
 
 
-def shown(text: str, printed: str) -> bool:
-    """Whether the lines of a block are successive lines of the output, those after `...` further below; numbers of
-    several digits may differ.
-    """
-    lines = [_plain(line) for line in printed.splitlines() if line.strip()]
-    at = 0
-    for piece in re.split(r"^\.\.\.$", text, flags=re.MULTILINE):
-        wanted = [_plain(line) for line in piece.splitlines() if line.strip()]
-        found = next((n for n in range(at, len(lines) + 1) if lines[n : n + len(wanted)] == wanted), None)
-        if found is None:
-            return False
-        at = found + len(wanted)
-    return True
+def test_a_chapter_of_the_tutorial_ends_in_a_picture_of_its_commands(followed):
+    assert [page.stem for page in TUTORIAL] == ["build", "challenge", "collect", "help", "play", "train"]
+    for page in TUTORIAL:
+        shown = followed.pictures(page)
+        assert shown and page.read_text("utf-8").rstrip().endswith(f'"{shown[-1][1]}")'), page.stem
+        assert all(file.is_file() for file, _ in shown), (
+            "make it with: python docs/hooks/followed.py docs/tutorial/*.md"
+        )
+        assert len(page.read_text("utf-8").split()) < 350, page.stem
 
 
-def _plain(line: str) -> str:
-    return " ".join(re.sub(r"\d[\d,]+", "N", line).split())
-
-
-def test_a_line_that_was_not_printed_is_seen():
+def test_a_line_that_was_not_printed_is_seen(followed):
+    shown = followed.shown
     assert shown("a\n b", "a\n\nb\nc\n") and shown("a\n...\nc\n", "a\nb\nc") and shown("a\n...\n", "a\nb")
     assert not shown("a\nc", "a\nb\nc") and not shown("c\n...\na", "a\nb\nc")
     assert not shown("a\nc", "c\na") and not shown("a", "ab")

@@ -33,6 +33,7 @@ def checkout() -> frozenset[str]:
 def paths(text: str) -> list[str]:
     """The words of code spans and links that look like paths of the checkout."""
     words = [word.rstrip(",.;") for span, link in SPAN.findall(text) for word in (span or link).split()]
+    words = [re.sub(r"^(\.\./)+", "", word) for word in words]
     return [word for word in words if FILE.fullmatch(word) and word.endswith(SUFFIXES) and not word.startswith(WRITTEN)]
 
 
@@ -49,6 +50,15 @@ def test_every_path_exists(document):
 
 def test_paths_are_seen(tmp_path):
     page = tmp_path / "page.md"
-    page.write_text("`exports/`, [rules](HOUSE.md), `kb/data/*.csv`, `cli.py kb` and `tests/gone/test_x.py`.")
-    assert paths(page.read_text()) == ["exports/", "HOUSE.md", "kb/data/*.csv", "cli.py", "tests/gone/test_x.py"]
-    assert missing(page, checkout()) == ["exports/", "HOUSE.md", "tests/gone/test_x.py"]
+    page.write_text(
+        "`exports/`, [rules](HOUSE.md), `kb/data/*.csv`, `cli.py kb` and `tests/gone/x.py`; [up](../kb/x.md)."
+    )
+    assert paths(page.read_text()) == [
+        "exports/",
+        "HOUSE.md",
+        "kb/data/*.csv",
+        "cli.py",
+        "tests/gone/x.py",
+        "kb/x.md",
+    ]
+    assert missing(page, checkout()) == ["exports/", "HOUSE.md", "tests/gone/x.py", "kb/x.md"]

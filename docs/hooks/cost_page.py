@@ -1,0 +1,100 @@
+"""The page "Cost at scale": what large datasets take on many processors, worked out from `benchmarks/results.json`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+RESULTS = Path(__file__).resolve().parents[2] / "benchmarks/results.json"
+
+WHOLE = 10_000_000
+PROCESSORS = (2, 16, 64, 256)
+BATCH, MEASURED = 30_000, 2
+"""Augmented programs, and processors, of the measured build."""
+
+FIGURES = {
+    "batch": ("stages", "30,000 augmented programs on two processors, undisturbed"),
+    "speedup": ("workers", "augment: two workers against one"),
+    "partition": ("workers", "a partition of no work"),
+    "memory": ("corpus", "most memory, program text, 100,000 records"),
+    "growth": ("corpus", "... over that of a tenth of them"),
+    "episodes": ("challenge", "episodes, alone and with a helper in turn"),
+    "again": ("challenge", "the same done again by `challenge verify`"),
+    "bytes": ("challenge", "bytes of an episode"),
+}
+"""The section and the beginning of the name of each measured figure that is used."""
+
+
+def measured() -> dict[str, float]:
+    """The figures by their short names.
+
+    Raises:
+        LookupError: one is not in results.json.
+    """
+    stored = json.loads(RESULTS.read_text("utf-8"))
+    found = {}
+    for short, (section, name) in FIGURES.items():
+        rows = [row for row in stored.get(section, {}).get("figures", ()) if row["name"].startswith(name)]
+        if not rows:
+            raise LookupError(f"{section}: {name}")
+        found[short] = float(rows[0]["value"])
+    return found
+
+
+def hours(seconds: float) -> str:
+    """A duration as one reads it."""
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def page() -> str:
+    """The page."""
+    found = measured()
+    each = found["batch"] * MEASURED / BATCH
+    share = min(1.0, found["speedup"] / MEASURED)
+    work = {
+        "programs augmented, from sampling to publishing": each * WHOLE,
+        "episodes of Watch-And-Help": WHOLE / found["episodes"],
+        "the same episodes done again": WHOLE / found["again"],
+    }
+    lines = [
+        "# Cost at scale",
+        "",
+        "What ten million programs and ten million episodes take, worked out from what was measured on one machine",
+        "of two processors ([Speed](speed.md)). Nothing on this page was run at that size.",
+        "",
+        "| measured | |",
+        "|---|---|",
+        f"| processor time of an augmented program | {1000 * each:.2f} ms |",
+        f"| episodes a second, one process | {found['episodes']:.1f} |",
+        f"| episodes done again a second, one process | {found['again']:.0f} |",
+        f"| two workers against one | {found['speedup']:.2f} times |",
+        f"| overhead of a partition | {found['partition']:.1f} ms |",
+        f"| most memory of a process, and its growth when the corpus grows tenfold | {found['memory']:.0f} MB,"
+        f" {found['growth']:.2f} times |",
+        f"| bytes of an episode | {found['bytes']:,.0f} |",
+        "",
+        f"Time is work divided by processors and by the share of {share:.0%} that a second worker keeps. Workers of a",
+        "cluster share nothing but their folder, and have to read and write it through the network.",
+        "",
+        f"| {WHOLE:,} | processor time |" + "".join(f" {number} processors |" for number in PROCESSORS),
+        "|---|---" + "|---:" * len(PROCESSORS) + "|",
+    ]
+    for what, seconds in work.items():
+        times = "".join(f" {hours(seconds / number / share)} |" for number in PROCESSORS)
+        lines.append(f"| {what} | {seconds / 3600:,.0f} h |{times}")
+    lines += [
+        "",
+        f"The episodes are {WHOLE * found['bytes'] / 1e9:,.0f} GB of lines.",
+        "",
+        "```bash",
+        "dask scheduler &",
+        "hearth corpus synthesize 2000000 --out synthetic.jsonl",
+        "hearth build synthetic.jsonl --out s3://bucket/homes --engine dask --scheduler tcp://HOST:8786 \\",
+        f"  --target {WHOLE} --pictures 0 --videos 0",
+        "```",
+        "",
+        "Not in these numbers: what one process does at the end (near duplicates over all programs, the joined tables",
+        "and the catalog), pictures, and the network. `python benchmarks/scale.py --sizes 3000 30000` builds datasets",
+        "whole, and prints seconds, memory and bytes a program and the share of each stage.",
+    ]
+    return "\n".join(lines) + "\n"
