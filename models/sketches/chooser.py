@@ -26,10 +26,11 @@ from hearth.models.sketches.choices import Choice, Packed, joined, packed
 from hearth.models.sketches.chooser_examples import node_choices, step_choices
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress
-from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Habits, Offer
+from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, Offer
 from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, frequent
 from hearth.models.training import Outcome, Task, train
 from hearth.repair.sketch_plan import bound_to_nearest, complete_steps

@@ -20,10 +20,11 @@ from hearth.models.sketches.chooser import NO_HABITS, SIZES, Chooser, TrainedCho
 from hearth.models.sketches.chooser_examples import step_choices
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.sketches.next_steps import Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress, plain
-from hearth.models.sketches.step_features import Habits, Offer
+from hearth.models.sketches.step_features import Offer
 from hearth.repair.sketch_plan import plan, planned_program
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph

@@ -12,7 +12,7 @@ from hearth.models.model_registry import MODELS, settings_of
 from hearth.models.sketches.chooser import SIZES, TrainedChooser
 from hearth.models.sketches.graph_model import TrainedGraphModel
 from hearth.models.sketches.name_numbers import Words
-from hearth.models.sketches.step_features import Habits
+from hearth.models.sketches.next_steps import Habits
 from hearth.models.text.text_models import TextModel
 from hearth.schemas.syntax import parse_steps
 from hearth.scoring.metrics.executability import executability

@@ -11,8 +11,9 @@ from hearth.models.decoding.options import Grammar
 from hearth.models.interface import Request
 from hearth.models.sketches.chooser import SIZES, Chooser, TrainedChooser
 from hearth.models.sketches.name_numbers import Words
+from hearth.models.sketches.next_steps import ROLES, Habits
 from hearth.models.sketches.sketch_progress import Progress
-from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, NO_NODE, ROLES, Habits, Offer
+from hearth.models.sketches.step_features import CANDIDATE_NUMBERS, NO_NODE, Offer
 from hearth.models.sketches.text_clues import AROUND, NO_CLUES, Clues, TextState, frequent
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import parse_steps
@@ -69,7 +70,9 @@ def test_numbers_of_candidates_are_as_many_with_a_text_as_without(environments, 
         offer = Offer(progress, Grammar(environments[0].home).options(environments[0]), habits, Words.of(knowledge))
         choice = offer.choice()
         assert {(len(each.names), len(each.numbers)) for each in choice.candidates} == {(3 + AROUND, CANDIDATE_NUMBERS)}
-        assert len(NO_NODE.numbers) == len(offer._looked(0).numbers) and len(list(offer._by_role())) == ROLES
+        assert (
+            len(NO_NODE.numbers) == len(offer._looked(0).numbers) and len(list(offer._next_steps._by_role())) == ROLES
+        )
 
 
 def test_the_right_step_is_among_random_others(environments, knowledge):
