@@ -377,7 +377,11 @@ class SketchRow(TypedDict):
     """The sketch of a program (thesis 5.5.1)."""
 
     program_id: Annotated[str, "the program"]
-    origin: Annotated[str, "people, written (by a corpus's second reader), inferred, or inherited from the parent"]
+    origin: Annotated[
+        str,
+        "people, written (by a corpus's reader), inferred, or inherited from the parent's inferred one; "
+        "people_parent, written_parent: what an augmented program inherits of an annotation",
+    ]
     keep: Annotated[list[bool], "for each step, whether the sketch keeps it"]
     steps: Annotated[list[str], "the kept steps, as text"]
 

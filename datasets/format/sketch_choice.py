@@ -7,7 +7,7 @@ from hearth.schemas.failures import Code
 
 ANNOTATED, INFERRED = "annotated", "inferred"
 
-_PEOPLE = "origin IN ('written', 'people')"
+_PEOPLE = "origin IN ('written', 'people', 'written_parent', 'people_parent')"
 
 _KINDS = {ANNOTATED: _PEOPLE, INFERRED: f"NOT ({_PEOPLE})"}
 

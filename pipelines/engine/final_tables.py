@@ -21,6 +21,7 @@ from hearth.datasets.format.croissant import write_croissant
 from hearth.datasets.format.ids import STAMP, activity_id
 from hearth.datasets.tensors import EDGE_TYPES
 from hearth.kb.knowledge import Knowledge
+from hearth.pipelines.engine.annotated_sketches import inherited_annotations
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.stage import Job
 from hearth.pipelines.engine.stages import RECORDS, STAGES
@@ -176,8 +177,16 @@ def _programs(job: Job, columns: list[str]) -> Iterator[Any]:
 
 
 def _sketches(job: Job) -> Iterator[forms.SketchRow]:
-    """Inferred and inherited sketches; and annotated ones of published programs: their description's id names it."""
+    """Inferred and inherited sketches, annotated ones, and what augmented programs inherit of these."""
     yield from _rows(job, "augment", "sketches")
+    annotations = list(_annotated(job))
+    yield from annotations
+    of_program = {row["program_id"]: row for row in annotations}
+    yield from inherited_annotations(_programs(job, ["program_id", "parent_id", "steps"]), of_program)
+
+
+def _annotated(job: Job) -> Iterator[forms.SketchRow]:
+    """Annotated sketches of published programs: their description's id names the program."""
     published = {row["program_id"] for row in _programs(job, ["program_id"])}
     for row in _rows(job, "ingest", columns=["kind", "description_id", "keep", "text"]):
         name = str(row["description_id"])
