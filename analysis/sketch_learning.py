@@ -28,6 +28,7 @@ RAREST, SHARE = 3, 4_000
 _STRENGTH, _RUNS = 0.3, 2
 _BOOSTED = {"n_estimators": 150, "learning_rate": 0.06, "max_leaf_nodes": 6, "max_depth": None,
             "min_samples_leaf": 10, "subsample": 0.7, "max_features": 0.3}  # fmt: skip
+_FOREST = {"n_estimators": 200, "min_samples_leaf": 4, "max_features": 0.3}
 _DIGITS = 3
 
 
@@ -107,7 +108,7 @@ def _counts(found: Iterable[Example]) -> dict[str, tuple[int, int]]:
 
 
 def fit(found: Sequence[Example], fitted_on: str, base: SketchModel | None = None, seed: int = 0) -> SketchModel:
-    """Fit a model: the linear part on names, then the trees on numbers and the linear part's held-out logits.
+    """Fit a model: the linear part on names, the trees on numbers; on top of another model a forest, too.
 
     Args:
         found: annotated programs, of two activities at least.
@@ -131,6 +132,7 @@ def fit(found: Sequence[Example], fitted_on: str, base: SketchModel | None = Non
         trees,
         LEAST,
         base,
+        forest=_grown(rows, seed) if base else (),
     )
 
 
@@ -187,12 +189,22 @@ def _boosted(rows: _Rows, seed: int) -> tuple[float, tuple[Tree, ...]]:
     return round(float(np.log(share / (1 - share))), _DIGITS), tuple(trees)
 
 
-def _tree(tree: Any, rate: float) -> Tree:
+def _grown(rows: _Rows, seed: int) -> tuple[Tree, ...]:
+    """Trees of a forest; their leaves have probabilities."""
+    from sklearn.ensemble import ExtraTreesClassifier
+
+    random = derive(seed, "sketch forest") % 2**32
+    fitted = ExtraTreesClassifier(**_FOREST, random_state=random).fit(rows.numbers, rows.answers)
+    kept = fitted.classes_.tolist().index(True)
+    return tuple(_tree(each.tree_, 1.0, kept) for each in fitted.estimators_)
+
+
+def _tree(tree: Any, rate: float, output: int = 0) -> Tree:
     leaf = tree.children_left < 0
     return Tree(
         tuple(-1 if end else int(number) for end, number in zip(leaf, tree.feature, strict=True)),
         tuple(0.0 if end else round(float(value), 6) for end, value in zip(leaf, tree.threshold, strict=True)),
         tuple(map(int, tree.children_left)),
         tuple(map(int, tree.children_right)),
-        tuple((tree.value[:, 0, 0] * rate).round(_DIGITS).tolist()),
+        tuple((tree.value[:, 0, output] * rate).round(_DIGITS).tolist()),
     )

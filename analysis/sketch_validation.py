@@ -64,11 +64,13 @@ WAYS: dict[str, Learned] = {
     "base": _by_base,
     MAJORITY: _majority(0),
     "majority of each instruction": _majority(1),
-    "linear": _model(lambda model: replace(model, trees=())),
-    "trees": _model(lambda model: replace(model, linear=False)),
-    "linear and trees": _model(lambda model: model),
+    "linear": _model(lambda model: replace(model, trees=(), forest=())),
+    "boosted trees": _model(lambda model: replace(model, linear=False, forest=())),
+    "linear and boosted trees": _model(lambda model: replace(model, forest=())),
+    "all parts": _model(lambda model: model),
 }
-"""`repairs` and `base` learn nothing from the folds: the former infers sketches, the latter is another's model."""
+"""`repairs` and `base` learn nothing from the folds: the former infers sketches, the latter is another's model. A model
+that builds on no other has no forest, so that all its parts are two."""
 
 
 def cross_validate(

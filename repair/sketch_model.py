@@ -1,8 +1,8 @@
-"""Learned sketches: a linear model and boosted trees, stored as JSON and evaluated without a library.
+"""Learned sketches: a linear model and trees, stored as JSON and evaluated without a library.
 
 The linear model sees the names of a step; the trees see its numbers and, for some names, the share of steps kept. The
-probability is the mean of both. A model fitted on few annotations builds on another (`base`), whose logit and shares it
-sees, too.
+probability is the mean of theirs. A model fitted on few annotations builds on another (`base`), whose logit and shares
+it sees, too, and has a forest besides the boosted trees: the trees of a forest err each in its own way.
 """
 
 from __future__ import annotations
@@ -67,6 +67,7 @@ class SketchModel:
         least: probability from which a step is kept.
         base: the model that this one builds on.
         linear: whether the linear model counts; without it the trees decide alone.
+        forest: trees of probabilities, of which the mean counts as much as the other two parts.
     """
 
     fitted_on: Mapping[str, Any]
@@ -80,6 +81,7 @@ class SketchModel:
     least: float
     base: SketchModel | None = None
     linear: bool = True
+    forest: tuple[Tree, ...] = ()
 
     def probability(self, step: StepFeatures) -> float:
         """The probability that people keep a step."""
@@ -88,8 +90,10 @@ class SketchModel:
         values = self.values(step, below)
         row = [values[name] for name in self.numbers]
         boosted = self.start + sum(tree.score(row) for tree in self.trees)
-        logits = [linear] * self.linear + [boosted] * bool(self.trees)
-        return sum(map(_logistic, logits)) / len(logits)
+        found = [_logistic(each) for each in [linear] * self.linear + [boosted] * bool(self.trees)]
+        if self.forest:
+            found.append(sum(tree.score(row) for tree in self.forest) / len(self.forest))
+        return sum(found) / len(found)
 
     def values(self, step: StepFeatures, below: float) -> dict[str, float]:
         """The numbers that the trees may see of a step; `below`: the base's logit."""
@@ -124,6 +128,7 @@ class SketchModel:
             "numbers": list(self.numbers),
             "start": self.start,
             "trees": [tree._asdict() for tree in self.trees],
+            **({"forest": [tree._asdict() for tree in self.forest]} if self.forest else {}),
         }
 
 
@@ -198,13 +203,14 @@ def load_model(path: Path) -> SketchModel:
             raise ValueError(f"form {data['form']}")
         numbers = tuple(map(str, data["numbers"]))
         trees = tuple(_tree(each, len(numbers)) for each in data["trees"])
+        forest = tuple(_tree(each, len(numbers)) for each in data.get("forest", ()))
         weights = {str(name): float(weight) for name, weight in data["weights"].items()}
         start, bias, base_weight = float(data["start"]), float(data["bias"]), float(data["base_weight"])
         counts = {str(name): (int(pair[0]), int(pair[1])) for name, pair in data["counts"].items()}
         base = shipped() if data["base"] else None
         return SketchModel(
             data["fitted_on"], bias, weights, base_weight, counts, _known(numbers, base), start, trees,
-            float(data["least"]), base,
+            float(data["least"]), base, forest=forest,
         )  # fmt: skip
     except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         message = f"not a model of sketches: {type(error).__name__} {error}"

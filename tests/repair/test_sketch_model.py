@@ -92,6 +92,20 @@ def test_a_model_on_top_of_another_sees_its_logit(fitted):
     assert above.keep(examples(1)[0].steps) == examples(1)[0].answer
 
 
+def test_a_model_on_top_of_another_has_a_forest_whose_probabilities_count(fitted, tmp_path):
+    above = learning.fit(examples(), "test", sketch_model.shipped())
+    assert above.forest and not fitted.forest
+    path = tmp_path / "above.json"
+    path.write_text(json.dumps(above.to_json()))
+    read = sketch_model.load_model(path)
+    for step in (step for one in examples(4) for step in one.steps):
+        alone = replace(above, linear=False, trees=())
+        others = [replace(above, trees=(), forest=()), replace(above, linear=False, forest=())]
+        mean = sum(part.probability(step) for part in (alone, *others)) / 3
+        assert 0 <= alone.probability(step) <= 1 and above.probability(step) == pytest.approx(mean)
+        assert read.probability(step) == above.probability(step)
+
+
 @pytest.mark.parametrize(
     "fault",
     [
@@ -100,6 +114,7 @@ def test_a_model_on_top_of_another_sees_its_logit(fitted):
         {"trees": [{"number": [0, -1, -1], "threshold": [0, 0, 0], "left": [0, 1, 2], "right": [2, 1, 2],
                     "value": [0, 0, 0]}]},
         {"trees": [{"number": [0], "threshold": [0], "left": [1], "right": [2], "value": [0]}]},
+        {"forest": [{"number": [0], "threshold": [0], "left": [1], "right": [2], "value": [0]}]},
         {"weights": []},
     ],
 )  # fmt: skip
@@ -124,7 +139,7 @@ def test_whole_activities_are_held_out():
 def test_cross_validation_reports_every_way_with_its_lead():
     ways = validation.cross_validate(examples(), folds=3)
     assert set(ways) == set(validation.WAYS) - {"base"}
-    assert ways["linear and trees"]["f1"] > 0.7 > 0.2 > ways["repairs"]["f1"]
+    assert ways["all parts"]["f1"] > 0.7 > 0.2 > ways["repairs"]["f1"]
     assert ways[validation.MAJORITY]["lead"] == 0
     assert all(one["lead_low"] <= one["lead"] + 1e-9 <= one["lead_high"] + 2e-4 for one in ways.values())
 
