@@ -51,12 +51,7 @@ def _texts(row: ProgramRow) -> tuple[str, ...]:
 
 
 def places(parent: Sequence[str], child: Sequence[str]) -> list[int]:
-    """For each step of a child, which of the parent's it is; -1 for a new one.
-
-    Examples:
-        >>> places(["[Find] <cup> (1)", "[Grab] <cup> (1)"], ["[Find] <cup> (1)", "[StandUp]", "[Grab] <cup> (1)"])
-        [0, -1, 1]
-    """
+    """For each step of a child, which of the parent's it is; -1 for a new one."""
     found = [-1] * len(child)
     for first, start, size in SequenceMatcher(None, parent, child, autojunk=False).get_matching_blocks():
         for offset in range(size):
