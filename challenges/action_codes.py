@@ -23,7 +23,7 @@ from hearth.challenges.slots import Slots
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.program import MOST_OBJECTS, ObjectRef, Step
 from hearth.schemas.syntax import print_step
 from hearth.simulation.actions.legal import Legal
 
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
 WAIT = 0
 """The number of doing nothing."""
-
-MOST_OBJECTS = 2
-"""Objects that an action takes at most."""
 
 Number = Any
 """An action as a library gives it: an int, a numpy integer, or an array of three of them."""

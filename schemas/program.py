@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+MOST_OBJECTS = 2
+"""Objects that an action takes at most."""
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class ObjectRef:

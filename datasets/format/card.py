@@ -47,8 +47,8 @@ _USES = (
 )
 
 _CROISSANT = (
-    "`croissant.json` describes all tables with all nested fields; of a step's objects, `mlcroissant` 1.1 reads only"
-    " the first, `load_dataset` and DuckDB all."
+    "`croissant.json` describes all tables with all nested fields; `mlcroissant` 1.1 reads programs with all steps and"
+    " their objects, but of other lists within lists only the first entry, `load_dataset` and DuckDB all."
 )
 
 _LICENCE = ("MIT, as is every source that Hearth reads by default; records keep the licence of the source they name.",)

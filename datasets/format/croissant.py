@@ -8,6 +8,7 @@ import pyarrow as pa
 
 from hearth.datasets.format.datasheet import datasheet
 from hearth.repair.strengths import MILD
+from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
 from hearth.schemas.yaml_extent import packaged
 from hearth.storage.files import file_digest, write_json
@@ -29,9 +30,10 @@ def write_croissant(folder: Path, strength: str = MILD) -> None:
 def describe(folder: Path, strength: str) -> dict[str, Any]:
     """The description as JSON-LD: every Parquet file with its hash, every table with its key and all its columns.
 
-    Columns within columns are sub-fields, extracted by JSONPath; of a list within a list (the objects of steps),
-    mlcroissant 1.1 reads the first entry only. References name the files and the column that contain the values, since
-    mlcroissant cannot read a table that refers to a field of itself, or to one of a table that it has read before.
+    Columns within columns are sub-fields, extracted by JSONPath. Of a list within a list mlcroissant 1.1 reads one
+    entry only, so the objects of a step are a field for each place; of other such lists it reads the first. References
+    name the files and the column that contain the values, since mlcroissant cannot read a table that refers to a field
+    of itself, or to one of a table that it has read before.
     """
     sheet = datasheet(folder, strength)
     return {
@@ -90,22 +92,36 @@ def _field(table: str, column: pa.Field, path: str) -> dict[str, Any]:
     """A column, or a column within one: the names on the way to it are joined by points, lists marked by `[*]`."""
     listed = pa.types.is_list(column.type)
     kind = column.type.value_type if listed else column.type
-    found: dict[str, Any] = {
-        "@type": "cr:Field",
-        "@id": f"{table}/{path.replace('[*]', '').replace('.', '/')}",
-        "name": column.name,
-        "description": comment_of(column),
-        **({"repeated": True} if listed else {}),
-    }
+    found = _head(table, path, column.name, comment_of(column), listed)
     if pa.types.is_struct(kind):
+        if listed and path.endswith("[*].objects"):
+            return {**found, "subField": [_place(table, kind, f"{path}[{place}]") for place in range(MOST_OBJECTS)]}
         inner = f"{path}[*]" if listed else path
-        return {**found, "subField": [_field(table, child, f"{inner}.{child.name}") for child in kind]}
+        return {**found, "subField": _within(table, kind, inner)}
     top, _, rest = path.partition(".")
     transform = {"transform": {"jsonPath": rest}} if rest else {}
     source = {**_column(table, top.removesuffix("[*]")), **transform}
     other = next((place for of, name, *place in REFERENCES if (of, name) == (table, path)), None)
     references = {"references": _column(*other)} if other else {}
     return {**found, "dataType": _kind(kind), "source": source, **references}
+
+
+def _within(table: str, kind: pa.StructType, path: str) -> list[dict[str, Any]]:
+    return [_field(table, child, f"{path}.{child.name}") for child in kind]
+
+
+def _place(table: str, kind: pa.StructType, path: str) -> dict[str, Any]:
+    """The objects that the steps of a list have in one place; empty where a step has fewer."""
+    place = path[path.rindex("[") + 1 : -1]
+    meaning = f"Of each entry, the object in place {place}, from 0; empty where there are fewer."
+    return {**_head(table, path, place, meaning, True), "subField": _within(table, kind, path)}
+
+
+def _head(table: str, path: str, name: str, meaning: str, listed: bool) -> dict[str, Any]:
+    """What every field has; `steps[*].objects[0].name` is `programs/steps/objects/0/name`."""
+    words = path.replace("[*]", "").replace("[", ".").replace("]", "").split(".")
+    head = {"@type": "cr:Field", "@id": "/".join([table, *words]), "name": name, "description": meaning}
+    return {**head, "repeated": True} if listed else head
 
 
 def _column(table: str, column: str) -> dict[str, Any]:

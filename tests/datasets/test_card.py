@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ import yaml
 import hearth
 from hearth.pipelines.engine.runner import run_stage
 from hearth.pipelines.engine.stages import stage
+from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of, nested
 from hearth.storage.files import file_digest
 from hearth.storage.partitions import read_rows
@@ -103,9 +105,14 @@ def test_croissant_describes_every_column_within_columns_keys_and_references(fol
             for column in schema
             for path, at in nested(column)
         }
-        assert {name: field["description"] for name, field in fields.items()} == {
+        # Objects within a list are a field for each place.
+        places = {name: field for name, field in fields.items() if re.search(r"/objects/[01](/|$)", name)}
+        columns = {re.sub(r"/objects/[01]/", "/objects/", name): field for name, field in fields.items()}
+        columns = {name: field for name, field in columns.items() if name not in places}
+        assert {name: field["description"] for name, field in columns.items()} == {
             name: comment_of(at) for name, at in every.items()
         }
+        assert all(name.replace("/0", "/1", 1) in places for name in places)
         assert all(("dataType" in field) != ("subField" in field) for field in fields.values())
         keys = {each["@id"] for each in sets[table]["key"]}
         assert keys <= set(fields) and keys == {f"{table}/{column}" for column in KEYS[table] if column != "keep"}
@@ -129,11 +136,11 @@ def test_mlcroissant_validates_it_and_reads_programs_with_their_steps(parted):
         assert [step["programs/steps/action"].decode() for step in row["programs/steps"]] == [
             step["action"] for step in steps
         ]
-        # As the card says: the first object of each step only.
-        first = [each["programs/steps/objects/name"] for each in row["programs/steps/objects"]]
-        assert [name and name.decode() for name in first] == [
-            step["objects"][0]["name"] if step["objects"] else None for step in steps
-        ]
+        for place in range(MOST_OBJECTS):
+            at = f"programs/steps/objects/{place}"
+            assert [(each[f"{at}/name"] or b"").decode() for each in row[at]] == [
+                "".join(ref["name"] for ref in step["objects"][place : place + 1]) for step in steps
+            ]
     for table in [name for name in TABLES if name != "programs"]:  # it reads nothing a second time
         assert [(sum(1 for _ in dataset.records(table)),)] == ds.rows(f"SELECT count(*) FROM {table}")[1], table
 
