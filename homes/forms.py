@@ -40,6 +40,19 @@ def form(class_name: str, knowledge: Knowledge) -> Form | None:
     return found if all(found.size) else replace(found, size=known.size)
 
 
+@lru_cache(maxsize=4096)
+def scaled(class_name: str, size: tuple[float | None, ...], knowledge: Knowledge) -> Form | None:
+    """A class's shape where a plan gives a size of its own; None in it, or 0, stands for the usual extent."""
+    known = form(class_name, knowledge)
+    if known is None:
+        return None
+    width, height, depth = (own or usual for own, usual in zip(size, known.size, strict=True))
+    # A shelf in a bookcase twice as high hangs twice as high.
+    scale = height / known.size[1]
+    levels = tuple(round(level * scale, 4) for level in known.levels)
+    return replace(known, size=(width, height, depth), levels=levels)
+
+
 @lru_cache(maxsize=1)
 def _table() -> dict[str, Form]:
     text = (files("hearth.data_raw") / "forms.csv").read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from hearth.schemas.graph import Box
 
 DIRECTIONS: dict[str, float] = {"north": 0.0, "east": 90.0, "south": 180.0, "west": 270.0}
+_FACING = {degrees: name for name, degrees in DIRECTIONS.items()}
 OPPOSITE_WALL = {"north": "south", "south": "north", "east": "west", "west": "east"}
 EPSILON = 1e-6
 
@@ -91,7 +92,7 @@ def wall_of(yaw: float) -> str:
 
 def front_of(yaw: float) -> str:
     """The direction a thing of this yaw faces."""
-    return next(name for name, degrees in DIRECTIONS.items() if degrees == yaw % 360)
+    return _FACING[yaw % 360]
 
 
 def footprint(box: Box) -> Rect:

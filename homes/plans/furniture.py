@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from hearth.homes.forms import Form, form
+from hearth.homes.forms import Form, scaled
 from hearth.homes.geometry import (
     DIRECTIONS,
     OPPOSITE_WALL,
@@ -90,14 +90,10 @@ def furnish(room: Room, height: float, knowledge: Knowledge, faults: Faults) -> 
 
 def shape(piece: Piece, knowledge: Knowledge) -> Form:
     """A piece's form with the plan's own sizes."""
-    known = form(piece.class_name, knowledge)
-    if known is None:
+    found = scaled(piece.class_name, piece.size, knowledge)
+    if found is None:
         raise NoPlaceError(f"nobody knows the size of `{piece.class_name}`")
-    width, height, depth = (own or usual for own, usual in zip(piece.size, known.size, strict=True))
-    # A shelf in a bookcase twice as high hangs twice as high.
-    scale = height / known.size[1]
-    levels = tuple(round(level * scale, 4) for level in known.levels)
-    return Form((width, height, depth), known.mount, known.up, levels, known.shelves, known.front)
+    return found
 
 
 def _reference(piece: Piece) -> str | None:

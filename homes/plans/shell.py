@@ -151,7 +151,9 @@ def span(rect: Rect, wall: str) -> tuple[float, float]:
 
 
 def _ordered(x0: float, z0: float, x1: float, z1: float) -> Rect:
-    return Rect(min(x0, x1), min(z0, z1), max(x0, x1), max(z0, z1))
+    if x0 > x1:
+        x0, x1 = x1, x0
+    return Rect(x0, z0, x1, z1) if z0 <= z1 else Rect(x0, z1, x1, z0)
 
 
 def _fit(start: float, end: float, at: float | None, width: float) -> tuple[float, float]:
