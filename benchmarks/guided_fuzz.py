@@ -13,7 +13,6 @@ the status is 1 if there are any. `--replay` runs a file once, with its tracebac
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
 import re
 import subprocess
@@ -24,6 +23,11 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
+
+try:
+    from benchmarks.fuzzed_rooms import ROOMS
+except ImportError:
+    from fuzzed_rooms import ROOMS
 
 ROOT = Path(__file__).resolve().parents[1]
 LIMITS = ("-timeout=20", "-rss_limit_mb=2048", "-max_len=20000")
@@ -88,13 +92,15 @@ def _readers() -> dict[str, tuple[str, bytes]]:
 
 def targets() -> list[str]:
     """The names of all targets."""
-    return [*_readers(), *COMMANDS, "query", "goal", "formula"]
+    return [*_readers(), *COMMANDS, *ROOMS, "query", "goal", "formula"]
 
 
 def examples(name: str) -> list[bytes]:
     """What the mutations of a target begin with."""
     if name in COMMANDS:
         return [COMMANDS[name].example]
+    if name in ROOMS:
+        return [ROOMS[name].example()]
     if name == "query":
         return [b"SELECT count(*) FROM programs", b"EXPLAIN ANALYZE FROM steps", b"WITH x AS (SELECT 1) FROM x"]
     if name == "goal":
@@ -108,6 +114,8 @@ def target(name: str, scratch: Path) -> Callable[[bytes], None]:
     """A function of one input that raises at a finding."""
     if name in COMMANDS:
         return _command(COMMANDS[name], scratch)
+    if name in ROOMS:
+        return _refusing(ROOMS[name].reader(scratch))
     if name == "query":
         return _query(scratch)
     if name == "goal":
@@ -177,14 +185,22 @@ def _query(scratch: Path) -> Callable[[bytes], None]:
     return one
 
 
-def _text(parse: Callable[[str], object]) -> Callable[[bytes], None]:
+def _refusing(read: Callable[[bytes], object]) -> Callable[[bytes], None]:
+    """Reads, and may refuse as Hearth does."""
     from hearth.schemas.diagnostics import HearthError
 
     def one(data: bytes) -> None:
-        with contextlib.suppress(HearthError):
-            parse(data.decode("utf-8", "replace"))
+        try:
+            read(data)
+        except HearthError as error:
+            if any(fault.code == "INTERNAL_ERROR" for fault in error.diagnostics):
+                raise
 
     return one
+
+
+def _text(parse: Callable[[str], object]) -> Callable[[bytes], None]:
+    return _refusing(lambda data: parse(data.decode("utf-8", "replace")))
 
 
 def _goal(text: str) -> object:

@@ -131,6 +131,10 @@ def _damaged(path: Path, message: str) -> HearthError:
     return HearthError.of(Code.DAMAGED_FILE, message, file=str(path), suggestion=_AGAIN)
 
 
+MISFITS = (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError, AssertionError)
+"""What models and libraries raise when settings, content and weights do not fit each other."""
+
+
 def misfit(folder: Path, error: Exception) -> HearthError:
     """The error of a checkpoint whose settings, content and weights do not fit each other or this version's model."""
     return _damaged(folder, f"it does not fit its model: {type(error).__name__}: {str(error)[:200]}")

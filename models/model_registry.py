@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from hearth.models.checkpoint import load, misfit
+from hearth.models.checkpoint import MISFITS, load, misfit
 from hearth.models.protocols import Model, Trained
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -230,5 +230,5 @@ def restore_any(model: str | Path) -> tuple[str, Any]:
         raise HearthError.of(Code.UNSUPPORTED_FILE, message, file=str(folder), suggestion="install a newer Hearth")
     try:
         return checkpoint.model, _class(entry).restored(checkpoint)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError) as error:
+    except MISFITS as error:
         raise misfit(folder, error) from error

@@ -99,23 +99,26 @@ def step(world: World, instructions: Mapping[int, Step | None], rules: Rules = D
 def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Failure:
     """One instruction of one agent."""
     number, name, objects = instruction.agent, instruction.action, instruction.objects
-    if not 0 <= number < len(world.agents):
+    agents = world.agents
+    if not 0 <= number < len(agents):
         return _refused(world, instruction)
-    placed_there = world.agents[number].pose is not None
+    placed_there = agents[number].pose is not None
     action = (EVERY if placed_there else ACTIONS).get(name)
     if action is None:
         return _refused(world, instruction)
-    home = world.home
-    index, arity = home.index, home.knowledge.arity[name]
-    if len(objects) != arity:
+    home, count = world.home, len(objects)
+    arity = home.knowledge.arity[name]
+    if count != arity:
         return _miscounted(instruction, arity)
     try:
-        o = index[objects[0].node] if objects else -1  # type: ignore[index]
-        s = index[objects[1].node] if len(objects) > 1 else -1  # type: ignore[index]
+        o = home.index[objects[0].node] if count else -1  # type: ignore[index]
+        s = home.index[objects[1].node] if count > 1 else -1  # type: ignore[index]
     except KeyError:
         return _unbound(world, instruction)
     result = action.rule(world, number, o, s, rules)
-    if isinstance(result, World) and (placed_there or instruction.modifiers):
+    if type(result) is World:
+        if not placed_there and not instruction.modifiers:
+            return result
         result = _in_place(world, result, instruction, o, s)
     if isinstance(result, Failure):
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.

@@ -165,7 +165,7 @@ def restored(model: str) -> TrainedGoalProposals:
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; DAMAGED_FILE.
     """
-    from hearth.models.checkpoint import load, misfit
+    from hearth.models.checkpoint import MISFITS, load, misfit
     from hearth.models.devices import device
     from hearth.models.model_registry import TRAINED, trained_names
 
@@ -179,5 +179,5 @@ def restored(model: str) -> TrainedGoalProposals:
         if checkpoint.model != NAME:
             raise ValueError(f"a checkpoint of `{checkpoint.model}`")
         return GoalProposals.restored(checkpoint)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError) as error:
+    except MISFITS as error:
         raise misfit(folder, error) from error

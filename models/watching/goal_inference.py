@@ -197,7 +197,7 @@ def restored(model: str) -> TrainedGoalInference:
     Raises:
         HearthError: MISSING_FILE, if there is none or the extra is not installed; DAMAGED_FILE.
     """
-    from hearth.models.checkpoint import load, misfit
+    from hearth.models.checkpoint import MISFITS, load, misfit
     from hearth.models.devices import device
     from hearth.models.model_registry import TRAINED, trained_names
 
@@ -208,5 +208,5 @@ def restored(model: str) -> TrainedGoalInference:
         if checkpoint.model != NAME:
             raise ValueError(f"a checkpoint of `{checkpoint.model}`")
         return GoalInference.restored(checkpoint)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError, RuntimeError) as error:
+    except MISFITS as error:
         raise misfit(folder, error) from error

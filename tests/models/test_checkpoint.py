@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import torch
 
 from hearth.models.checkpoint import CARD, NAME, WEIGHTS, Checkpoint, load, save
 from hearth.models.filled import filled
-from hearth.models.model_registry import restore
+from hearth.models.model_registry import TRAINED, restore, restore_any
 from hearth.models.text.step_vocabulary import StepVocabulary
 from hearth.models.text.text_models import TextModel
 from hearth.schemas.diagnostics import HearthError
@@ -132,3 +133,14 @@ def test_a_vocabulary_whose_parts_do_not_fit(name, value):
     assert StepVocabulary.read(known).document()
     with pytest.raises(ValueError, match=f"{name} does not fit"):
         StepVocabulary.read({**known, name: value})
+
+
+def test_heads_that_do_not_divide_the_width(tmp_path):
+    """Libraries assert some settings: that is a damaged checkpoint, not a fault of ours."""
+    folder = shutil.copytree(TRAINED / "goal-inference", tmp_path / "copy")
+    document = json.loads((folder / "model.json").read_text("utf-8"))
+    document["settings"]["heads"] = document["settings"]["width"] - 1
+    (folder / "model.json").write_text(json.dumps(document), "utf-8")
+    with pytest.raises(HearthError) as caught:
+        restore_any(folder)
+    assert caught.value.diagnostics[0].code == Code.DAMAGED_FILE and "num_heads" in str(caught.value)
