@@ -159,7 +159,7 @@ def table(
     as_json: bool = False,
 ) -> None:
     """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.3 of clips.
+    4.3 and 4.6 of clips.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
@@ -170,6 +170,7 @@ def table(
       python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
       python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
       python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
+      python cli.py model table 4.6 data_out/clips --model clips-seen
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
@@ -179,6 +180,13 @@ def table(
         from hearth.models.films import clip_tables
 
         _clips(clip_tables.clip_table(data, models or (), seed), clip_tables.COLUMNS, as_json)
+        return
+    if number == "4.6":
+        from hearth.models.films import film_tables
+
+        with bar("films") as seen:
+            films = film_tables.film_table(data, models or (), seed, seen=seen)
+        _films(films, film_tables.COLUMNS, as_json)
         return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
@@ -214,6 +222,16 @@ def _clips(rows: Sequence[Any], columns: Sequence[str], as_json: bool) -> None:
     shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in columns),
               row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
     output.table(["method", "of", "homes", *columns, "error", "clips", "seeds"], shown)
+
+
+def _films(rows: Sequence[Any], columns: Sequence[str], as_json: bool) -> None:
+    """Table 4.6."""
+    if as_json:
+        output.emit(rows)
+        return
+    shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in columns), row.films,
+              row.seeds or None] for row in rows]  # fmt: skip
+    output.table(["method", "of", "homes", *columns, "films", "seeds"], shown)
 
 
 def _score(value: Any) -> str:

@@ -76,6 +76,12 @@ MODELS: dict[str, Entry] = {
     "clips": Entry(
         "films.clip_model:ClipModel", "film", "Names the instruction of a two-second clip by its masks.", "thesis 4.3.3"
     ),
+    "clips-seen": Entry(
+        "films.seen_model:SeenModel",
+        "film",
+        "Names it by what each class of the masks does beside the person; it points at the objects.",
+        "ours",
+    ),
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",
         "film",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,13 +61,13 @@ class Clips:
 
     Attributes:
         executions: of each film.
-        films: (T, H, W) uint16 class numbers of each film's frames.
+        films: (T, H, W) uint16 class numbers of each film's frames; those of a dataset are read when they are asked for.
         clips: in the order of films and frames.
         frames: of a clip.
     """
 
     executions: tuple[str, ...]
-    films: tuple[NDArray[np.uint16], ...]
+    films: Sequence[NDArray[np.uint16]]
     clips: tuple[Clip, ...]
     frames: int
 
@@ -74,7 +76,7 @@ class Clips:
         """The clips of a part; of some films alone if `most` is given.
 
         Raises:
-            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, if a film's arrays are not what rows say.
+            HearthError: UNKNOWN_ID, if there are none; DAMAGED_FILE, when a film's arrays are not what rows say.
         """
         columns = "execution_id, file, first, frames, action, objects, kind, tick"
         query = f"SELECT {columns} FROM clips WHERE part = $part ORDER BY execution_id, number"
@@ -84,18 +86,51 @@ class Clips:
             raise HearthError.of(Code.UNKNOWN_ID, message, suggestion="`make clips` makes some")
         files = list(dict.fromkeys((row[0], row[1]) for row in rows))[: most or None]
         numbers = {execution: number for number, (execution, _) in enumerate(files)}
-        films = tuple(_film(dataset, file) for _, file in files)
-        found = []
-        for execution, file, first, frames, action, objects, kind, tick in rows:
+        found, least = [], [0] * len(files)
+        for execution, _, first, frames, action, objects, kind, tick in rows:
             if execution in numbers:
                 number = numbers[execution]
-                if not 0 <= first <= len(films[number]) - frames:
-                    raise _damaged(file, "a clip is outside of its film")
+                least[number] = max(least[number], first + frames if first >= 0 else sys.maxsize)
                 found.append(Clip(number, first, Instruction(action, tuple(objects)), kind, tick))
+        films = Films(dataset, [(file, longest) for (_, file), longest in zip(files, least, strict=True)])
         return cls(tuple(execution for execution, _ in files), films, tuple(found), rows[0][3])
 
     def __len__(self) -> int:
         return len(self.clips)
+
+    def by_film(self) -> Iterator[Clips]:
+        """The clips of each film, with its masks alone."""
+        for film, group in groupby(self.clips, key=lambda clip: clip.film):
+            clips = tuple(clip._replace(film=0) for clip in group)
+            yield Clips((self.executions[film],), [self.films[film]], clips, self.frames)
+
+
+class Films(Sequence[NDArray[np.uint16]]):
+    """The masks of films, read when they are asked for: all of them would need gigabytes.
+
+    Args:
+        dataset: with clips.
+        files: of each film, and the frames that it has at least.
+    """
+
+    def __init__(self, dataset: Dataset, files: Sequence[tuple[str, int]]) -> None:
+        self.dataset, self.files = dataset, files
+
+    def __len__(self) -> int:
+        return len(self.files)
+
+    @overload
+    def __getitem__(self, number: int) -> NDArray[np.uint16]: ...
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[NDArray[np.uint16]]: ...
+    def __getitem__(self, number: int | slice) -> NDArray[np.uint16] | Sequence[NDArray[np.uint16]]:
+        if isinstance(number, slice):
+            return Films(self.dataset, self.files[number])
+        file, least = self.files[number]
+        masks = _film(self.dataset, file)
+        if len(masks) < least:
+            raise _damaged(file, "a clip is outside of its film")
+        return masks
 
 
 def _film(dataset: Dataset, file: str) -> NDArray[np.uint16]:
@@ -203,8 +238,25 @@ class Labels:
         return {name: number for number, name in enumerate(self.objects, 1)}
 
 
-def frames_of(clips: Clips, which: Sequence[int], labels: Labels, taken: Iterable[int]) -> NDArray[np.uint8]:
+WIDTH = 64
+"""Of the pictures that a network of whole frames looks at."""
+
+Pictures = Sequence[NDArray[np.uint8]]
+"""(T, H, W) palette numbers of each film's frames, `WIDTH` wide."""
+
+
+def pictures_of(clips: Clips, labels: Labels) -> Pictures:
+    """The films of clips as a network of whole frames looks at them: of larger ones some pixels are left out."""
+    return [_picture(film, labels) for film in clips.films]
+
+
+def _picture(film: NDArray[np.uint16], labels: Labels) -> NDArray[np.uint8]:
+    step = max(1, film.shape[2] // WIDTH)
+    return labels.palette[film[:, step // 2 :: step, step // 2 :: step]]
+
+
+def frames_of(clips: Clips, pictures: Pictures, which: Sequence[int], taken: Iterable[int]) -> NDArray[np.uint8]:
     """(N, K, H, W) palette numbers of some frames of some clips."""
     places = list(taken)
     chosen = [clips.clips[number] for number in which]
-    return np.stack([labels.palette[clips.films[each.film][[each.first + n for n in places]]] for each in chosen])
+    return np.stack([pictures[each.film][[each.first + n for n in places]] for each in chosen])

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clips, Instruction, Labels, frames_of
+from hearth.models.films.clip_data import Clips, Instruction, Labels, Pictures, frames_of, pictures_of
+from hearth.models.films.film_readings import Reading
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
@@ -63,13 +64,14 @@ class ClipModel(Settings):
         model = TrainedClipModel(self, labels, self.network(labels))
         wanted = np.array([labels.numbers(clip.done) for clip in learned.clips])
         weights = [torch.tensor(each, dtype=torch.float32) for each in self._weights(wanted, labels)]
+        pictures, looked_at = pictures_of(learned, labels), pictures_of(checked, labels)
 
         def batches(random: Random) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
             order = random.sample(range(len(learned)), len(learned))
             for start in range(0, len(order), self.batch):
                 which = order[start : start + self.batch]
                 taken = sorted(random.sample(range(learned.frames), RELATED))
-                masks = frames_of(learned, which, labels, taken)
+                masks = frames_of(learned, pictures, which, taken)
                 yield torch.from_numpy(masks), torch.from_numpy(wanted[which])
 
         def loss(batch: tuple[torch.Tensor, torch.Tensor]) -> torch.Tensor:
@@ -77,7 +79,8 @@ class ClipModel(Settings):
 
         def validate() -> float:
             done = [clip.done for clip in checked.clips]
-            return accuracies(done, model.named(checked, RELATIONS[:1]))["mean"]
+            best = model.scores_of(checked, looked_at, RELATIONS[:1]).argmax(1).tolist()
+            return accuracies(done, [labels.instructions[number] for number in best])["mean"]
 
         task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(labels.instructions)])
         model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
@@ -119,6 +122,10 @@ class TrainedClipModel:
 
     def scores(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> NDArray[np.float32]:
         """(N, I) logarithms of how probable each of training's instructions is in each clip, up to a constant."""
+        return self.scores_of(clips, pictures_of(clips, self.labels), relations)
+
+    def scores_of(self, clips: Clips, pictures: Pictures, relations: Iterable[Sequence[int]]) -> NDArray[np.float32]:
+        """The same by the pictures of the clips' films."""
         rows = torch.from_numpy(self.labels.rows)  # (I, 3)
         ways = list(relations)
         self.network.eval()
@@ -126,12 +133,17 @@ class TrainedClipModel:
         for start in range(0, len(clips), AT_ONCE):
             which = range(start, min(start + AT_ONCE, len(clips)))
             with torch.no_grad():
-                each = [self._parts(clips, which, taken, rows) for taken in ways]
+                each = [self._parts(frames_of(clips, pictures, which, taken), rows) for taken in ways]
             found.append(torch.stack(each).mean(0).numpy())
         return np.concatenate(found)
 
-    def _parts(self, clips: Clips, which: Sequence[int], taken: Sequence[int], rows: torch.Tensor) -> torch.Tensor:
-        heads = self.network(torch.from_numpy(frames_of(clips, which, self.labels, taken)))
+    def readings(self, clips: Clips) -> Iterator[Reading]:
+        """What the clips of each film may show, film by film: instructions of training."""
+        for part in clips.by_film():
+            yield Reading(self.labels.instructions, self.scores(part))
+
+    def _parts(self, frames: NDArray[np.uint8], rows: torch.Tensor) -> torch.Tensor:
+        heads = self.network(torch.from_numpy(frames))
         return torch.stack([scores[:, rows[:, place]] for place, scores in enumerate(heads)]).sum(0)
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_model import TrainedClipModel
+from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.model_registry import restore
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -60,7 +61,7 @@ def clip_table(dataset: Dataset, models: Sequence[Path | str], seed: int = 0) ->
 
     Args:
         dataset: with clips.
-        models: checkpoints of `clips`; several are its seeds.
+        models: checkpoints of classifiers of clips; several of one model are its seeds.
         seed: of the random yardstick.
 
     Raises:
@@ -74,15 +75,23 @@ def clip_table(dataset: Dataset, models: Sequence[Path | str], seed: int = 0) ->
             for homes, found in THESIS.items()]  # fmt: skip
     rows += _rows("random retrieval", "yardstick", test, [[draw.choice(done) for _ in test.clips]], 0)
     rows += _rows("commonest", "yardstick", test, [[commonest] * len(test)], 0)
-    named = [_classifier(model).named(test) for model in models]
-    return [*rows, *_rows("clips", "ours", test, named, len(named))] if named else rows
+    named: dict[str, list[list[Instruction]]] = {}
+    for model in models:
+        name, trained = classifier(model)
+        named.setdefault(name, []).append(trained.named(test))
+    return [*rows, *(row for name, each in named.items() for row in _rows(name, "ours", test, each, len(each)))]
 
 
-def _classifier(model: Path | str) -> TrainedClipModel:
-    found = restore(model)[1]
-    if not isinstance(found, TrainedClipModel):
+def classifier(model: Path | str) -> tuple[str, TrainedClipModel | TrainedSeenModel]:
+    """A trained classifier of clips, and its name.
+
+    Raises:
+        HearthError: errors of `restore`; BAD_ARGUMENT, for a model of another kind.
+    """
+    name, found = restore(model)
+    if not isinstance(found, TrainedClipModel | TrainedSeenModel):
         raise HearthError.of(Code.BAD_ARGUMENT, f"`{model}` is not a classifier of clips")
-    return found
+    return name, found
 
 
 def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instruction]], seeds: int) -> Iterator[ClipRow]:

@@ -6,8 +6,9 @@ followed runs, because each step was done in the world that the steps before it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +25,14 @@ Scores = NDArray[np.float32]
 """(N, I) logarithms of how probable each of I instructions is in each of a film's N clips, in order."""
 
 CHANGE = 4.0
-"""What it costs, as a logarithm, to take a clip for another instruction than the clip before."""
+"""What it costs, as a logarithm, to take a clip for another instruction than the clip before, where the order of steps
+is not known."""
 
 UNEXPLAINED = 8.0
 """What it costs to leave a clip unexplained, below the best that can be said of it."""
+
+Moves = NDArray[np.float32]
+"""(I + 1, I) what it costs to go from an instruction, the last row from none, to another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +42,17 @@ class Filter:
     Attributes:
         beam: programs at a time.
         options: instructions that each of them may go on with in a clip.
-        change: see `CHANGE`.
     """
 
-    beam: int = 8
-    options: int = 8
-    change: float = CHANGE
+    beam: int = 16
+    options: int = 12
+
+
+def even_moves(count: int, change: float = CHANGE) -> Moves:
+    """The same cost for every change of `count` instructions; the first is free."""
+    moves = np.full((count + 1, count), change, np.float32)
+    moves[-1] = 0
+    return moves
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,35 +64,44 @@ class _Followed:
     """Number of the instruction that is being done; -1 before the first."""
 
 
-def described(scores: Scores, instructions: Sequence[Instruction], change: float = CHANGE) -> Steps:
+def alone(scores: Scores, instructions: Sequence[Instruction]) -> Steps:
+    """What each clip is taken for by itself, each once for the clips in a row that are taken for it."""
+    return _merged(scores.argmax(1).tolist(), instructions) if len(scores) else ()
+
+
+def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves | None = None) -> Steps:
     """The most probable sequence of instructions, each once for the clips in a row that it explains; no home is needed.
 
     Args:
         scores: of the clips.
         instructions: by number.
-        change: see `CHANGE`.
+        moves: what changes cost; by default all the same.
     """
     if not len(scores):
         return ()
-    logs = _normalised(scores)
-    best, back = logs[0], []
+    logs, costs = _normalised(scores), even_moves(len(instructions)) if moves is None else moves
+    change = costs[:-1].copy()
+    np.fill_diagonal(change, 0)
+    best, back = logs[0] - costs[-1], []
     for row in logs[1:]:
-        before = int(best.argmax())
-        stays = best >= best[before] - change
-        back.append(np.where(stays, np.arange(len(best)), before))
-        best = row + np.where(stays, best, best[before] - change)
+        found = best[:, None] - change  # (I, I) from, to
+        back.append(found.argmax(0))
+        best = row + found.max(0)
     path = [int(best.argmax())]
-    for row in reversed(back):
-        path.append(int(row[path[-1]]))
-    path.reverse()
-    kept = [number for place, number in enumerate(path) if place == 0 or number != path[place - 1]]
-    return tuple(_step(instructions[number]) for number in kept)
+    for before in reversed(back):
+        path.append(int(before[path[-1]]))
+    return _merged(path[::-1], instructions)
+
+
+def _merged(path: Sequence[int], instructions: Sequence[Instruction]) -> Steps:
+    return tuple(_step(instructions[number]) for number, _ in groupby(path))
 
 
 def followed(
     scores: Scores,
     instructions: Sequence[Instruction],
     world: World,
+    moves: Moves | None = None,
     how: Filter = Filter(),
     rules: Rules = DEFAULT,
 ) -> Steps:
@@ -95,40 +114,50 @@ def followed(
         scores: of the clips.
         instructions: by number.
         world: at the film's start.
+        moves: what changes cost; by default all the same.
         how: the search.
         rules: of the engine.
     """
+    search = _Search(instructions, even_moves(len(instructions)) if moves is None else moves, how, rules)
     beam = [_Followed(0.0, world, (), -1)]
     for row in _normalised(scores):
-        options = np.argsort(-row, kind="stable")[: how.options].tolist()
-        found = [each for one in beam for each in _going_on(one, row, options, instructions, how, rules)]
         best: dict[Steps, _Followed] = {}
-        for each in found:
-            if each.steps not in best or best[each.steps].score < each.score:
-                best[each.steps] = each
+        for one in beam:
+            for each in search.going_on(one, row):
+                if each.steps not in best or best[each.steps].score < each.score:
+                    best[each.steps] = each
         beam = sorted(best.values(), key=lambda each: -each.score)[: how.beam]
     return beam[0].steps
 
 
-def _going_on(
-    one: _Followed, row: Scores, options: Sequence[int], instructions: Sequence[Instruction], how: Filter, rules: Rules
-) -> list[_Followed]:
-    """The ways in which a program explains one more clip."""
-    unexplained = float(row.max()) - UNEXPLAINED
-    staying = float(row[one.last]) if one.last >= 0 else unexplained
-    found = [_Followed(one.score + max(staying, unexplained), one.world, one.steps, one.last)]
-    for number in options:
-        if number == one.last:
-            continue
-        program = Program(steps=(_step(instructions[number]),))
-        (step,) = nearest(program, one.world).apply(program).steps
-        if any(ref.node is None for ref in step.objects):
-            continue
-        after = act(one.world, step, rules)
-        if isinstance(after, World):
-            score = one.score + float(row[number]) - how.change
-            found.append(_Followed(score, after, (*one.steps, step), number))
-    return found
+class _Search:
+    """The ways in which programs go on; what an instruction does after a program is computed once."""
+
+    def __init__(self, instructions: Sequence[Instruction], moves: Moves, how: Filter, rules: Rules) -> None:
+        self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
+        self.after: dict[tuple[Steps, int], tuple[Step, World] | None] = {}
+
+    def going_on(self, one: _Followed, row: Scores) -> Iterator[_Followed]:
+        """The ways in which a program explains one more clip."""
+        unexplained = float(row.max()) - UNEXPLAINED
+        staying = float(row[one.last]) if one.last >= 0 else unexplained
+        yield _Followed(one.score + max(staying, unexplained), one.world, one.steps, one.last)
+        worth = row - self.moves[one.last]
+        for number in np.argsort(-worth, kind="stable")[: self.how.options].tolist():
+            done = self._done(one, number) if number != one.last else None
+            if done is not None:
+                score = one.score + float(worth[number])
+                yield _Followed(score, done[1], (*one.steps, done[0]), number)
+
+    def _done(self, one: _Followed, number: int) -> tuple[Step, World] | None:
+        key = one.steps, number
+        if key not in self.after:
+            program = Program(steps=(_step(self.instructions[number]),))
+            (step,) = nearest(program, one.world).apply(program).steps
+            bound = all(ref.node is not None for ref in step.objects)
+            after = act(one.world, step, self.rules) if bound else None
+            self.after[key] = (step, after) if isinstance(after, World) else None
+        return self.after[key]
 
 
 def _step(done: Instruction) -> Step:

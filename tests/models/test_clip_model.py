@@ -10,7 +10,7 @@ import torch
 
 from hearth.models.checkpoint import load, save
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clip, Clips, Instruction, Labels, frames_of
+from hearth.models.films.clip_data import Clip, Clips, Instruction, Labels, frames_of, pictures_of
 from hearth.models.films.clip_model import RELATIONS, ClipModel, TrainedClipModel
 from hearth.models.films.clip_network import ClipNetwork, loss_of
 
@@ -43,7 +43,7 @@ def labels(clips):
 def model(clips, labels):
     torch.manual_seed(1)
     model = TrainedClipModel(settings := ClipModel(width=32, dropout=0.0), labels, settings.network(labels))
-    masks = torch.from_numpy(frames_of(clips, range(len(clips)), labels, RELATIONS[0]))
+    masks = torch.from_numpy(frames_of(clips, pictures_of(clips, labels), range(len(clips)), RELATIONS[0]))
     wanted = torch.tensor([labels.numbers(clip.done) for clip in clips.clips])
     optimiser = torch.optim.Adam(model.network.parameters(), 3e-3)
     for _ in range(40):

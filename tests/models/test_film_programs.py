@@ -7,7 +7,7 @@ import pytest
 
 import hearth
 from hearth.models.films.clip_data import Instruction
-from hearth.models.films.film_programs import Filter, described, followed
+from hearth.models.films.film_programs import Filter, alone, described, even_moves, followed
 from hearth.schemas.program import Program
 
 DONE = (
@@ -60,7 +60,7 @@ def test_what_cannot_be_done_is_not_what_is_seen(world):
 @pytest.mark.parametrize("seed", range(20))
 def test_whatever_is_seen_the_program_runs(world, seed):
     noise = np.random.default_rng(seed).normal(0, 5, (12, len(DONE))).astype(np.float32)
-    program = followed(noise, DONE, world, Filter(beam=4, change=1.0))
+    program = followed(noise, DONE, world, even_moves(len(DONE), 1.0), Filter(beam=4))
     assert hearth.run(world, Program(steps=program)).failure is None
 
 

@@ -92,14 +92,14 @@ def test_clips_are_read_as_arrays(filmed):
     import numpy as np
 
     import hearth
-    from hearth.models.films.clip_data import Clips, Labels, frames_of
+    from hearth.models.films.clip_data import Clips, Labels, frames_of, pictures_of
     from hearth.schemas.diagnostics import HearthError
 
     ds = hearth.load(filmed.out)
     part = filmed.rows("render/clips")[0]["part"]
     clips = Clips.of(ds, part)
     labels = Labels.of(clips)
-    found = frames_of(clips, range(len(clips)), labels, range(clips.frames))
+    found = frames_of(clips, pictures_of(clips, labels), range(len(clips)), range(clips.frames))
     assert found.shape == (len(clips), 9, 48, 64) and found.max() > 0
     known = dict(ds.rows("SELECT name, id FROM vocabulary WHERE kind = 'class'")[1])
     person = labels.palette[known["character"]]

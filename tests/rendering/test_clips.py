@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -80,7 +81,15 @@ def test_the_file_is_read_without_pickle_and_has_equal_bytes(film):
     assert data == clips.stored(film)
     with np.load(BytesIO(data), allow_pickle=False) as file:
         assert {name: (file[name].dtype.name, file[name].shape[1:]) for name in file} == {
-            "class_ids": ("uint16", (48, 64)),
-            "depth": ("uint16", (48, 64)),
-            "rgb": ("uint8", (48, 64, 3)),
+            "class_ids": ("uint16", (96, 128)),
+            "depth": ("uint16", (96, 128)),
+            "rgb": ("uint8", (96, 128, 3)),
         }
+
+
+def test_objects_have_the_classes_that_masks_show():
+    step = hearth.parse_program("A\nb\n\n\n[PutBack] <mug> (1) <table> (1)\n").steps[0]
+    mug, table = step.objects
+    bound = replace(step, objects=(replace(mug, node=4), replace(table, node=5)))
+    named = clips.by_class(bound, {5: "kitchen_table"})
+    assert [(ref.name, ref.node) for ref in named.objects] == [("mug", 4), ("kitchen_table", 5)]

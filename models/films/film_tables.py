@@ -1,0 +1,180 @@
+"""Table 4.6: programs from films, the thesis's figures beside ours beside yardsticks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from hearth.datasets.format.cases import start_of
+from hearth.datasets.format.codecs import bindings_of, program_of
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.datasets.verify import opened
+from hearth.models.data import AT_ONCE
+from hearth.models.evaluation import by_group
+from hearth.models.films.clip_data import Clips
+from hearth.models.films.clip_tables import HOMES, classifier
+from hearth.models.films.film_programs import alone, described, followed
+from hearth.models.films.film_readings import Reading
+from hearth.models.films.step_order import StepOrder, programs_of
+from hearth.models.interface import Steps
+from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.rng import rng
+from hearth.scoring.bootstrap import Interval
+from hearth.scoring.dataset_scores import score_steps
+from hearth.scoring.evaluate import METRICS
+from hearth.scoring.metrics.lcs import score_pairs
+from hearth.simulation.world.world import World
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+
+TABLE = "4.6"
+
+COLUMNS = ("action", "object", "step", "mean", "executable", "goal")
+
+THESIS = {
+    ("Random retrieval", "all"): (0.473, 0.079, 0.071, 0.207, 1.0),
+    ("MLE", "all"): (0.735, 0.359, 0.341, 0.478, 0.194),
+    ("PG(LCS)", "all"): (0.761, 0.383, 0.364, 0.502, 0.190),
+    ("PG(LCS+Sim)", "all"): (0.751, 0.377, 0.358, 0.495, 0.224),
+    ("PG(LCS+Sim)", "seen"): (0.851, 0.556, 0.528, 0.645, 0.246),
+    ("PG(LCS+Sim)", "unseen"): (0.680, 0.250, 0.236, 0.389, 0.209),
+}
+
+
+class FilmRow(NamedTuple):
+    """A method's scores in some homes.
+
+    Attributes:
+        method: its name.
+        of: `thesis`, `yardstick` or `ours`.
+        homes: of `clip_tables.HOMES`.
+        scores: by column; ours have intervals, for which activities are drawn with replacement.
+        films: how many; None where the thesis does not say.
+        seeds: how many trained models the scores are means of.
+    """
+
+    method: str
+    of: str
+    homes: str
+    scores: Mapping[str, Interval | float]
+    films: int | None = None
+    seeds: int = 0
+
+
+class Shown(NamedTuple):
+    """A film's execution: its world at the start, its steps by the classes of their nodes, and its activity."""
+
+    world: World
+    steps: Steps
+    activity: str
+
+
+Way = Callable[[Reading, StepOrder, World], Steps]
+
+WAYS: dict[str, Way] = {
+    "each clip alone": lambda found, order, world: alone(found.scores, found.instructions),
+    "Viterbi": lambda found, order, world: described(found.scores, found.instructions),
+    "Viterbi, order of steps": lambda found, order, world: described(
+        found.scores, found.instructions, found.moves(order)
+    ),
+    "engine": lambda found, order, world: followed(found.scores, found.instructions, world),
+    "engine, order of steps": lambda found, order, world: followed(
+        found.scores, found.instructions, world, found.moves(order)
+    ),
+}
+"""From the reading of a film to a program."""
+
+
+def film_table(
+    dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", seen: Seen = unseen
+) -> list[FilmRow]:
+    """The rows of table 4.6, over the films of a part.
+
+    Args:
+        dataset: with clips.
+        models: checkpoints of classifiers of clips; several of one model are its seeds.
+        seed: of yardsticks and intervals.
+        part: of the clips.
+        seen: reports progress: films, over all models.
+
+    Raises:
+        HearthError: errors of `restore` and of `Clips.of`; BAD_ARGUMENT, for a model of another kind.
+    """
+    learned, test = Clips.of(dataset, "train"), Clips.of(dataset, part)
+    known, films = programs_of(learned), shown_films(dataset, test.executions)
+    draw, order = rng(seed, "random films"), StepOrder.of(known)
+    rows = [FilmRow(method, "thesis", homes, dict(zip(COLUMNS, values, strict=False)))
+            for (method, homes), values in THESIS.items()]  # fmt: skip
+    retrieved = [tuple(Step(each.action, tuple(map(ObjectRef, each.objects))) for each in draw.choice(known))
+                 for _ in test.executions]  # fmt: skip
+    rows += _rows(dataset, "Random retrieval", "yardstick", test, films, [retrieved], seed)
+    answers: dict[str, list[list[Steps]]] = {}
+    for number, model in enumerate(models):
+        name, trained = classifier(model)
+        for film, found in enumerate(trained.readings(test)):
+            for way, write in WAYS.items():
+                seeds = answers.setdefault(f"{name}, {way}", [])
+                seeds += [[] for _ in range(number + 1 - len(seeds))]
+                seeds[number].append(write(found, order, films[film].world))
+            seen(number * len(films) + film + 1, len(models) * len(films))
+    for method, each in answers.items():
+        rows += _rows(dataset, method, "ours", test, films, [found for found in each if found], seed)
+    return rows
+
+
+def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
+    """What the films of some executions show, in their order."""
+    homes, found = opened(str(dataset.folder))[1], {}
+    for first in range(0, len(executions), AT_ONCE):
+        for case in stored_cases(dataset, executions[first : first + AT_ONCE]):
+            world = start_of(case["environment"], case["home"], homes)
+            steps = program_of(case, bindings_of(case["bindings"])).steps
+            found[case["execution_id"]] = Shown(world, by_class(steps, world), case["activity_id"])
+    return [found[name] for name in executions]
+
+
+def by_class(steps: Steps, world: World) -> Steps:
+    """Steps with the classes of their nodes as names, as masks show them, and without nodes."""
+    home = world.home
+
+    def named(ref: ObjectRef) -> ObjectRef:
+        return ObjectRef(home.classes[home.index[ref.node]] if ref.node in home.index else ref.name)
+
+    return tuple(replace(step, objects=tuple(map(named, step.objects))) for step in steps)
+
+
+def _rows(
+    dataset: Dataset, method: str, of: str, test: Clips, films: Sequence[Shown], answers: Sequence[Sequence[Steps]],
+    seed: int,
+) -> Iterator[FilmRow]:  # fmt: skip
+    """A row for each kind of homes, of the answers of each seed."""
+    kinds = {clip.film: clip.kind for clip in test.clips}
+    scores = [_scored(dataset, test.executions, films, each) for each in answers]
+    for homes, wanted in HOMES.items():
+        which = [number for number in range(len(films)) if kinds[number] in wanted]
+        values = {name: [_mean([found[number][name] for found in scores]) for number in which] for name in COLUMNS}
+        found = by_group(values, [films[number].activity for number in which], seed)
+        yield FilmRow(method, of, homes, found, len(which), len(answers) if of == "ours" else 0)
+
+
+def _scored(
+    dataset: Dataset, executions: Sequence[str], films: Sequence[Shown], answers: Sequence[Steps]
+) -> list[dict[str, float | None]]:
+    """The columns of each film's answer."""
+    lcs = score_pairs([(by_class(answer, film.world), film.steps) for answer, film in zip(answers, films, strict=True)])
+    ran = score_steps(dataset, zip(executions, answers, strict=True))
+    more = ("executable", "goal")
+    return [
+        {"action": one.action, "object": one.object, "step": one.step, "mean": one.mean,
+         **{name: METRICS[name](other) for name in more}}
+        for one, other in zip(lcs, ran, strict=True)
+    ]  # fmt: skip
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    given = [value for value in values if value is not None]
+    return sum(given) / len(given) if given else None

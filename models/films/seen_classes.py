@@ -1,0 +1,144 @@
+"""What masks show of each class and of the person, frame by frame, as numbers that do not depend on the picture's size.
+
+Lengths are heights of the person where they are about the person, halves of the picture where they are places in it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+NUMBERS = 14
+"""Of a class in a frame, see `_numbers`."""
+
+PEOPLE = 9
+"""Of the person in a frame, see `_person`."""
+
+CROP = 20
+"""Width and height of what is around the person."""
+
+AROUND = 0.65
+"""Half the width of what is around the person, by the person's height or width, whichever is greater."""
+
+REACH = 0.03
+"""How far from the person what touches it is, by the picture's height."""
+
+
+class SeenFilm(NamedTuple):
+    """A film's frames as numbers.
+
+    Attributes:
+        classes: (C,) class numbers that some frame shows, without 0 and the person.
+        numbers: (T, C, NUMBERS) of each class; 0 where a frame does not show it.
+        people: (T, PEOPLE) of the person; 0 where a frame does not show it.
+        crops: (T, CROP, CROP) class numbers around the person; 0 where a frame does not show it.
+    """
+
+    classes: NDArray[np.uint16]
+    numbers: NDArray[np.float16]
+    people: NDArray[np.float16]
+    crops: NDArray[np.uint16]
+
+
+def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
+    """What a film shows.
+
+    Args:
+        masks: (T, H, W) class numbers.
+        person: class number of people.
+    """
+    classes, place = np.unique(masks, return_inverse=True)
+    place = place.reshape(masks.shape)
+    kept = np.flatnonzero((classes != 0) & (classes != person))
+    rows, people, crops = [], [], []
+    before: NDArray[np.int64] | None = None
+    for mask, frame in zip(masks, place, strict=True):
+        body = mask == person
+        who = _person(body, 0.0 if before is None else float(np.mean(before != frame)))
+        rows.append(_numbers(frame, len(classes), body, who, before)[kept])
+        people.append(who)
+        crops.append(_crop(mask, who))
+        before = frame
+    return SeenFilm(classes[kept], np.stack(rows).astype(np.float16), np.stack(people).astype(np.float16),
+                    np.stack(crops))  # fmt: skip
+
+
+def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
+    """Of the person: seen, left, right, top, bottom, middle (x, y), share of the picture; and how much of it changed."""
+    height, width = body.shape
+    found = np.zeros(PEOPLE)
+    found[8] = changed
+    if not body.any():
+        return found
+    ys, xs = np.nonzero(body)
+    x, y = 2 * (xs + 0.5) / width - 1, 2 * (ys + 0.5) / height - 1
+    found[:8] = 1.0, x.min(), x.max(), y.min(), y.max(), x.mean(), y.mean(), 4 * body.mean()
+    return found
+
+
+def _size(who: NDArray[np.float64], shape: tuple[int, ...]) -> float:
+    """The person's height or width in pixels, whichever is greater."""
+    height, width = shape
+    return max((who[4] - who[3]) * height / 2, (who[2] - who[1]) * width / 2, 2.0)
+
+
+def _numbers(
+    frame: NDArray[np.int64], count: int, body: NDArray[np.bool_], who: NDArray[np.float64], before: NDArray[np.int64] | None
+) -> NDArray[np.float64]:
+    """(count, NUMBERS) of each class in a frame of their places in a list.
+
+    Seen; root of its share of the picture; middle (x, y); width and height; from the person's middle (x, y); distance
+    from the person; root of what touches the person; where (x, y) on the person it is nearest; share that has changed;
+    how much larger than a frame ago.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    height, width = frame.shape
+    flat = frame.ravel()
+    ys, xs = np.divmod(np.arange(flat.size), width)
+    area = np.bincount(flat, minlength=count).astype(np.float64)
+    some = area > 0
+    full = np.maximum(area, 1)
+    x, y = (np.bincount(flat, values, count) / full for values in (xs + 0.5, ys + 0.5))
+    order = np.argsort(flat, kind="stable")
+    starts = (np.cumsum(area) - area).astype(np.int64)[some]
+    found = np.zeros((count, NUMBERS))
+    found[:, 0] = some
+    found[:, 1] = np.sqrt(area / flat.size)
+    found[:, 2], found[:, 3] = 2 * x / width - 1, 2 * y / height - 1
+    for column, values, size in ((4, xs, width), (5, ys, height)):
+        given = values[order]
+        found[some, column] = (np.maximum.reduceat(given, starts) - np.minimum.reduceat(given, starts) + 1) / size
+    if who[0]:
+        size = _size(who, frame.shape)
+        middle = (who[5] + 1) * width / 2, (who[6] + 1) * height / 2
+        far = distance_transform_edt(~body).ravel() / height
+        found[:, 6], found[:, 7] = (np.clip((a - b) / size, -3, 3) for a, b in zip((x, y), middle, strict=True))
+        found[some, 8] = np.minimum.reduceat(far[order], starts)
+        found[:, 9] = np.sqrt(np.bincount(flat, far <= REACH, count) / size)
+        weight = np.exp(-far / REACH) + 1e-9
+        total = np.maximum(np.bincount(flat, weight, count), 1e-12)
+        for column, values, centre in ((10, xs, middle[0]), (11, ys, middle[1])):
+            found[:, column] = np.clip((np.bincount(flat, weight * values, count) / total - centre) / size, -3, 3)
+    if before is not None:
+        old = np.bincount(before.ravel(), minlength=count)
+        same = np.bincount(flat[flat == before.ravel()], minlength=count)
+        found[:, 12] = 1 - same / np.maximum(area + old - same, 1)
+        found[:, 13] = (area - old) / np.maximum(area + old, 1)
+    found[~some] = 0.0
+    return found
+
+
+def _crop(mask: NDArray[np.uint16], who: NDArray[np.float64]) -> NDArray[np.uint16]:
+    """(CROP, CROP) class numbers around the person, the nearest of each cell's middle; 0 outside of the picture."""
+    if not who[0]:
+        return np.zeros((CROP, CROP), np.uint16)
+    height, width = mask.shape
+    middle = (who[1] + who[2] + 2) * width / 4, (who[3] + who[4] + 2) * height / 4
+    offsets = ((np.arange(CROP) + 0.5) / CROP * 2 - 1) * AROUND * _size(who, mask.shape)
+    xs, ys = (np.floor(centre + offsets).astype(np.int64) for centre in middle)
+    inside = ((ys >= 0) & (ys < height))[:, None] & ((xs >= 0) & (xs < width))[None]
+    found = mask[np.clip(ys, 0, height - 1)[:, None], np.clip(xs, 0, width - 1)[None]]
+    return np.where(inside, found, 0).astype(np.uint16)

@@ -1,0 +1,70 @@
+"""Clips as what is seen of each class in their frames: the arrays that `seen_network` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.models.films.class_table import ClassTable
+from hearth.models.films.clip_data import Clip, Clips
+from hearth.models.films.seen_classes import NUMBERS, SeenFilm, seen_film
+from hearth.storage.parallel import Seen, unseen
+
+MOST_SEEN = 40
+"""Classes of a clip at most; of more, those that are nearest to the person or largest."""
+
+
+class SeenClips(NamedTuple):
+    """What N clips of T frames show.
+
+    Attributes:
+        classes: (N, K) rows of the class table; 0 fills up.
+        numbers: (N, K, T, NUMBERS) of each class, see `seen_classes`.
+        people: (N, T, PEOPLE) of the person.
+        crops: (N, T, CROP, CROP) rows of the class table around the person.
+    """
+
+    classes: NDArray[np.int16]
+    numbers: NDArray[np.float16]
+    people: NDArray[np.float16]
+    crops: NDArray[np.int16]
+
+    def __getitem__(self, which: NDArray[np.int64] | slice) -> SeenClips:  # type: ignore[override]
+        return SeenClips(*(getattr(self, name)[which] for name in self._fields))
+
+
+def seen_clips(clips: Clips, table: ClassTable, report: Seen = unseen) -> SeenClips:
+    """What clips show, in their order; each film is read once.
+
+    Args:
+        clips: in the order of their films.
+        table: of the classes.
+        report: reports progress: films.
+    """
+    found = []
+    for done, (film, group) in enumerate(groupby(clips.clips, key=lambda clip: clip.film), 1):
+        seen = seen_film(clips.films[film], table.person)
+        found += [*_clips(seen, [*group], clips.frames, table)]
+        report(done, len(clips.films))
+    return SeenClips(*(np.stack(columns) for columns in zip(*found, strict=True)))
+
+
+def _clips(seen: SeenFilm, clips: list[Clip], frames: int, table: ClassTable) -> Iterator[SeenClips]:
+    rows = table.rows[seen.classes].astype(np.int16)
+    known = rows > 0
+    crops = table.rows[seen.crops].astype(np.int16)
+    for clip in clips:
+        span = slice(clip.first, clip.first + frames)
+        numbers = seen.numbers[span].transpose(1, 0, 2)  # (C, T, NUMBERS)
+        worth = (numbers[..., 0] * (1 - numbers[..., 8] + numbers[..., 1])).max(1) * known
+        order = np.argsort(-worth.astype(np.float64), kind="stable")[:MOST_SEEN]
+        order = order[worth[order] > 0]
+        classes = np.zeros(MOST_SEEN, np.int16)
+        classes[: len(order)] = rows[order]
+        full = np.zeros((MOST_SEEN, frames, NUMBERS), np.float16)
+        full[: len(order)] = numbers[order]
+        yield SeenClips(classes, full, seen.people[span], crops[span])

@@ -1,0 +1,191 @@
+"""The classifier of clips that looks at each class of the masks: where it is, and what it does beside the person."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from random import Random
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hearth.models.checkpoint import Checkpoint
+from hearth.models.filled import filled
+from hearth.models.films.class_accuracy import accuracies
+from hearth.models.films.class_table import PLACES, ClassTable
+from hearth.models.films.clip_data import Clips, Instruction
+from hearth.models.films.film_readings import Reading, reading
+from hearth.models.films.seen_clips import SeenClips, seen_clips
+from hearth.models.films.seen_network import SeenBatch, SeenNetwork, loss_of
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.training import Task, train
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+
+NAME = "clips-seen"
+"""Of its checkpoints."""
+
+AT_ONCE = 128
+"""Clips that are classified at once."""
+
+
+class Scored(NamedTuple):
+    """What clips are taken for: logarithms of probabilities.
+
+    Attributes:
+        actions: (N, A).
+        objects: (N, 2, A, rows) of each action's first and second object.
+    """
+
+    actions: NDArray[np.float32]
+    objects: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class SeenModel(Settings):
+    """Settings of the classifier.
+
+    Attributes:
+        width, layers: of the transformer.
+        vector: numbers that are learned for a class.
+        dropout: share of numbers left out in training.
+        unnamed: share of classes whose learned numbers are left out in training.
+        batch: clips in a batch.
+        balance: the power of a class's share by which its loss is divided: 0 counts clips, 1 classes.
+        films: of training, at most; 0 for all.
+    """
+
+    width: int = 96
+    layers: int = 2
+    vector: int = 16
+    dropout: float = 0.2
+    unnamed: float = 0.5
+    batch: int = 64
+    balance: float = 0.5
+    films: int = 0
+
+    def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
+        """Train on the clips of `train`; those of `validation` decide when to stop."""
+        learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
+        table = ClassTable.of(dataset.knowledge, [clip.done for clip in learned.clips])
+        return self.trained(table, learned, checked, (seen_clips(learned, table), seen_clips(checked, table)), how, seen)
+
+    def trained(
+        self, table: ClassTable, learned: Clips, checked: Clips, shown: tuple[SeenClips, SeenClips], how: Training,
+        seen: Seen = unseen,
+    ) -> TrainedSeenModel:  # fmt: skip
+        """Train on what the clips of two parts show."""
+        torch.manual_seed(how.seed)
+        model = TrainedSeenModel(self, table, self.network(table))
+        wanted = torch.tensor([table.numbers(clip.done) for clip in learned.clips])
+        weights = torch.tensor(np.stack([self._weights([clip.done.action for clip in learned.clips]),
+                                         self._weights([clip.done.objects for clip in learned.clips])], 1),
+                               dtype=torch.float32)  # fmt: skip
+
+        def batches(random: Random) -> Iterator[tuple[SeenBatch, torch.Tensor, torch.Tensor]]:
+            order = random.sample(range(len(learned)), len(learned))
+            for start in range(0, len(order), self.batch):
+                which = np.array(order[start : start + self.batch])
+                batch = tensors(shown[0][which]).mirrored(torch.rand(len(which)) < 0.5)
+                yield batch, wanted[which], weights[which]
+
+        def loss(batch: tuple[SeenBatch, torch.Tensor, torch.Tensor]) -> torch.Tensor:
+            return loss_of(model.network, *batch)
+
+        def validate() -> float:
+            return accuracies([clip.done for clip in checked.clips], model.named_of(shown[1]))["mean"]
+
+        task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(table)])
+        model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
+        return model
+
+    def _weights(self, labels: Sequence[Hashable]) -> NDArray[np.float64]:
+        counts = Counter(labels)
+        found = np.array([counts[label] ** -self.balance for label in labels])
+        return found / found.mean()
+
+    def network(self, table: ClassTable) -> SeenNetwork:
+        """The network, with random weights."""
+        named = torch.zeros(len(table) + 1, dtype=torch.bool)
+        named[list(table.named)] = True
+        tensors = torch.from_numpy(table.traits), torch.from_numpy(table.afforded), named
+        return SeenNetwork(*tensors, self.width, self.layers, self.vector, self.dropout, self.unnamed)
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedSeenModel:
+        """The model of a checkpoint."""
+        settings, table = cls.of(checkpoint.settings), ClassTable.read(checkpoint.content["table"])
+        network = filled(lambda: settings.network(table), checkpoint.weights)
+        return TrainedSeenModel(settings, table, network, dict(checkpoint.trained))
+
+
+def tensors(shown: SeenClips) -> SeenBatch:
+    """Clips for the network."""
+    classes, numbers, people, crops = (torch.from_numpy(np.ascontiguousarray(each)) for each in shown)
+    return SeenBatch(classes.long(), numbers.float(), people.float(), crops.long())
+
+
+@dataclass(frozen=True)
+class TrainedSeenModel:
+    """A trained classifier."""
+
+    settings: SeenModel
+    table: ClassTable
+    network: SeenNetwork
+    facts: dict[str, Any] = field(default_factory=dict)
+
+    def named(self, clips: Clips) -> list[Instruction]:
+        """The instruction that each clip is taken for."""
+        return self.named_of(seen_clips(clips, self.table))
+
+    def named_of(self, shown: SeenClips) -> list[Instruction]:
+        """The same of what clips show: the most probable action, and its most probable objects."""
+        found = []
+        for scores in self._scored(shown):
+            actions = scores.actions.argmax(1)
+            objects = scores.objects[np.arange(len(actions)), :, actions].argmax(-1)  # (N, 2)
+            found += [self._instruction(action, rows) for action, rows in zip(actions.tolist(), objects.tolist())]
+        return found
+
+    def _instruction(self, action: int, rows: Sequence[int]) -> Instruction:
+        names = tuple(self.table.names[row - 1] for row in rows[: self.table.objects[action]])
+        return Instruction(self.table.actions[action], names)
+
+    def readings(self, clips: Clips) -> Iterator[Reading]:
+        """What the clips of each film may show, film by film."""
+        for part in clips.by_film():
+            shown = seen_clips(part, self.table)
+            found = Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))
+            yield reading(found.actions, found.objects, self.table)
+
+    def _scored(self, shown: SeenClips) -> Iterator[Scored]:
+        self.network.eval()
+        every = torch.arange(len(self.table.actions))[None]
+        for start in range(0, len(shown.classes), AT_ONCE):
+            with torch.no_grad():
+                batch = tensors(shown[slice(start, start + AT_ONCE)])
+                clip, classes = self.network.read(batch)
+                asked = every.expand(len(clip), -1)
+                objects = [self.network.objects(batch, clip, classes, asked, place) for place in range(PLACES)]
+                yield Scored(self.network.actions(clip).numpy(), torch.stack(objects, 1).numpy())
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """It has no programs for requests.
+
+        Raises:
+            HearthError: BAD_ARGUMENT.
+        """
+        message = f"`{NAME}` is a model of films: it has no programs for texts or sketches"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model table 4.3 DATASET --model M` scores it")
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
+        return Checkpoint(NAME, asdict(self.settings), {"table": self.table.document()}, weights, self.facts)
