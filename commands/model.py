@@ -260,14 +260,23 @@ def show(
     The sketch is what a model of texts writes, or the file of --sketch for a model of sketches. Its objects are bound
     to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
     two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
+    A model of films reads a film of a dataset of clips in place of the text: its steps with times, and the program.
 
     \b
     Example:
       python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
       python cli.py model show planner --sketch sketch.txt --home maple --home birch
+      python cli.py model show clips-seen data_out/clips/films/FOLDER/clips.npz --film shown
     """
     from hearth.commands import model_shown
 
+    if text.endswith((".npz", ".webm")) and Path(text).exists():
+        from hearth.commands import film_read
+
+        found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film)
+        output.emit(found) if as_json else film_read.printed(found)
+        output.status(int(not found["executable"]), strict=True)
+        return
     shown = model_shown.shown(model, text, sketch, writer, home or ["maple"], homes, kb, beam)
     films = model_shown.filmed(shown, film, homes, kb) if film else {}
     if as_json:

@@ -11,6 +11,7 @@ from hearth.commands import output
 if TYPE_CHECKING:
     from hearth.models.showing import Shown
     from hearth.schemas.program import Step
+    from hearth.simulation.engine import Execution
 
 WIDTH = 46
 """Of a program beside another."""
@@ -138,6 +139,12 @@ def _cell(step: Step | None) -> str:
 
 def filmed(found: Mapping[str, Shown], out: Path, homes: Path | None, kb: Path | None) -> dict[str, dict[str, Any]]:
     """Films of the programs, a folder for each home in `out`; what was made, by home."""
+    runs = {home: one.completion.execution for home, one in found.items() if one.failure is None}
+    return {home: film_of(execution, home, out, homes, kb) for home, execution in runs.items()}
+
+
+def film_of(execution: Execution, home: str, out: Path, homes: Path | None, kb: Path | None) -> dict[str, Any]:
+    """The film of a program in a home, in a folder of the home's name in `out`; what was made."""
     from hearth.commands.inputs import read_knowledge
     from hearth.commands.render import Shooting, videos
     from hearth.homes import library
@@ -145,15 +152,11 @@ def filmed(found: Mapping[str, Shown], out: Path, homes: Path | None, kb: Path |
     from hearth.storage.names import inside
 
     known = read_knowledge(kb)
-    made = {}
-    for home, one in found.items():
-        if one.failure is None:
-            place = with_geometry(library.load_graph(home, known, homes), home, known)
-            folder = inside(out, Path(home).name)
-            folder.mkdir(parents=True, exist_ok=True)
-            shooting = Shooting(one.completion.execution, place.graph, known, folder, SIZE, 0, HOUR, f"In {home}")
-            made[home] = videos(shooting, ["auto"], FPS)
-    return made
+    place = with_geometry(library.load_graph(home, known, homes), home, known)
+    folder = inside(out, Path(home).name)
+    folder.mkdir(parents=True, exist_ok=True)
+    shooting = Shooting(execution, place.graph, known, folder, SIZE, 0, HOUR, f"In {home}")
+    return videos(shooting, ["auto"], FPS)
 
 
 SIZE, HOUR, FPS = (320, 240), 10.0, 15.0

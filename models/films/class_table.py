@@ -101,7 +101,9 @@ class ClassTable:
             raise ValueError("the numbers of classes, actions and objects do not fit")
         rows = tuple(tuple(str(name) for name in each) for each in properties)
         named = tuple(document["named"])
-        return cls(tuple(ids), tuple(names), rows, tuple(actions), tuple(objects), named, bits.reshape(-1, PLACES, size))
+        return cls(
+            tuple(ids), tuple(names), rows, tuple(actions), tuple(objects), named, bits.reshape(-1, PLACES, size)
+        )
 
     def __len__(self) -> int:
         return len(self.ids)

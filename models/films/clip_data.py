@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import sys
+import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from io import BytesIO
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, overload
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.input_files import read_input
 from hearth.storage.names import inside
 
 if TYPE_CHECKING:
@@ -28,6 +32,9 @@ MOST_COLOURS = 255
 
 LARGEST = 64 << 20
 """Bytes of a film's file."""
+
+MOST_BYTES = 1 << 29
+"""Bytes of a film's masks in memory."""
 
 
 class Instruction(NamedTuple):
@@ -61,7 +68,7 @@ class Clips:
 
     Attributes:
         executions: of each film.
-        films: (T, H, W) uint16 class numbers of each film's frames; those of a dataset are read when they are asked for.
+        films: (T, H, W) uint16 class numbers of each film's frames; a dataset's are read when they are asked for.
         clips: in the order of films and frames.
         frames: of a clip.
     """
@@ -127,24 +134,26 @@ class Films(Sequence[NDArray[np.uint16]]):
         if isinstance(number, slice):
             return Films(self.dataset, self.files[number])
         file, least = self.files[number]
-        masks = _film(self.dataset, file)
+        masks = masks_in(BytesIO(read_input(inside(self.dataset.folder, file), LARGEST)), file)
         if len(masks) < least:
             raise _damaged(file, "a clip is outside of its film")
         return masks
 
 
-def _film(dataset: Dataset, file: str) -> NDArray[np.uint16]:
-    from io import BytesIO
+def masks_in(data: IO[bytes], file: str) -> NDArray[np.uint16]:
+    """(T, H, W) class numbers of a film's arrays, as `rendering.film.clips` stores them; `file` names them in errors.
 
-    from hearth.storage.input_files import read_input
-
-    data = BytesIO(read_input(inside(dataset.folder, file), LARGEST))
+    Raises:
+        HearthError: DAMAGED_FILE, if they are something else.
+    """
     try:
         with np.load(data, allow_pickle=False) as arrays:
+            if arrays.zip.getinfo("class_ids.npy").file_size > MOST_BYTES:
+                raise ValueError("its masks are too large")
             masks: NDArray[np.uint16] = arrays["class_ids"]
-    except (ValueError, KeyError, OSError, EOFError) as error:
+    except (ValueError, KeyError, AttributeError, OSError, EOFError, BadZipFile, zlib.error) as error:
         raise _damaged(file, str(error)[:100]) from error
-    if masks.ndim != 3 or masks.dtype != np.uint16 or not 0 < masks.size <= 1 << 28:
+    if masks.ndim != 3 or masks.dtype != np.uint16 or not masks.size:
         raise _damaged(file, f"its masks have the form {masks.shape} of {masks.dtype}")
     return masks
 

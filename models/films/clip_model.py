@@ -15,8 +15,8 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.clip_data import Clips, Instruction, Labels, Pictures, frames_of, pictures_of
-from hearth.models.films.film_readings import Reading
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
+from hearth.models.films.film_readings import Reading
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
 from hearth.schemas.diagnostics import HearthError

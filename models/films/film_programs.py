@@ -7,8 +7,8 @@ followed runs, because each step was done in the world that the steps before it 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import groupby
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,21 @@ is not known."""
 
 UNEXPLAINED = 8.0
 """What it costs to leave a clip unexplained, below the best that can be said of it."""
+
+
+class FilmProgram(NamedTuple):
+    """The program of a film.
+
+    Attributes:
+        steps: in order.
+        starts: the number of the clip in which each begins.
+    """
+
+    steps: Steps
+    starts: tuple[int, ...]
+
+
+NO_STEPS = FilmProgram((), ())
 
 Moves = NDArray[np.float32]
 """(I + 1, I) what it costs to go from an instruction, the last row from none, to another one."""
@@ -60,16 +75,17 @@ class _Followed:
     score: float
     world: World
     steps: Steps
+    starts: tuple[int, ...]
     last: int
     """Number of the instruction that is being done; -1 before the first."""
 
 
-def alone(scores: Scores, instructions: Sequence[Instruction]) -> Steps:
+def alone(scores: Scores, instructions: Sequence[Instruction]) -> FilmProgram:
     """What each clip is taken for by itself, each once for the clips in a row that are taken for it."""
-    return _merged(scores.argmax(1).tolist(), instructions) if len(scores) else ()
+    return _merged(scores.argmax(1).tolist(), instructions) if len(scores) else NO_STEPS
 
 
-def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves | None = None) -> Steps:
+def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves | None = None) -> FilmProgram:
     """The most probable sequence of instructions, each once for the clips in a row that it explains; no home is needed.
 
     Args:
@@ -78,7 +94,7 @@ def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves 
         moves: what changes cost; by default all the same.
     """
     if not len(scores):
-        return ()
+        return NO_STEPS
     logs, costs = _normalised(scores), even_moves(len(instructions)) if moves is None else moves
     change = costs[:-1].copy()
     np.fill_diagonal(change, 0)
@@ -93,8 +109,9 @@ def described(scores: Scores, instructions: Sequence[Instruction], moves: Moves 
     return _merged(path[::-1], instructions)
 
 
-def _merged(path: Sequence[int], instructions: Sequence[Instruction]) -> Steps:
-    return tuple(_step(instructions[number]) for number, _ in groupby(path))
+def _merged(path: Sequence[int], instructions: Sequence[Instruction]) -> FilmProgram:
+    starts = [place for place, number in enumerate(path) if place == 0 or number != path[place - 1]]
+    return FilmProgram(tuple(_step(instructions[path[place]]) for place in starts), tuple(starts))
 
 
 def followed(
@@ -104,7 +121,7 @@ def followed(
     moves: Moves | None = None,
     how: Filter = Filter(),
     rules: Rules = DEFAULT,
-) -> Steps:
+) -> FilmProgram:
     """The program that explains a film best among those that run in the world in which it begins.
 
     In each clip a program goes on with its last instruction, or with another one that can be done then; objects are
@@ -119,15 +136,15 @@ def followed(
         rules: of the engine.
     """
     search = _Search(instructions, even_moves(len(instructions)) if moves is None else moves, how, rules)
-    beam = [_Followed(0.0, world, (), -1)]
-    for row in _normalised(scores):
+    beam = [_Followed(0.0, world, (), (), -1)]
+    for place, row in enumerate(_normalised(scores)):
         best: dict[Steps, _Followed] = {}
         for one in beam:
-            for each in search.going_on(one, row):
+            for each in search.going_on(one, row, place):
                 if each.steps not in best or best[each.steps].score < each.score:
                     best[each.steps] = each
         beam = sorted(best.values(), key=lambda each: -each.score)[: how.beam]
-    return beam[0].steps
+    return FilmProgram(beam[0].steps, beam[0].starts)
 
 
 class _Search:
@@ -137,17 +154,17 @@ class _Search:
         self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
         self.after: dict[tuple[Steps, int], tuple[Step, World] | None] = {}
 
-    def going_on(self, one: _Followed, row: Scores) -> Iterator[_Followed]:
+    def going_on(self, one: _Followed, row: Scores, place: int) -> Iterator[_Followed]:
         """The ways in which a program explains one more clip."""
         unexplained = float(row.max()) - UNEXPLAINED
         staying = float(row[one.last]) if one.last >= 0 else unexplained
-        yield _Followed(one.score + max(staying, unexplained), one.world, one.steps, one.last)
+        yield replace(one, score=one.score + max(staying, unexplained))
         worth = row - self.moves[one.last]
         for number in np.argsort(-worth, kind="stable")[: self.how.options].tolist():
             done = self._done(one, number) if number != one.last else None
             if done is not None:
                 score = one.score + float(worth[number])
-                yield _Followed(score, done[1], (*one.steps, done[0]), number)
+                yield _Followed(score, done[1], (*one.steps, done[0]), (*one.starts, place), number)
 
     def _done(self, one: _Followed, number: int) -> tuple[Step, World] | None:
         key = one.steps, number

@@ -15,7 +15,7 @@ from hearth.models.data import AT_ONCE
 from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_tables import HOMES, classifier
-from hearth.models.films.film_programs import alone, described, followed
+from hearth.models.films.film_programs import FilmProgram, alone, described, followed
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
@@ -73,7 +73,7 @@ class Shown(NamedTuple):
     activity: str
 
 
-Way = Callable[[Reading, StepOrder, World], Steps]
+Way = Callable[[Reading, StepOrder, World], FilmProgram]
 
 WAYS: dict[str, Way] = {
     "each clip alone": lambda found, order, world: alone(found.scores, found.instructions),
@@ -119,7 +119,7 @@ def film_table(
             for way, write in WAYS.items():
                 seeds = answers.setdefault(f"{name}, {way}", [])
                 seeds += [[] for _ in range(number + 1 - len(seeds))]
-                seeds[number].append(write(found, order, films[film].world))
+                seeds[number].append(write(found, order, films[film].world).steps)
             seen(number * len(films) + film + 1, len(models) * len(films))
     for method, each in answers.items():
         rows += _rows(dataset, method, "ours", test, films, [found for found in each if found], seed)

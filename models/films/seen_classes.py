@@ -5,7 +5,7 @@ Lengths are heights of the person where they are about the person, halves of the
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +66,7 @@ def seen_film(masks: NDArray[np.uint16], person: int) -> SeenFilm:
 
 
 def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
-    """Of the person: seen, left, right, top, bottom, middle (x, y), share of the picture; and how much of it changed."""
+    """Of the person: seen, left, right, top, bottom, middle (x, y), share of the picture; how much of this changed."""
     height, width = body.shape
     found = np.zeros(PEOPLE)
     found[8] = changed
@@ -81,11 +81,41 @@ def _person(body: NDArray[np.bool_], changed: float) -> NDArray[np.float64]:
 def _size(who: NDArray[np.float64], shape: tuple[int, ...]) -> float:
     """The person's height or width in pixels, whichever is greater."""
     height, width = shape
-    return max((who[4] - who[3]) * height / 2, (who[2] - who[1]) * width / 2, 2.0)
+    return max(float(who[4] - who[3]) * height / 2, float(who[2] - who[1]) * width / 2, 2.0)
+
+
+class _Frame(NamedTuple):
+    """A frame's pixels: their places in a list of classes, and (x, y) of each."""
+
+    classes: int
+    flat: NDArray[np.int64]
+    xs: NDArray[np.int64]
+    ys: NDArray[np.int64]
+    area: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, places: NDArray[np.int64], count: int) -> _Frame:
+        flat = places.ravel()
+        ys, xs = np.divmod(np.arange(flat.size), places.shape[1])
+        return cls(count, flat, xs, ys, np.bincount(flat, minlength=count).astype(np.float64))
+
+    def sums(self, values: NDArray[Any]) -> NDArray[np.float64]:
+        """(count,) the sum over each class's pixels."""
+        return np.bincount(self.flat, values, self.classes).astype(np.float64)
+
+    def ends(self, values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        """The least and the greatest over the pixels of each class that is there."""
+        given = values[np.argsort(self.flat, kind="stable")]
+        starts = (np.cumsum(self.area) - self.area).astype(np.int64)[self.area > 0]
+        return np.minimum.reduceat(given, starts), np.maximum.reduceat(given, starts)
 
 
 def _numbers(
-    frame: NDArray[np.int64], count: int, body: NDArray[np.bool_], who: NDArray[np.float64], before: NDArray[np.int64] | None
+    places: NDArray[np.int64],
+    count: int,
+    body: NDArray[np.bool_],
+    who: NDArray[np.float64],
+    before: NDArray[np.int64] | None,
 ) -> NDArray[np.float64]:
     """(count, NUMBERS) of each class in a frame of their places in a list.
 
@@ -93,42 +123,46 @@ def _numbers(
     from the person; root of what touches the person; where (x, y) on the person it is nearest; share that has changed;
     how much larger than a frame ago.
     """
-    from scipy.ndimage import distance_transform_edt
-
-    height, width = frame.shape
-    flat = frame.ravel()
-    ys, xs = np.divmod(np.arange(flat.size), width)
-    area = np.bincount(flat, minlength=count).astype(np.float64)
-    some = area > 0
-    full = np.maximum(area, 1)
-    x, y = (np.bincount(flat, values, count) / full for values in (xs + 0.5, ys + 0.5))
-    order = np.argsort(flat, kind="stable")
-    starts = (np.cumsum(area) - area).astype(np.int64)[some]
+    height, width = places.shape
+    frame = _Frame.of(places, count)
+    some, full = frame.area > 0, np.maximum(frame.area, 1)
+    x, y = (frame.sums(values + 0.5) / full for values in (frame.xs, frame.ys))
     found = np.zeros((count, NUMBERS))
     found[:, 0] = some
-    found[:, 1] = np.sqrt(area / flat.size)
+    found[:, 1] = np.sqrt(frame.area / body.size)
     found[:, 2], found[:, 3] = 2 * x / width - 1, 2 * y / height - 1
-    for column, values, size in ((4, xs, width), (5, ys, height)):
-        given = values[order]
-        found[some, column] = (np.maximum.reduceat(given, starts) - np.minimum.reduceat(given, starts) + 1) / size
+    for column, values, size in ((4, frame.xs, width), (5, frame.ys, height)):
+        least, greatest = frame.ends(values)
+        found[some, column] = (greatest - least + 1) / size
     if who[0]:
-        size = _size(who, frame.shape)
-        middle = (who[5] + 1) * width / 2, (who[6] + 1) * height / 2
-        far = distance_transform_edt(~body).ravel() / height
-        found[:, 6], found[:, 7] = (np.clip((a - b) / size, -3, 3) for a, b in zip((x, y), middle, strict=True))
-        found[some, 8] = np.minimum.reduceat(far[order], starts)
-        found[:, 9] = np.sqrt(np.bincount(flat, far <= REACH, count) / size)
-        weight = np.exp(-far / REACH) + 1e-9
-        total = np.maximum(np.bincount(flat, weight, count), 1e-12)
-        for column, values, centre in ((10, xs, middle[0]), (11, ys, middle[1])):
-            found[:, column] = np.clip((np.bincount(flat, weight * values, count) / total - centre) / size, -3, 3)
+        found[:, 6:12] = _beside(frame, x, y, body, who)
     if before is not None:
         old = np.bincount(before.ravel(), minlength=count)
-        same = np.bincount(flat[flat == before.ravel()], minlength=count)
-        found[:, 12] = 1 - same / np.maximum(area + old - same, 1)
-        found[:, 13] = (area - old) / np.maximum(area + old, 1)
+        same = np.bincount(frame.flat[frame.flat == before.ravel()], minlength=count)
+        found[:, 12] = 1 - same / np.maximum(frame.area + old - same, 1)
+        found[:, 13] = (frame.area - old) / np.maximum(frame.area + old, 1)
     found[~some] = 0.0
     return found
+
+
+def _beside(
+    frame: _Frame, x: NDArray[np.float64], y: NDArray[np.float64], body: NDArray[np.bool_], who: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(count, 6) where each class, with its middle at (x, y), is beside the person."""
+    from scipy.ndimage import distance_transform_edt
+
+    height, width = body.shape
+    size, middle = _size(who, body.shape), ((who[5] + 1) * width / 2, (who[6] + 1) * height / 2)
+    far = distance_transform_edt(~body).ravel() / height
+    found = np.zeros((frame.classes, 6))
+    found[:, 0], found[:, 1] = ((a - b) / size for a, b in zip((x, y), middle, strict=True))
+    found[frame.area > 0, 2] = frame.ends(far)[0]
+    found[:, 3] = np.sqrt(frame.sums(far <= REACH) / size)
+    weight = np.exp(-far / REACH) + 1e-9
+    total = np.maximum(frame.sums(weight), 1e-12)
+    for column, values, centre in ((4, frame.xs, middle[0]), (5, frame.ys, middle[1])):
+        found[:, column] = (frame.sums(weight * values) / total - centre) / size
+    return np.clip(found, -3, 3)
 
 
 def _crop(mask: NDArray[np.uint16], who: NDArray[np.float64]) -> NDArray[np.uint16]:

@@ -33,7 +33,8 @@ class SeenClips(NamedTuple):
     people: NDArray[np.float16]
     crops: NDArray[np.int16]
 
-    def __getitem__(self, which: NDArray[np.int64] | slice) -> SeenClips:  # type: ignore[override]
+    def part(self, which: NDArray[np.int64] | slice) -> SeenClips:
+        """Some of the clips."""
         return SeenClips(*(getattr(self, name)[which] for name in self._fields))
 
 

@@ -20,6 +20,7 @@ from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.film_readings import Reading, reading
 from hearth.models.films.seen_clips import SeenClips, seen_clips
 from hearth.models.films.seen_network import SeenBatch, SeenNetwork, loss_of
+from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
 from hearth.schemas.diagnostics import HearthError
@@ -75,32 +76,28 @@ class SeenModel(Settings):
         """Train on the clips of `train`; those of `validation` decide when to stop."""
         learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
         table = ClassTable.of(dataset.knowledge, [clip.done for clip in learned.clips])
-        return self.trained(table, learned, checked, (seen_clips(learned, table), seen_clips(checked, table)), how, seen)
-
-    def trained(
-        self, table: ClassTable, learned: Clips, checked: Clips, shown: tuple[SeenClips, SeenClips], how: Training,
-        seen: Seen = unseen,
-    ) -> TrainedSeenModel:  # fmt: skip
-        """Train on what the clips of two parts show."""
+        shown, looked_at = seen_clips(learned, table), seen_clips(checked, table)
         torch.manual_seed(how.seed)
-        model = TrainedSeenModel(self, table, self.network(table))
+        model = TrainedSeenModel(self, table, StepOrder.of(programs_of(learned)), self.network(table))
         wanted = torch.tensor([table.numbers(clip.done) for clip in learned.clips])
-        weights = torch.tensor(np.stack([self._weights([clip.done.action for clip in learned.clips]),
-                                         self._weights([clip.done.objects for clip in learned.clips])], 1),
-                               dtype=torch.float32)  # fmt: skip
+        labels: tuple[Sequence[Hashable], ...] = (
+            [clip.done.action for clip in learned.clips],
+            [clip.done.objects for clip in learned.clips],
+        )
+        weights = torch.tensor(np.stack([*map(self._weights, labels)], 1), dtype=torch.float32)
 
         def batches(random: Random) -> Iterator[tuple[SeenBatch, torch.Tensor, torch.Tensor]]:
             order = random.sample(range(len(learned)), len(learned))
             for start in range(0, len(order), self.batch):
                 which = np.array(order[start : start + self.batch])
-                batch = tensors(shown[0][which]).mirrored(torch.rand(len(which)) < 0.5)
+                batch = tensors(shown.part(which)).mirrored(torch.rand(len(which)) < 0.5)
                 yield batch, wanted[which], weights[which]
 
         def loss(batch: tuple[SeenBatch, torch.Tensor, torch.Tensor]) -> torch.Tensor:
             return loss_of(model.network, *batch)
 
         def validate() -> float:
-            return accuracies([clip.done for clip in checked.clips], model.named_of(shown[1]))["mean"]
+            return accuracies([clip.done for clip in checked.clips], model.named_of(looked_at))["mean"]
 
         task = Task(model.network, batches, loss, validate, [asdict(self), len(learned), len(table)])
         model.facts.update({"clips": len(learned), "seed": how.seed, **train(task, how, seen).record()})
@@ -108,8 +105,9 @@ class SeenModel(Settings):
 
     def _weights(self, labels: Sequence[Hashable]) -> NDArray[np.float64]:
         counts = Counter(labels)
-        found = np.array([counts[label] ** -self.balance for label in labels])
-        return found / found.mean()
+        found = np.array([counts[label] ** -self.balance for label in labels], np.float64)
+        weights: NDArray[np.float64] = found / found.mean()
+        return weights
 
     def network(self, table: ClassTable) -> SeenNetwork:
         """The network, with random weights."""
@@ -123,7 +121,8 @@ class SeenModel(Settings):
         """The model of a checkpoint."""
         settings, table = cls.of(checkpoint.settings), ClassTable.read(checkpoint.content["table"])
         network = filled(lambda: settings.network(table), checkpoint.weights)
-        return TrainedSeenModel(settings, table, network, dict(checkpoint.trained))
+        order = StepOrder.read(checkpoint.content["order"])
+        return TrainedSeenModel(settings, table, order, network, dict(checkpoint.trained))
 
 
 def tensors(shown: SeenClips) -> SeenBatch:
@@ -138,6 +137,7 @@ class TrainedSeenModel:
 
     settings: SeenModel
     table: ClassTable
+    order: StepOrder
     network: SeenNetwork
     facts: dict[str, Any] = field(default_factory=dict)
 
@@ -151,7 +151,9 @@ class TrainedSeenModel:
         for scores in self._scored(shown):
             actions = scores.actions.argmax(1)
             objects = scores.objects[np.arange(len(actions)), :, actions].argmax(-1)  # (N, 2)
-            found += [self._instruction(action, rows) for action, rows in zip(actions.tolist(), objects.tolist())]
+            found += [
+                self._instruction(action, rows) for action, rows in zip(actions.tolist(), objects.tolist(), strict=True)
+            ]
         return found
 
     def _instruction(self, action: int, rows: Sequence[int]) -> Instruction:
@@ -170,7 +172,7 @@ class TrainedSeenModel:
         every = torch.arange(len(self.table.actions))[None]
         for start in range(0, len(shown.classes), AT_ONCE):
             with torch.no_grad():
-                batch = tensors(shown[slice(start, start + AT_ONCE)])
+                batch = tensors(shown.part(slice(start, start + AT_ONCE)))
                 clip, classes = self.network.read(batch)
                 asked = every.expand(len(clip), -1)
                 objects = [self.network.objects(batch, clip, classes, asked, place) for place in range(PLACES)]
@@ -188,4 +190,5 @@ class TrainedSeenModel:
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""
         weights = {name: value.numpy() for name, value in self.network.state_dict().items()}
-        return Checkpoint(NAME, asdict(self.settings), {"table": self.table.document()}, weights, self.facts)
+        content = {"table": self.table.document(), "order": self.order.document()}
+        return Checkpoint(NAME, asdict(self.settings), content, weights, self.facts)

@@ -8,17 +8,21 @@ import numpy as np
 import pytest
 import torch
 
+import hearth
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.film_readings import reading
+from hearth.models.films.film_shown import cut, read_masks, show_film
 from hearth.models.films.seen_classes import CROP, seen_film
 from hearth.models.films.seen_clips import seen_clips
 from hearth.models.films.seen_model import SeenModel, TrainedSeenModel, tensors
 from hearth.models.films.seen_network import loss_of
 from hearth.models.films.step_order import START, StepOrder, programs_of
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 SOFA, MUG, FRIDGE, PERSON = (default().objects[name].id for name in ("sofa", "mug", "fridge", "character"))
 
@@ -47,7 +51,7 @@ def model(clips):
     torch.manual_seed(0)
     table = ClassTable.of(default(), [clip.done for clip in clips.clips])
     settings = SeenModel(width=32, layers=1, dropout=0.0)
-    model = TrainedSeenModel(settings, table, settings.network(table))
+    model = TrainedSeenModel(settings, table, StepOrder.of(programs_of(clips)), settings.network(table))
     batch, wanted = tensors(seen_clips(clips, table)), torch.tensor([table.numbers(clip.done) for clip in clips.clips])
     optimiser = torch.optim.Adam(model.network.parameters(), 3e-3)
     for _ in range(60):
@@ -72,7 +76,7 @@ def test_it_points_at_what_training_never_named(model, clips):
 
 def test_what_a_clip_is_taken_for_does_not_depend_on_its_neighbours(model, clips):
     shown = seen_clips(clips, model.table)
-    every, one = (next(model._scored(part)) for part in (shown, shown[slice(5, 6)]))
+    every, one = (next(model._scored(part)) for part in (shown, shown.part(slice(5, 6))))
     assert np.allclose(every.actions[5:6], one.actions, atol=1e-5)
     assert np.allclose(every.objects[5:6], one.objects, atol=1e-4)
 
@@ -121,6 +125,7 @@ def test_a_checkpoint_gives_the_same_answers(model, clips, tmp_path):
     save(model.checkpoint(), tmp_path)
     restored = SeenModel.restored(load(tmp_path))
     shown = seen_clips(clips, model.table)
+    assert restored.order == model.order
     assert np.array_equal(next(restored._scored(shown)).objects, next(model._scored(shown)).objects)
 
 
@@ -139,6 +144,24 @@ def test_a_reading_scores_probable_instructions_in_every_clip(model, clips):
     assert best == {Instruction("Walk", ("sofa",))}
     actions, objects = np.zeros((0, 2), np.float32), np.zeros((0, 2, 2, len(model.table) + 1), np.float32)
     assert reading(actions, objects, model.table).scores.shape == (0, 0)
+
+
+@pytest.mark.parametrize("data", [b"", b"PK\x03\x04 no archive", b"\x93NUMPY", b"PK\x05\x06" + bytes(18)])
+def test_a_file_that_is_no_film_is_refused(data, tmp_path):
+    (tmp_path / "film.npz").write_bytes(data)
+    with pytest.raises(HearthError) as found:
+        read_masks(tmp_path / "film.npz")
+    assert found.value.diagnostics[0].code == Code.DAMAGED_FILE
+
+
+def test_a_film_becomes_a_program_that_runs(model, clips, tmp_path):
+    np.savez_compressed(tmp_path / "film.npz", class_ids=clips.films[0])
+    masks = read_masks(tmp_path / "film.npz")
+    shown = show_film(model, masks, hearth.home("maple"))
+    assert [(step.action, step.objects[0].name) for step in shown.seen.steps] == [("Walk", "sofa")]
+    assert shown.execution.executable and shown.clips == 2 and shown.times == (0.89,)
+    with pytest.raises(HearthError, match="shorter than a clip"):
+        cut(masks[:5])
 
 
 def test_steps_follow_each_other_as_in_programs(clips):

@@ -49,7 +49,14 @@ def test_a_clip_is_nine_whole_frames_and_its_middle_is_its_step(trajectory, film
     for clip in film.clips:
         assert 0 <= clip.first <= len(shown) - clips.FRAMES
         middle = shown[clip.first + clips.FRAMES // 2]
-        assert (middle.tick, middle.steps[0]) == (clip.tick, clip.step)
+        assert (middle.tick, middle.steps[0].action) == (clip.tick, clip.step.action)
+        assert [ref.node for ref in middle.steps[0].objects] == [ref.node for ref in clip.step.objects]
+
+
+def test_a_clip_names_what_its_masks_show(film, numbers):
+    (sits, *_) = (clip for clip in film.clips if clip.step.action == "Sit")
+    masks = film.pictures[clips.MASKS][sits.first : sits.first + clips.FRAMES]
+    assert (masks == numbers[sits.step.objects[0].name]).any()
 
 
 def test_each_step_has_one_to_five_clips(film):
