@@ -126,8 +126,10 @@ class SeenModel(Settings):
 
 
 def tensors(shown: SeenClips) -> SeenBatch:
-    """Clips for the network."""
-    classes, numbers, people, crops = (torch.from_numpy(np.ascontiguousarray(each)) for each in shown)
+    """Clips for the network; places for classes that no clip fills are left out."""
+    most = max(int((shown.classes > 0).sum(1).max(initial=0)), 1)
+    full = shown._replace(classes=shown.classes[:, :most], numbers=shown.numbers[:, :most])
+    classes, numbers, people, crops = (torch.from_numpy(np.ascontiguousarray(each)) for each in full)
     return SeenBatch(classes.long(), numbers.float(), people.float(), crops.long())
 
 

@@ -16,8 +16,14 @@ from hearth.models.films.class_table import PLACES
 from hearth.models.films.seen_classes import NUMBERS, PEOPLE
 
 FRAMES = 9
-CHANNELS = (24, 32)
-"""Of the convolutions around the person."""
+LOOKED_AT = slice(0, FRAMES, 2)
+"""Frames in which the network looks at what is around the person: all would take twice as long."""
+
+CHANNELS = (10, 24, 32)
+"""Of a class and of the convolutions around the person."""
+
+NEAR = 48
+"""Numbers of what is around the person in a frame."""
 
 NEVER = -12.0
 """Logarithm of how improbable an object is that the action does not afford."""
@@ -58,18 +64,22 @@ class PersonNetwork(nn.Module):
 
     def __init__(self, traits: int, width: int, dropout: float) -> None:
         super().__init__()
-        one, other = CHANNELS
+        zero, one, other = CHANNELS
+        self.colour = nn.Linear(traits, zero)
         self.near = nn.Sequential(
-            nn.Conv2d(traits, one, 5, stride=2, padding=2), nn.ReLU(), nn.Conv2d(one, other, 3, stride=2, padding=1),
-            nn.ReLU(), nn.Flatten(), nn.Dropout(dropout), nn.Linear(other * 25, 48),
+            nn.Conv2d(zero, one, 5, stride=2, padding=2), nn.ReLU(), nn.Conv2d(one, other, 3, stride=2, padding=1),
+            nn.ReLU(), nn.Flatten(), nn.Dropout(dropout), nn.Linear(other * 25, NEAR),
         )  # fmt: skip
-        self.time = nn.Sequential(nn.Linear(FRAMES * (48 + PEOPLE), 2 * width), nn.ReLU(), nn.Dropout(dropout),
-                                  nn.Linear(2 * width, width))  # fmt: skip
+        looked_at = len(range(FRAMES)[LOOKED_AT])
+        self.time = nn.Sequential(nn.Linear(looked_at * NEAR + FRAMES * PEOPLE, 2 * width), nn.ReLU(),
+                                  nn.Dropout(dropout), nn.Linear(2 * width, width))  # fmt: skip
 
-    def forward(self, people: Tensor, planes: Tensor) -> Tensor:
-        """(B, T, PEOPLE) and (B, T, traits, CROP, CROP) -> (B, width)."""
-        near = self.near(planes.flatten(0, 1)).unflatten(0, people.shape[:2])  # (B, T, 48)
-        return self.time(torch.cat((near, people), -1).flatten(1))
+    def forward(self, people: Tensor, crops: Tensor, traits: Tensor) -> Tensor:
+        """(B, T, PEOPLE), (B, T, CROP, CROP) and (rows, traits) -> (B, width)."""
+        seen = crops[:, LOOKED_AT]
+        planes = self.colour(traits)[seen].permute(0, 1, 4, 2, 3)  # (B, looked at, zero, CROP, CROP)
+        near = self.near(planes.flatten(0, 1)).unflatten(0, seen.shape[:2])
+        return self.time(torch.cat((near.flatten(1), people.flatten(1)), -1))
 
 
 class SeenNetwork(nn.Module):
@@ -102,6 +112,8 @@ class SeenNetwork(nn.Module):
         layer = nn.TransformerEncoderLayer(width, 4, 2 * width, dropout, batch_first=True, norm_first=True)
         self.body = nn.TransformerEncoder(layer, layers, nn.LayerNorm(width), enable_nested_tensor=False)
         self.action = nn.Linear(width, actions)
+        nn.init.zeros_(self.action.weight)
+        nn.init.zeros_(self.action.bias)
         self.asked = nn.ModuleList(nn.Embedding(actions, width) for _ in range(PLACES))
         self.pointed = nn.ModuleList(nn.Linear(width, width) for _ in range(PLACES))
         self.worth = nn.ModuleList(nn.Linear(width, 1) for _ in range(PLACES))
@@ -113,8 +125,7 @@ class SeenNetwork(nn.Module):
         if self.training:
             vectors = vectors * (torch.rand(*batch.classes.shape, 1) >= self.unnamed)
         found = torch.cat((batch.numbers.flatten(2), self.traits[batch.classes], vectors), -1)
-        planes = self.traits[batch.crops].permute(0, 1, 4, 2, 3)
-        person = self.person(batch.people, planes)
+        person = self.person(batch.people, batch.crops, self.traits)
         tokens = torch.cat((person[:, None], self.token(found)), 1)
         empty = functional.pad(batch.classes == 0, (1, 0))
         read = self.body(tokens, src_key_padding_mask=empty)

@@ -86,7 +86,7 @@ def test_untrained_it_is_indifferent(clips, model):
     network = model.settings.network(model.table).eval()
     batch = tensors(seen_clips(clips, model.table))
     scores = network.actions(network.read(batch)[0])
-    assert abs(-scores.mean().item() - np.log(2)) < 0.2
+    assert abs(-scores.mean().item() - np.log(2)) < 1e-4
 
 
 def test_what_is_not_afforded_is_not_named(model, clips):
