@@ -176,17 +176,8 @@ def table(
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)
-    if number == "4.3":
-        from hearth.models.films import clip_tables
-
-        _clips(clip_tables.clip_table(data, models or (), seed), clip_tables.COLUMNS, as_json)
-        return
-    if number == "4.6":
-        from hearth.models.films import film_tables
-
-        with bar("films") as seen:
-            films = film_tables.film_table(data, models or (), seed, seen=seen)
-        _films(films, film_tables.COLUMNS, as_json)
+    if number in ("4.3", "4.6"):
+        _of_films(number, data, models or (), seed, as_json)
         return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
@@ -214,24 +205,26 @@ def table(
     output.table(["method", "of", *columns, "seeds", "minutes"], shown)
 
 
-def _clips(rows: Sequence[Any], columns: Sequence[str], as_json: bool) -> None:
-    """Table 4.3."""
+def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_json: bool) -> None:
+    """Tables 4.3 and 4.6."""
+    from hearth.commands.progress_line import bar
+    from hearth.models.films import clip_tables, film_tables
+
+    with bar("films") as seen:
+        if number == clip_tables.TABLE:
+            rows: Sequence[Any] = clip_tables.clip_table(dataset, models, seed)
+        else:
+            rows = film_tables.film_table(dataset, models, seed, seen=seen)
     if as_json:
         output.emit(rows)
-        return
-    shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in columns),
-              row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
-    output.table(["method", "of", "homes", *columns, "error", "clips", "seeds"], shown)
-
-
-def _films(rows: Sequence[Any], columns: Sequence[str], as_json: bool) -> None:
-    """Table 4.6."""
-    if as_json:
-        output.emit(rows)
-        return
-    shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in columns), row.films,
-              row.seeds or None] for row in rows]  # fmt: skip
-    output.table(["method", "of", "homes", *columns, "films", "seeds"], shown)
+    elif number == clip_tables.TABLE:
+        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
+                  row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
+        output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
+    else:
+        shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
+                  row.films, row.seeds or None] for row in rows]  # fmt: skip
+        output.table(["method", "of", "homes", *film_tables.COLUMNS, "films", "seeds"], shown)
 
 
 def _score(value: Any) -> str:

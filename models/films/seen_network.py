@@ -153,7 +153,7 @@ def loss_of(network: SeenNetwork, batch: SeenBatch, wanted: Tensor, weights: Ten
     Args:
         network: that is trained.
         batch: of B clips.
-        wanted: (B, 3) numbers of action and objects; 0 is no object.
+        wanted: (B, 3) numbers of action and objects; 0 where there is none.
         weights: (B, 2) of each clip's action and objects.
     """
     clip, classes = network.read(batch)
