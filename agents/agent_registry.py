@@ -29,12 +29,14 @@ class Helper:
             which the runner gives), or `none`.
         main: name of the main agent that it is made for; '' for any.
         about: what it is, for tables.
+        network: the policy that it asks, which needs the extra `models`; "" for none.
     """
 
     make: Callable[[Partner], Agent]
     goal: str
     about: str
     main: str = ""
+    network: str = ""
 
 
 SEES_ALL = replace(HELPING, sees_all=True)
@@ -57,8 +59,18 @@ HELPERS: dict[str, Helper] = {
     ),
     "hp": Helper(lambda partner: Hierarchical(), "inferred", "planner, inferred goal"),
     "hp_random": Helper(lambda partner: Hierarchical(), "random", "planner, goal of another task"),
-    "hybrid": Helper(lambda partner: Hybrid(), "inferred", "learned choice of subgoals, regression; inferred goal"),
-    "hrl": Helper(lambda partner: Learned(), "inferred", "learned choice of subgoals and of actions; inferred goal"),
+    "hybrid": Helper(
+        lambda partner: Hybrid(),
+        "inferred",
+        "learned choice of subgoals, regression; inferred goal",
+        network="helping-subgoals",
+    ),
+    "hrl": Helper(
+        lambda partner: Learned(),
+        "inferred",
+        "learned choice of subgoals and of actions; inferred goal",
+        network="helping-actions",
+    ),
     "oracle_b": Helper(
         lambda partner: Hierarchical(partner, SEES_ALL, timed=True), "true", "planner that sees everything"
     ),

@@ -18,6 +18,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.libraries import lacking, remedy
 
 NOBODY = "none"
 """The helper of who acts alone."""
@@ -62,6 +63,19 @@ class Lineup:
         untold = self.helper in (NOBODY, *ONLINE)
         goal = self.goal or (known.goal if known else "none" if untold else "true")
         return Lineup(self.main, self._helper, goal, self.seconds)
+
+    def installed(self) -> Lineup:
+        """The same, if the networks that its helper asks can be asked here.
+
+        Raises:
+            HearthError: MISSING_FILE: the extra `models` is not installed.
+        """
+        kind = HELPERS.get(self.helper) or ONLINE.get(self.helper)
+        network = (kind.network if kind else "") or ("goal-inference" if self.goal == "inferred_states" else "")
+        if network and lacking("models"):
+            message = f"the helper `{self.helper}` asks the network `{network}`, and torch is not installed"
+            raise HearthError.of(Code.MISSING_FILE, message, suggestion=remedy("models"))
+        return self
 
     @property
     def _helper(self) -> str:

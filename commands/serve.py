@@ -38,6 +38,7 @@ def serve(
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
     from hearth.studies.study_file import named
+    from hearth.studies.study_trials import check_helpers
     from hearth.web.application import application
     from hearth.web.desk_access import desk_token
     from hearth.web.serving import listening, run
@@ -45,7 +46,7 @@ def serve(
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
     if study is not None:
-        named(str(study))
+        check_helpers(named(str(study)))
     where = listening(port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     token = desk_token(out)

@@ -24,7 +24,7 @@ from hearth.studies.judged_films import JudgedFilm, goal_in_words, of_episodes
 from hearth.studies.judged_programs import judged_programs
 from hearth.studies.study import EPISODES, Condition, Study
 from hearth.studies.study_file import SHIPPED, named, study_of
-from hearth.studies.study_trials import lineup_of, record_of, suite_of
+from hearth.studies.study_trials import check_helpers, lineup_of, record_of, suite_of
 
 EVENTS, FILMS, REFERENCES = "events.jsonl", "films.json", "references"
 
@@ -125,9 +125,13 @@ def references(
 
     Returns:
         Condition -> results; episodes alone are in each.
+
+    Raises:
+        HearthError: MISSING_FILE: helpers ask networks, and the extra `models` is not installed.
     """
     if study.tasks is None:
         return {}
+    check_helpers(study)
     (folder / REFERENCES).mkdir(parents=True, exist_ok=True)
     found: dict[str, Results] = {}
     for condition in (Condition("alone", "Alone"), *study.conditions):

@@ -49,6 +49,16 @@ def practice_task(study: Study, number: int) -> Task:
     return published_tasks.tasks(study.tasks.challenge, "train", limit=number + 1)[number]
 
 
+def check_helpers(study: Study) -> None:
+    """Refuse a study whose helpers can't be here.
+
+    Raises:
+        HearthError: MISSING_FILE: they ask networks, and the extra `models` is not installed.
+    """
+    for condition in study.conditions:
+        lineup_of(condition).installed()
+
+
 def lineup_of(condition: Condition) -> Lineup:
     """Who takes part under a condition; the person is in the place of the human-like agent."""
     return Lineup(helper=condition.helper, goal=condition.goal).checked()

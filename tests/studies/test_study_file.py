@@ -5,6 +5,7 @@ from studies.small import SMALL, small
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.studies.study_file import SHIPPED, named, study_of
+from hearth.studies.study_trials import check_helpers
 
 
 def faults(text):
@@ -59,6 +60,21 @@ def test_every_fault_is_named_at_once_with_its_words():
     found = faults(SMALL.replace("room: play", "room: plya").replace("people: 4", "people: x"))
     assert [each.line for each in found[:2]] == [4, 6]
     assert found[0].source == "room: plya"
+
+
+def test_the_helpers_are_those_of_the_thesis():
+    helpers = {name: [each.helper for each in named(name).conditions] for name in ("people-with-helpers", "online")}
+    assert helpers == {
+        "people-with-helpers": ["hp", "hybrid", "hp_random"],
+        "online": ["none", "nopa_gpn", "hp_gpn", "hp_random"],
+    }
+
+
+def test_a_study_whose_helpers_ask_networks_does_not_begin_without_them(monkeypatch):
+    monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
+    check_helpers(named("people-alone"))
+    with pytest.raises(HearthError, match="torch is not installed"):
+        check_helpers(named("people-with-helpers"))
 
 
 def test_yaml_that_holds_itself_is_refused():

@@ -11,11 +11,12 @@ from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.libraries import lacking
 from hearth.web.play import recorded_episode
 from hearth.web.play.game_results import results
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import LiveGame, games
-from hearth.web.play.trials import helpers, published, read_trial, trial
+from hearth.web.play.trials import helpers, offered, published, read_trial, trial
 
 TASK = published("wah", "test-1", 0)
 TURN = "[Turnleft]"
@@ -37,6 +38,14 @@ def test_a_trial_is_read_as_it_was_written(helper):
 def test_a_trial_of_nothing_is_refused(wrong):
     with pytest.raises(HearthError, match="BAD_ARGUMENT"):
         trial(TASK, default(), **wrong)
+
+
+def test_a_helper_that_asks_a_network_is_not_offered_without_it(monkeypatch):
+    monkeypatch.setattr("hearth.challenges.lineup.lacking", lambda extra: ["torch"])
+    with pytest.raises(HearthError, match="asks the network `helping-subgoals`, and torch is not installed"):
+        trial(TASK, default(), "hybrid")
+    assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered())
+    assert {"none", "person", "program", "hp", "nopa"} <= set(offered())
 
 
 def test_a_random_goal_is_another_one():
@@ -136,7 +145,10 @@ def test_two_decisions_of_one_tick_are_one(server, person, game):
             assert live.game.tick == 1
 
 
-@pytest.mark.parametrize("helper", ["hp_true", "random"])
+needs_models = pytest.mark.skipif(bool(lacking("models")), reason="the extra `models` is not installed")
+
+
+@pytest.mark.parametrize("helper", ["hp_true", "random", pytest.param("hybrid", marks=needs_models)])
 def test_another_process_goes_on_with_the_same_helper(server, person, helper):
     """Done again from the store, the helper decides as the one that was there all the time."""
     game = begun(server, person, TASK, helper)

@@ -17,7 +17,7 @@ from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
-from hearth.web.play.trials import INTERFACES, Trial, helpers, published, trial
+from hearth.web.play.trials import INTERFACES, Trial, offered, published, trial
 from hearth.web.third_party_scripts import missing
 from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
@@ -38,7 +38,7 @@ def start_page(visit: Visit) -> Response:
     return visit.page(
         "play/start.html",
         challenges=[(name, challenge(name).title, list(_offered(name))) for name in NAMES],
-        helpers=helpers(),
+        helpers=offered(),
         interfaces=SHOWN,
         lacking=missing(),
         games=[_line(each) for each in mine[:30] if not each.blind],

@@ -9,7 +9,7 @@ from typing import Any
 from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_registry import ONLINE
 from hearth.challenges.definition import Challenge, challenge
-from hearth.challenges.lineup import GOALS, NOBODY
+from hearth.challenges.lineup import GOALS, NOBODY, Lineup
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.suite_runs import INFERRED
 from hearth.challenges.task_files import Suite, read_suite, suite_data
@@ -96,6 +96,19 @@ def helpers() -> dict[str, str]:
     return {**others, **ours, **online}
 
 
+def offered() -> dict[str, str]:
+    """Those of `helpers` that can be here: not those that ask networks where the extra `models` is not installed."""
+    return {name: about for name, about in helpers().items() if _here(name)}
+
+
+def _here(helper: str) -> bool:
+    try:
+        Lineup(helper=helper).installed()
+    except HearthError:
+        return False
+    return True
+
+
 def published(name: str, split: str, number: int) -> Task:
     """A published task by its place in its split, from 0.
 
@@ -130,13 +143,15 @@ def trial(
         goal: what the helper is asked to do; as its row in the registry says where empty.
 
     Raises:
-        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface.
+        HearthError: BAD_ARGUMENT: there is no such helper, goal or interface; MISSING_FILE: the helper asks a network,
+            and the extra `models` is not installed.
     """
     _check("helper", helper, helpers())
     _check("interface", interface, INTERFACES)
     usual = {PERSON: "true", PROGRAM: "true"} | {name: each.goal for name, each in HELPERS.items()}
     kind = goal or usual.get(helper, "none")
     _check("goal", kind, GOALS)
+    Lineup(helper=helper, goal=kind).installed()
     seen = challenge(task.challenge).partial if partial is None else partial
     return Trial(task, helper, kind, _asked(task, kind, seed, knowledge), interface, seed, seen)
 
