@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -31,7 +32,7 @@ MOST_PROPOSED = 100
 """Goals of a posterior that are shown; the others have next to no probability."""
 
 
-class OnlineHelper:
+class OnlineHelper(ABC):
     """A helper that sees everything and infers what is wanted; `choose` says how it helps.
 
     While its partner is out of view it waits.
@@ -98,9 +99,9 @@ class OnlineHelper:
         likely = self.posterior.likeliest(MOST_PROPOSED).tolist()
         return {self.space.wanted[goal]: self.posterior.probability(goal) for goal in likely}
 
+    @abstractmethod
     def choose(self, view: View) -> Edge | None:
         """What to help with now; None to wait."""
-        raise NotImplementedError
 
     def _first(self, search: Regression, subgoal: Edge) -> Step | None:
         relation, thing, target = subgoal

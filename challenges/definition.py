@@ -151,6 +151,7 @@ def _goal_set(name: str, given: Mapping[str, Any]) -> GoalSet:
     return GoalSet(
         name,
         given["title"],
+        given.get("asked", given["title"]),
         given["relation"],
         tuple(given["targets"]),
         given.get("most", {}),

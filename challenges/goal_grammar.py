@@ -37,6 +37,7 @@ class GoalSet:
     Attributes:
         name: its identifier.
         title: its name in the thesis.
+        asked: what people are asked to do.
         relation: of things to the target.
         targets: classes of furniture; one is chosen.
         most: class -> most wanted of it; `total` things in all, every goal equally probable.
@@ -51,6 +52,7 @@ class GoalSet:
 
     name: str
     title: str
+    asked: str
     relation: str
     targets: tuple[str, ...]
     most: Mapping[str, int]

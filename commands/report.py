@@ -5,21 +5,24 @@ from pathlib import Path
 from hearth.commands import output
 
 
-def report(dataset: Path, out: Path = Path("report_out"), workers: int = 0, as_json: bool = False) -> None:
+def report(
+    dataset: Path, out: Path = Path("report_out"), replays: int = 16, workers: int = 0, as_json: bool = False
+) -> None:
     """Write a dataset as one folder of static HTML; open its index.html, without a network or server.
 
     It has the counts of records by stage, statistics with their queries, homes as floor plans, and every program with
-    its steps, preconditions, repairs, graphs before and after, and pictures.
+    its steps, preconditions, repairs, graphs before and after, and pictures; some runs play in 3D.
 
     \b
     Example:
       python cli.py report data_out --out report_out
+      python cli.py report data_out --replays 40 --out report_out
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.report.write import write_report
 
     with bar("shares of programs") as seen:
-        programs = write_report(Dataset.open(dataset), out, workers, seen)
+        programs = write_report(Dataset.open(dataset), out, workers, seen, replays)
     text = f"{output.counted(programs, 'program')}; open {out / 'index.html'}"
     output.say(text, {"out": out, "programs": programs}, as_json)

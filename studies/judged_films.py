@@ -81,7 +81,7 @@ def goal_in_words(study: Study, task_id: str) -> str:
     """A task's goal as its judges read it: each predicate with its count."""
     task = next(each for each in tasks_of(study) if each.id == task_id)
     grammar = challenge(task.challenge).grammar
-    titles = " and ".join(grammar.sets[name].title for name in task.sets)
+    titles = " and ".join(grammar.sets[name].asked for name in task.sets)
     return f"{titles}: " + ", ".join(f"{number} x {name}" for name, number in grammar.written(task.goal).items())
 
 

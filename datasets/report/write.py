@@ -14,6 +14,7 @@ from hearth.datasets.format.datasheet import STRENGTH, datasheet
 from hearth.datasets.report.copied_pictures import copy_pictures
 from hearth.datasets.report.drawn_plans import plans
 from hearth.datasets.report.figures import figures
+from hearth.datasets.report.replays import write_replays
 from hearth.datasets.report.stories import DRAWN, Stories
 from hearth.repair.strengths import MILD
 from hearth.schemas.diagnostics import HearthError
@@ -29,12 +30,19 @@ SHARD = 200
 _ROW = "program_id, title, origin, split, len(steps) AS steps, activity_id, parent_id"
 
 
-def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen) -> int:
+def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unseen, replays: int = 0) -> int:
     """Write the report of a dataset into a folder; the same files for any number of workers.
 
     `index.html` opens from disk, without a server. Browsers do not let such a page read JSON, so data is in scripts:
-    `data/programs.js` has a short row per program, `data/stories-N.js` the data of their pages. `seen` reports the
-    progress.
+    `data/programs.js` has a short row per program, `data/stories-N.js` the data of their pages, `data/home-N.js` and
+    `data/replay-N.js` what some runs look like in 3D.
+
+    Args:
+        dataset: what is reported.
+        to: the folder.
+        workers: processes.
+        seen: reports the progress.
+        replays: runs that can be watched in 3D.
 
     Returns:
         Number of programs.
@@ -49,7 +57,9 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
     rows = _rows(dataset)
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
     _write_stories(dataset, to, workers, seen)
-    for name in ("app.js", "page.js", "style.css"):
+    played = write_replays(dataset, to, replays)
+    (to / "data/played.js").write_bytes(b"HEARTH.played(" + orjson.dumps(played) + b");\n")
+    for name in ("app.js", "page.js", "replay.js", "style.css"):
         inside(to, name).write_bytes(files("hearth.datasets.report").joinpath("assets", name).read_bytes())
     (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
     copy_pictures(dataset, to)

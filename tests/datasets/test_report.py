@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from pathlib import Path
+from urllib.parse import quote
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -21,6 +22,8 @@ from hearth.schemas.tables import TABLES
 
 MILK = "release:batch-1/file1_1"
 NASTY = "<script>alert(1)</script><b>"
+DRAWN = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""Chromium draws 3D without a graphics card."""
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +155,9 @@ def browser():
     if path is None:
         pytest.skip("no Chromium here: apt-get install chromium")
     with playwright.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        started = running.chromium.launch(
+            executable_path=path, args=["--no-sandbox", DRAWN, "--enable-unsafe-swiftshader"]
+        )
         yield started
         started.close()
 
@@ -184,6 +189,50 @@ def test_a_browser_searches_opens_and_plays(written, browser, scheme, width):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     dark = page.evaluate("matchMedia('(prefers-color-scheme: dark)').matches")
     assert dark == (scheme == "dark")
+    assert faults == []
+
+
+@pytest.fixture(scope="module")
+def replayed(ds, tmp_path_factory):
+    """A report in which three runs play in 3D."""
+    folder = tmp_path_factory.mktemp("replayed") / "out"
+    write_report(ds, folder, replays=3)
+    return folder
+
+
+def _inside(path):
+    text = path.read_text()
+    return json.loads(f"[{text[text.index('(') + 1 : text.rindex(')')]}]")
+
+
+@pytest.mark.slow
+def test_runs_play_in_3d(ds, replayed):
+    places = data(replayed / "data/played.js")
+    assert 0 < len(places) <= 3
+    rows = {run.row["execution_id"]: run.row for name in ds for run in ds[name].runs}
+    for name, (home, own) in places.items():
+        kind, number, value = _inside(replayed / f"data/replay-{own}.js")
+        assert (kind, number) == ("replay", own)
+        assert len(value["ticks"]) == len(rows[name]["ticks"]) + 1
+        kind, number, value = _inside(replayed / f"data/home-{home}.js")
+        assert (kind, number) == ("home", home)
+        assert len(value["things"]) > 10
+
+
+@pytest.mark.slow
+def test_a_browser_plays_a_run_in_3d(ds, replayed, browser):
+    page = browser.new_page()
+    faults = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    ran = next(iter(data(replayed / "data/played.js")))
+    (name,) = (each for each in ds if any(run.row["execution_id"] == ran for run in ds[each].runs))
+    page.goto(f"{(replayed / 'index.html').as_uri()}#/program/{quote(name, safe='')}")
+    page.select_option("select", label=ran.rpartition("@")[2].partition("/")[0])
+    page.click("button.deep")
+    page.wait_for_selector("canvas.replay[data-ready]", timeout=60_000)
+    page.click("text=›")
+    assert page.locator("canvas.replay").get_attribute("data-tick") == "1"
+    assert len(set(page.locator("canvas.replay").screenshot())) > 100
     assert faults == []
 
 

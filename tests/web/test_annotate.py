@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 
 import pytest
 from web.people import DESK, Server
@@ -182,13 +183,27 @@ def test_faults_stand_at_their_steps(person, set_up):
 def test_a_program_runs_in_a_home_step_by_step(person, set_up):
     answer = person.post(f"/annotate/task/{set_up}/run", json={"steps": STEPS, "home": "maple"}).json()
     assert answer["ran"] and len(answer["ticks"]) == len(STEPS)
-    assert "television" in answer["ticks"][4]["changes"] and "ON" in answer["ticks"][4]["changes"]
+    assert answer["ticks"][4]["changes"] == "The television is on"
+    assert "The remote control is in the right hand" in answer["ticks"][2]["changes"]
+    assert not any(re.search(r"[A-Z]{2}|\d", tick["changes"]) for tick in answer["ticks"]), "told in words"
     assert all(len(tick["at"]) == 3 for tick in answer["ticks"])
     assert person.get("/annotate/plan/maple").text.startswith("<svg")
     bad = person.post(f"/annotate/task/{set_up}/run", json={"steps": STEPS, "home": "../maple"})
     assert bad.json()["error"]["code"] == "UNKNOWN_HOME"
     faulty = person.post(f"/annotate/task/{set_up}/run", json={"steps": [], "home": "maple"})
     assert faulty.json()["error"]["code"] == "EMPTY"
+
+
+def test_a_run_is_watched_in_3d(person, set_up):
+    answer = person.post(f"/annotate/task/{set_up}/replay", json={"steps": STEPS, "home": "maple"}).json()
+    assert len(answer["run"]["ticks"]) == len(STEPS) + 1
+    home = person.get(answer["home"]).json()
+    assert max(max(tick["off"], default=0) for tick in answer["run"]["ticks"]) < len(home["things"])
+    assert person.get("/annotate/replay.js").text.count("HEARTH_REPLAY") > 0
+    for home, code in (("../maple", "UNKNOWN_HOME"), (7, "BAD_ARGUMENT")):
+        bad = person.post(f"/annotate/task/{set_up}/replay", json={"steps": STEPS, "home": home})
+        assert bad.json()["error"]["code"] == code
+    assert person.get("/annotate/shapes/nowhere").json()["error"]["code"] == "UNKNOWN_HOME"
 
 
 def test_a_faulty_program_is_not_handed_in_and_an_old_tab_changes_nothing(person, set_up):

@@ -143,6 +143,12 @@ def test_a_whole_way_by_mouse(opened):
     page.wait_for_selector("#result .good")
     page.click("#on")
     assert page.locator(".ticks li[aria-current]").count() == 1
+    page.click("#in-3d")
+    page.wait_for_selector("canvas.replay[data-ready]", timeout=60_000)
+    assert page.locator("canvas.replay").get_attribute("data-tick") == "1"
+    page.click("#on")
+    assert page.locator("canvas.replay").get_attribute("data-tick") == "2"
+    assert len(set(page.locator("canvas.replay").screenshot())) > 100, "there is something to see"
     page.click("#submit")
     page.wait_for_url("**/annotate/tasks")
     assert "your program is submitted" in page.text_content("main")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from starlette.responses import Response
 
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
 from hearth.web.annotate import annotated_programs, block_grammar, live_check, trial_run
 from hearth.web.annotate.annotate_tables import SUBMITTED
@@ -15,6 +17,8 @@ from hearth.web.messages import int_field, text_field
 from hearth.web.store import Row
 from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
+
+Run = Callable[[Draft, str, str, Knowledge], dict[str, Any]]
 
 
 def task_list(visit: Visit) -> Response:
@@ -131,8 +135,17 @@ def try_out(visit: Visit) -> Response:
     return visit.answer(run_of(visit, _text(visit), message, draft))
 
 
-def run_of(visit: Visit, text: Row, message: dict[str, Any], draft: Draft) -> dict[str, Any]:
-    """A run, in the home that a message names, of a draft without faults.
+def replay(visit: Visit) -> Response:
+    """The same run in 3D."""
+    message = visit.json()
+    draft = sent(visit, message, _draft(visit))
+    return visit.answer(run_of(visit, _text(visit), message, draft, trial_run.replay_draft))
+
+
+def run_of(
+    visit: Visit, text: Row, message: dict[str, Any], draft: Draft, run: Run = trial_run.run_draft
+) -> dict[str, Any]:
+    """A run, in the home that a message names, of a draft without faults: in words, or in 3D.
 
     Raises:
         WebError: TOO_FAST; or the code of the first fault.
@@ -141,13 +154,24 @@ def run_of(visit: Visit, text: Row, message: dict[str, Any], draft: Draft) -> di
     if fault := next((each for each in check_of(visit, text, draft) if each["fault"]), None):
         place = f"step {fault['step'] + 1}" if fault["step"] >= 0 else "program"
         raise WebError(Code[fault["code"]], place, "a program without faults", fault["message"])
-    return trial_run.run_draft(draft, text["title"], text_field(message, "home", 40), visit.web.known)
+    return run(draft, text["title"], text_field(message, "home", 40), visit.web.known)
 
 
 def plan(visit: Visit) -> Response:
     """The floor plan of a home."""
     trial_run.home_of(visit.part("home"), visit.web.known)
     return Response(trial_run.plan_of(visit.part("home"), visit.web.known), media_type="image/svg+xml")
+
+
+def shapes(visit: Visit) -> Response:
+    """The shapes of a home in 3D."""
+    found = trial_run.shapes_of(visit.part("home"), visit.web.known)
+    return Response(found, media_type="application/json", headers={"Cache-Control": "private, max-age=3600"})
+
+
+def replay_script(visit: Visit) -> Response:
+    """The script that plays runs in 3D."""
+    return Response(trial_run.replay_script(), media_type="text/javascript")
 
 
 def check_of(visit: Visit, text: Row, draft: Draft) -> list[dict[str, Any]]:

@@ -76,6 +76,12 @@ def try_out(visit: Visit) -> Response:
     return visit.answer(composing.run_of(visit, text, message, draft))
 
 
+def replay(visit: Visit) -> Response:
+    """The same run in 3D."""
+    _, text, draft, message = _mended(visit)
+    return visit.answer(composing.run_of(visit, text, message, draft, trial_run.replay_draft))
+
+
 def mend(visit: Visit) -> Response:
     """Accept the mended steps instead of those that were submitted."""
     program, text, draft, message = _mended(visit)

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib.resources import files
 from typing import Any
+
+import orjson
 
 from hearth.datasets.report.drawn_plans import draw
 from hearth.grounding.trial import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.libraries import library as library_of
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import parse_program
-from hearth.simulation.change_summary import summary
 from hearth.simulation.motion.base_pose import hand_and_base_poses
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
+from hearth.web.annotate.change_words import told
 from hearth.web.annotate.draft import SPECIAL, Draft
 from hearth.web.web_errors import WebError
 
@@ -57,14 +61,58 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
         `home`, `ran` (whether all steps ran), `why` and `step` (from 0) of the failure, and `ticks`: for each step done
         its number, line, changes in words, and where the character is: (x, z) in metres, yaw in degrees.
     """
-    numbers = [number for number, block in enumerate(draft.blocks) if block.action != SPECIAL]
-    lines = [draft.blocks[number].line() for number in numbers]
-    program, _ = parse_program("\n".join(lines) + "\n")
-    trial = attempt(Program(title, "", program.steps), home_of(home, known))
+    numbers, lines = _lines(draft)
+    trial = _trial(lines, title, home, known)
     if isinstance(trial, Failure):
         at = numbers[trial.tick] if trial.tick < len(numbers) else -1
         return {"home": home, "ran": False, "why": trial.message(), "step": at, "ticks": [], "start": None}
     return {"home": home, **_reported(trial, numbers, lines)}
+
+
+def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
+    """The same run in 3D, for `replay.js` of the report: `home`, the address of the home's shapes, and `run`.
+
+    Raises:
+        WebError: NOT_RENDERED: nothing of it runs.
+        HearthError: MISSING_FILE: libraries for pictures are not installed.
+    """
+    from hearth.rendering.film.replay import run_shapes
+
+    library_of("trimesh")
+    trial = _trial(_lines(draft)[1], title, home, known)
+    if isinstance(trial, Failure):
+        raise WebError(Code.NOT_RENDERED, "home", "a program that begins to run there", trial.message())
+    graph = library.load_graph(home, known)
+    return {"home": f"/annotate/shapes/{home}", "run": run_shapes(trial.execution, graph, known)}
+
+
+@lru_cache(maxsize=8)
+def shapes_of(name: str, known: Knowledge) -> bytes:
+    """The shapes of a home, as JSON.
+
+    Raises:
+        WebError: UNKNOWN_HOME.
+    """
+    from hearth.rendering.film.replay import home_shapes
+
+    home_of(name, known)
+    return orjson.dumps(home_shapes(library.load_graph(name, known), known))
+
+
+def replay_script() -> bytes:
+    """The script that plays runs in 3D, which reports have, too."""
+    return (files("hearth.datasets.report") / "assets" / "replay.js").read_bytes()
+
+
+def _lines(draft: Draft) -> tuple[list[int], list[str]]:
+    """The blocks that run, by number and as lines of a program."""
+    numbers = [number for number, block in enumerate(draft.blocks) if block.action != SPECIAL]
+    return numbers, [draft.blocks[number].line() for number in numbers]
+
+
+def _trial(lines: list[str], title: str, home: str, known: Knowledge) -> Trial | Failure:
+    program, _ = parse_program("\n".join(lines) + "\n")
+    return attempt(Program(title, "", program.steps), home_of(home, known))
 
 
 def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, Any]:
@@ -74,7 +122,7 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
         {
             "step": numbers[tick],
             "line": lines[tick],
-            "changes": summary(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
+            "changes": told(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
             "at": _where(poses[tick] if tick < len(poses) else None),
         }
         for tick in range(len(worlds) - 1)

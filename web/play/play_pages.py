@@ -50,13 +50,13 @@ def _offered(name: str) -> Iterator[tuple[int, str]]:
     split = "test-1" if "test-1" in which.splits else "test"
     for number in range(FIRST_TASKS):
         task = published(name, split, number)
-        titles = ", ".join(which.grammar.sets[each].title for each in task.sets)
+        titles = ", ".join(which.grammar.sets[each].asked for each in task.sets)
         yield number, f"{number + 1}. {titles}, in {task.home}"
 
 
 def _line(each: Stored) -> dict[str, Any]:
     task = each.trial.task
-    titles = ", ".join(each.trial.challenge.grammar.sets[name].title for name in task.sets)
+    titles = ", ".join(each.trial.challenge.grammar.sets[name].asked for name in task.sets)
     over = each.result is not None
     state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
     return {"id": each.id, "title": f"{titles}, in {task.home}", "helper": each.trial.helper, "state": state}
@@ -97,7 +97,7 @@ def game_page(visit: Visit) -> Response:
         "play/game.html",
         game=live.stored.id,
         interface=game.trial.interface,
-        title=", ".join(game.trial.challenge.grammar.sets[name].title for name in game.trial.task.sets),
+        title=", ".join(game.trial.challenge.grammar.sets[name].asked for name in game.trial.task.sets),
         home=game.trial.task.home,
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,

@@ -87,6 +87,22 @@ const HEARTH = (() => {
     return waiting.get(number).then((stories) => stories.get(id));
   }
 
+  // What a run looks like in 3D: the shapes of its home and its own, by the numbers of their files.
+  const shapes = new Map();
+  function shape(kind, number) {
+    const name = `${kind}-${number}`;
+    if (!shapes.has(name)) {
+      shapes.set(name, new Promise((resolve, reject) => {
+        const script = element("script");
+        script.src = `data/${name}.js`;
+        script.onload = () => resolve(HEARTH.came.get(name));
+        script.onerror = () => reject(new Error(`data/${name}.js is missing`));
+        document.head.append(script);
+      }));
+    }
+    return shapes.get(name);
+  }
+
   function show() {
     const hash = location.hash.replace(/^#\/?/, "");
     const [view, id] = hash.startsWith("program/") ? ["page", decodeURIComponent(hash.slice(8))] : [hash || "list", ""];
@@ -111,7 +127,12 @@ const HEARTH = (() => {
 
   return {
     element,
+    shape,
     arrived: [],
+    came: new Map(),
+    places: {},
+    played(places) { HEARTH.places = places; },
+    replays(kind, number, data) { HEARTH.came.set(`${kind}-${number}`, data); },
     stories(list) { HEARTH.arrived = list; },
     programs(rows) {
       state.all = rows;

@@ -99,6 +99,8 @@ HEARTH.draw = (() => {
     picture.alt = "";
     picture.hidden = Boolean(run.film) || !run.frames.length;
     const film = run.film ? filmed(run.film) : null;
+    const scene = element("div");
+    let replay = null;
     let tick = 0;
     const stop = () => { clearInterval(timer); timer = 0; if (film) film.pause(); button.textContent = "Play"; };
     function draw() {
@@ -109,6 +111,7 @@ HEARTH.draw = (() => {
       changes.replaceChildren(lines.length ? list(lines) : element("p", tick ? "changes nothing" : "the start", "quiet"));
       const frame = run.frames.filter((each) => each.tick === tick).at(-1);
       if (frame) picture.src = frame.file.split("/").map(encodeURIComponent).join("/");
+      if (replay) replay.go(tick);
     }
     function go(to) {
       tick = Math.max(0, Math.min(run.ticks.length, to));
@@ -139,8 +142,23 @@ HEARTH.draw = (() => {
       return way;
     });
     controls.append(button, ...ways, where);
+    const numbers = HEARTH.places[run.id];
+    if (numbers) {
+      const deep = element("button", "In 3D");
+      deep.type = "button";
+      deep.className = "deep";
+      deep.onclick = async () => {
+        deep.disabled = true;
+        try {
+          const [home, own] = await Promise.all([HEARTH.shape("home", numbers[0]), HEARTH.shape("replay", numbers[1])]);
+          replay = await HEARTH_REPLAY(scene, home, own);
+          if (replay) { deep.remove(); replay.go(tick); } else scene.textContent = "This browser has no WebGL.";
+        } catch (error) { scene.textContent = error.message; }
+      };
+      controls.append(deep);
+    }
     draw();
-    return card("Playing", controls, film ?? picture, changes);
+    return card("Playing", controls, film ?? picture, scene, changes);
   }
 
   function runCards(run, steps) {
@@ -188,7 +206,7 @@ HEARTH.draw = (() => {
     const label = element("p", "Run in ", "controls");
     label.append(choose);
     page.replaceChildren(...head, label, columns, place);
-    const seen = [(run) => run.film, (run) => run.frames.length].map((test) => program.runs.findIndex(test));
+    const seen = [(run) => run.film, (run) => run.frames.length, (run) => HEARTH.places[run.id]].map((test) => program.runs.findIndex(test));
     const pictured = seen.find((number) => number >= 0);
     if (pictured) choose.value = String(pictured);
     open();

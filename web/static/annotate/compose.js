@@ -234,7 +234,8 @@ async function run() {
       draw();
       if (blocks) blocks.mark(model.found);
     }
-    if (result.ticks.length) await player(byId("stage"), result, (number) => phrase(model.steps[number]));
+    const sent = { steps: model.steps, home: byId("home").value };
+    if (result.ticks.length) await player(byId("stage"), result, (number) => phrase(model.steps[number]), () => ask("/replay", sent));
   } catch (error) {
     byId("result").replaceChildren(element("p", `It can't be run. ${error.message}`, "fault"));
   }

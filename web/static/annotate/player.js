@@ -16,8 +16,10 @@ function shape(name, attributes) {
   return made;
 }
 
-// Show a run in an element that has a `#plan` and the buttons `#play`, `#back` and `#on`.
-export async function player(stage, result, phrase) {
+/* global HEARTH_REPLAY */
+// Show a run in an element that has a `#plan`, a `#deep` and the buttons `#play`, `#back`, `#on` and `#in-3d`; `inDepth`
+// promises the same run in 3D.
+export async function player(stage, result, phrase, inDepth) {
   clearInterval(timer);
   timer = 0;
   const plan = await planOf(result.home);
@@ -42,6 +44,7 @@ export async function player(stage, result, phrase) {
 
   const places = [result.start, ...result.ticks.map((tick) => tick.at)];
   let now = 0;
+  let replay = null;
   function go(to) {
     now = Math.max(0, Math.min(result.ticks.length, to));
     const at = places[now];
@@ -50,6 +53,7 @@ export async function player(stage, result, phrase) {
     path.setAttribute("points", places.slice(0, now + 1).filter(Boolean).map(([x, z]) => `${x},${-z}`).join(" "));
     [...list.children].forEach((line, number) => line.toggleAttribute("aria-current", number === now - 1));
     list.children[now - 1]?.scrollIntoView({ block: "nearest" });
+    replay?.go(now);
   }
   const play = stage.querySelector("#play");
   function stop() { clearInterval(timer); timer = 0; play.textContent = "Play"; }
@@ -58,6 +62,23 @@ export async function player(stage, result, phrase) {
     if (now === result.ticks.length) go(0);
     play.textContent = "Pause";
     timer = setInterval(() => { go(now + 1); if (now === result.ticks.length) stop(); }, PAUSE);
+  };
+  const [deep, button] = [stage.querySelector("#deep"), stage.querySelector("#in-3d")];
+  deep.replaceChildren();
+  button.hidden = false;
+  button.disabled = false;
+  button.onclick = async () => {
+    button.disabled = true;
+    deep.textContent = "Drawing …";
+    try {
+      const found = await inDepth();
+      const home = await (await fetch(found.home)).json();
+      replay = await HEARTH_REPLAY(deep, home, found.run);
+      if (replay) { button.hidden = true; replay.go(now); } else deep.textContent = "This browser has no WebGL.";
+    } catch (error) {
+      button.disabled = false;
+      deep.textContent = `It can't be drawn. ${error.message}`;
+    }
   };
   stage.querySelector("#back").onclick = () => { stop(); go(now - 1); };
   stage.querySelector("#on").onclick = () => { stop(); go(now + 1); };

@@ -1,0 +1,40 @@
+"""What a step of a run changed, as one tells it: no ids, no names of relations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hearth.schemas.change import Change
+from hearth.schemas.literals import HANDS
+from hearth.schemas.vocabulary import CHARACTER_CLASS
+from hearth.simulation.world.world import World
+
+STATES = {"PLUGGED_IN": "plugged in", "PLUGGED_OUT": "unplugged", "LYING": "lying down"}
+"""States whose words are not their names."""
+
+PLACES = {"INSIDE": "in", "ON": "on"}
+"""Relations that are told, by their words; who is close to what, or faces it, is not."""
+
+HELD = dict(zip(HANDS, ("right", "left"), strict=True))
+
+
+def told(change: Change, world: World) -> str:
+    """What changed; `world` is the one before."""
+    parts = list(dict.fromkeys(_parts(change, world)))
+    text = "; ".join(parts)
+    return text[:1].upper() + text[1:] if text else "Nothing else changes"
+
+
+def _parts(change: Change, world: World) -> Iterator[str]:
+    for node, state in change.set_states:
+        yield f"{_name(node, world)} is {STATES.get(state, state.lower())}"
+    for source, relation, target in change.added:
+        if relation in HELD:
+            yield f"{_name(target, world)} is in the {HELD[relation]} hand"
+        elif relation in PLACES:
+            yield f"{_name(source, world)} is {PLACES[relation]} {_name(target, world)}"
+
+
+def _name(node: int, world: World) -> str:
+    name = world.home.classes[world.home.index[node]]
+    return "the person" if name == CHARACTER_CLASS else f"the {name.replace('_', ' ')}"
