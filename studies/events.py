@@ -12,13 +12,13 @@ from typing import Any, Protocol
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.files import sync_folder, write_bytes
-from hearth.storage.input_files import read_input
+from hearth.storage.input_files import LARGEST_TABLE, read_input
 
 PLACES = "places"
 """The stream of who took which place; every other stream is a person's."""
 
-KINDS = ("joined", "consented", "read", "practised", "did", "answered", "left", "finished", "freed")
-"""What may happen: `joined` and `freed` in the stream of places, the others in a person's."""
+KINDS = ("joined", "consented", "read", "practised", "did", "answered", "left", "finished")
+"""What may happen: `joined` in the stream of places, the others in a person's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ class FileLedger(MemoryLedger):
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
             write_bytes(path, first)
-        lines = path.read_bytes().splitlines(keepends=True)
+        lines = read_input(path, LARGEST_TABLE).splitlines(keepends=True)
         if not lines or lines[0] != first:
             remedy = "name a new folder, or delete this file"
             raise HearthError.of(Code.BAD_ARGUMENT, "these are the events of another study or simulation",
@@ -145,7 +145,7 @@ class FileLedger(MemoryLedger):
 
     def forget(self, stream: str) -> None:
         """Delete a person's events; the file is written anew."""
-        lines = [event_of(each, str(self.path), 0) for each in self.path.read_bytes().splitlines()[1:]]
+        lines = [event_of(each, str(self.path), 0) for each in read_input(self.path, LARGEST_TABLE).splitlines()[1:]]
         super().forget(stream)
         kept = [redacted(each, stream) for each in lines if each.stream != stream]
         write_bytes(self.path, b"".join([_line(self.header), *(_line(event_data(each)) for each in kept)]))
@@ -168,7 +168,7 @@ def event_of(line: bytes, file: str, number: int) -> Event:
     try:
         given = orjson.loads(line)
         return Event(str(given["stream"]), int(given["number"]), str(given["kind"]), float(given["at"]), given["data"])
-    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError) as error:
+    except (orjson.JSONDecodeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise HearthError.of(Code.BAD_JSON, f"line {number} is not an event", file=file) from error
 
 
@@ -181,7 +181,7 @@ def header_of(path: Path) -> dict[str, Any]:
     import orjson
 
     try:
-        found = orjson.loads(read_input(path, 1 << 30).partition(b"\n")[0])
+        found = orjson.loads(read_input(path, LARGEST_TABLE).partition(b"\n")[0])
     except orjson.JSONDecodeError as error:
         raise HearthError.of(Code.BAD_JSON, "not a file of events", file=str(path)) from error
     if not isinstance(found, dict) or found.get("format") != FORMAT:

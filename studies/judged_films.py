@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Record
-from hearth.challenges.result_files import episode_data
+from hearth.challenges.result_files import episode_data, episode_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.rng import rng
+from hearth.storage.input_files import read_input
 from hearth.studies.study import Study
 from hearth.studies.study_trials import tasks_of
 
@@ -46,9 +49,54 @@ class JudgedFilm:
         return asdict(self)
 
 
-def films_of(data: Sequence[Mapping[str, Any]]) -> tuple[JudgedFilm, ...]:
-    """The inverse of `JudgedFilm.as_json`."""
-    return tuple(JudgedFilm(**each) for each in data)
+def films_of(data: Any, file: str) -> tuple[JudgedFilm, ...]:
+    """The inverse of `JudgedFilm.as_json`, of a list that anybody may have written.
+
+    Raises:
+        HearthError: BAD_JSON with the number of the film.
+    """
+    if not isinstance(data, list):
+        raise HearthError.of(Code.BAD_JSON, "it is no list of films", file=file, suggestion=REMEDY)
+    found = []
+    for number, each in enumerate(data):
+        if fault := _fault_of(each):
+            raise HearthError.of(Code.BAD_JSON, f"film {number}: {fault}", file=file, suggestion=REMEDY)
+        found.append(JudgedFilm(**each))
+    if len({(film.item, film.condition) for film in found}) < len(found):
+        raise HearthError.of(Code.DUPLICATE, "two films are of one task under one condition", file=file)
+    return tuple(found)
+
+
+REMEDY = "`study prepare STUDY --out DIR` makes it"
+
+_NAME = re.compile(r"[0-9]{3,6}-[a-z][a-z0-9_-]{0,59}")
+"""Names of films' files."""
+
+_MOST = {"condition": 60, "name": 70, "group": 60, "about": 10_000, "home": 200}
+"""Characters of texts."""
+
+
+def _fault_of(film: Any) -> str:
+    """What is wrong with a film as JSON; "" where nothing is."""
+    if not isinstance(film, dict) or film.keys() != {each.name for each in fields(JudgedFilm)}:
+        return "it has other keys than a film"
+    for name, most in _MOST.items():
+        if not isinstance(film[name], str) or len(film[name]) > most:
+            return f"`{name}` is no text of at most {most:,} characters"
+    if not _NAME.fullmatch(film["name"]):
+        return "`name` is no number and a name"
+    if not isinstance(film["item"], int) or isinstance(film["item"], bool) or not 0 <= film["item"] < 100_000:
+        return "`item` is no number of a task"
+    if not isinstance(film["measure"], (int, float)) or not math.isfinite(film["measure"]):
+        return "`measure` is no number"
+    return _content_fault(film["content"])
+
+
+def _content_fault(content: Any) -> str:
+    if isinstance(content, list):
+        few = len(content) <= 10_000 and all(isinstance(line, str) and len(line) <= 1_000 for line in content)
+        return "" if few else "`content` is no program"
+    return "" if isinstance(content, dict) and episode_of(content) else "`content` is neither program nor episode"
 
 
 def of_episodes(
@@ -89,12 +137,11 @@ def read_films(path: Path) -> tuple[JudgedFilm, ...]:
     """The films of a study's folder.
 
     Raises:
-        HearthError: MISSING_FILE: they were not prepared.
+        HearthError: MISSING_FILE: they were not prepared; BAD_JSON with the number of the film.
     """
-    from hearth.storage.files import read_json
+    import orjson
 
-    data = read_json(path)
-    if not isinstance(data, list):
-        remedy = "`study prepare STUDY --out DIR` makes it"
-        raise HearthError.of(Code.MISSING_FILE, "there is no list of films", file=str(path), suggestion=remedy)
-    return films_of(data)
+    try:
+        return films_of(orjson.loads(read_input(path)), str(path))
+    except orjson.JSONDecodeError as error:
+        raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path), suggestion=REMEDY) from error

@@ -19,6 +19,7 @@ from hearth.storage.files import write_json
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 from hearth.studies.conduct import Conduct
+from hearth.studies.event_checks import check_events
 from hearth.studies.events import FORMAT, FileLedger, Ledger, header_of, salted
 from hearth.studies.judged_films import JudgedFilm, goal_in_words, of_episodes
 from hearth.studies.judged_programs import judged_programs
@@ -77,9 +78,13 @@ def opened(folder: Path, known: Known) -> Collected:
     """
     first = header_of(folder / EVENTS)
     study = study_of(str(first.get("study")), str(folder / EVENTS))
-    simulated = first.get("simulated") or {}
+    simulated = first.get("simulated")
+    if not isinstance(simulated, dict):
+        raise HearthError.of(Code.BAD_JSON, "it does not say how it was simulated", file=str(folder / EVENTS))
     salt = salted(study.digest, str(simulated.get("seed")))
-    return Collected(Conduct(study, FileLedger(folder / EVENTS, first, salt), known), True, folder)
+    conduct = Conduct(study, FileLedger(folder / EVENTS, first, salt), known)
+    check_events(study, conduct.slots, conduct.ledger, str(folder / EVENTS))
+    return Collected(conduct, True, folder)
 
 
 def beside(collected: Collected) -> Collected | None:

@@ -112,7 +112,12 @@ def checked(study: Study, planned: Planned, given: Mapping[str, Any], knowledge:
 
 
 def record_of(data: Mapping[str, Any]) -> Record:
-    """The record of a checked trial."""
-    found = episode_of(dict(data))
-    assert found is not None
+    """The record of a checked trial.
+
+    Raises:
+        HearthError: BAD_JSON: it is none.
+    """
+    found = episode_of(data) if isinstance(data, dict) else None
+    if found is None:
+        raise HearthError.of(Code.BAD_JSON, "not a record of an episode")
     return found

@@ -185,7 +185,7 @@ def test_a_program_runs_in_a_home_step_by_step(person, set_up):
     assert answer["ran"] and len(answer["ticks"]) == len(STEPS)
     assert answer["ticks"][4]["changes"] == "The television is on"
     assert "The remote control is in the right hand" in answer["ticks"][2]["changes"]
-    assert not any(re.search(r"[A-Z]{2}|\d", tick["changes"]) for tick in answer["ticks"]), "told in words"
+    assert not any(re.search(r"[A-Z]{2}|\d", tick["changes"]) for tick in answer["ticks"]), "in everyday words"
     assert all(len(tick["at"]) == 3 for tick in answer["ticks"])
     assert person.get("/annotate/plan/maple").text.startswith("<svg")
     bad = person.post(f"/annotate/task/{set_up}/run", json={"steps": STEPS, "home": "../maple"})

@@ -1,4 +1,4 @@
-"""What a step of a run changed, as one tells it: no ids, no names of relations."""
+"""What a step of a run changed, in everyday words: no ids, no names of relations."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ STATES = {"PLUGGED_IN": "plugged in", "PLUGGED_OUT": "unplugged", "LYING": "lyin
 """States whose words are not their names."""
 
 PLACES = {"INSIDE": "in", "ON": "on"}
-"""Relations that are told, by their words; who is close to what, or faces it, is not."""
+"""Relations that are named, by their words; who is close to what, or faces it, is not."""
 
 HELD = dict(zip(HANDS, ("right", "left"), strict=True))
 
 
-def told(change: Change, world: World) -> str:
+def changed_in_words(change: Change, world: World) -> str:
     """What changed; `world` is the one before."""
     parts = list(dict.fromkeys(_parts(change, world)))
     text = "; ".join(parts)

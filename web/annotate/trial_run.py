@@ -20,7 +20,7 @@ from hearth.simulation.motion.base_pose import hand_and_base_poses
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
-from hearth.web.annotate.change_words import told
+from hearth.web.annotate.change_words import changed_in_words
 from hearth.web.annotate.draft import SPECIAL, Draft
 from hearth.web.web_errors import WebError
 
@@ -122,7 +122,7 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
         {
             "step": numbers[tick],
             "line": lines[tick],
-            "changes": told(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
+            "changes": changed_in_words(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
             "at": _where(poses[tick] if tick < len(poses) else None),
         }
         for tick in range(len(worlds) - 1)

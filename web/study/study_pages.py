@@ -184,10 +184,18 @@ def film(visit: Visit) -> Response:
 
 
 def film_at(web: Web, conduct: Conduct, standing: Standing) -> JudgedFilm:
-    """What is judged in a trial."""
+    """What is judged in a trial.
+
+    Raises:
+        WebError: MISSING_FILE: its film was not prepared.
+        HearthError: as of `read_films`.
+    """
     planned = conduct.trial(standing)
     films = read_films(_folder(web, conduct.study) / FILMS)
-    return next(each for each in films if (each.item, each.condition) == (planned.item, planned.condition))
+    found = next((each for each in films if (each.item, each.condition) == (planned.item, planned.condition)), None)
+    if found is None:
+        raise WebError(Code.MISSING_FILE, "film", f"`study prepare {conduct.study.name}`", "no film of this trial")
+    return found
 
 
 def _folder(web: Web, study: Study) -> Path:
