@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
+from urllib.parse import quote
 
 from attack import Attack, Ground
 from starlette.testclient import TestClient
@@ -311,7 +312,7 @@ def _tokens(token: str) -> Iterator[Attack]:
     for name, path in (("hearth", "/mine"), ("hearth-desk", "/desk")):
         yield _attack(f"cookie {name}={token[:20]!r}", lambda n=name, p=path: ask("cookie", f"{n}={token}", p))
         yield _attack(f"bearer {name} {token[:20]!r}", lambda p=path: ask("authorization", f"Bearer {token}", p))
-    yield _attack(f"link {token[:20]!r}", lambda: checked(_get(site().client(), f"/desk/enter/{token}"), True))
+    yield _attack(f"link {token[:20]!r}", lambda: checked(_get(site().client(), f"/desk/enter/{quote(token)}"), True))
     if token == "x":
         stored = digest(site().owner.cookies["hearth"])
         yield _attack("the digest as the token", lambda: ask("cookie", f"hearth={stored}", "/mine"))

@@ -29,6 +29,10 @@ _FIELDS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
 """What the data of every kind of event has."""
 
 
+_METRICS = {"success", "ticks", "length", "reward"}
+"""What every record says of its episode."""
+
+
 def check_events(study: Study, slots: Slots, ledger: Ledger, file: str) -> None:
     """Refuse events that are not of this study.
 
@@ -42,7 +46,7 @@ def check_events(study: Study, slots: Slots, ledger: Ledger, file: str) -> None:
     places = {each.data["person"]: each.data["place"] for each in ledger.read(PLACES)}
     for person in ledger.streams():
         events = ledger.read(person)
-        if events and person not in places:
+        if person not in places:
             raise _wrong(events[0], "nobody of that id joined", file)
         _check_way(study, slots[places[person]], events, file)
 
@@ -76,6 +80,8 @@ def _check_form(event: Event, kinds: Sequence[str], file: str) -> None:
 def _check_record(study: Study, event: Event, file: str) -> None:
     given = event.data.get("record")
     record = episode_of(given) if isinstance(given, dict) else None
+    if record is not None and not record.metrics.keys() >= _METRICS:
+        raise _wrong(event, "its record has no metrics", file)
     if record is None or record.task != tasks_of(study)[event.data["item"]].id:
         raise _wrong(event, "it has no record of its task", file)
     if record.end is not None and not isinstance(record.end.get("code"), str):

@@ -88,10 +88,9 @@ class MemoryLedger:
 
     def append(self, event: Event) -> bool:
         """Keep an event."""
-        events = self.events.setdefault(event.stream, [])
-        if event.number != len(events):
+        if event.number != len(self.events.get(event.stream, ())):
             return False
-        events.append(event)
+        self.events.setdefault(event.stream, []).append(event)
         return True
 
     def forget(self, stream: str) -> None:
@@ -133,7 +132,8 @@ class FileLedger(MemoryLedger):
         if len(whole) < len(lines) - 1:
             write_bytes(path, b"".join([first, *whole]))
         for number, each in enumerate(whole, 2):
-            super().append(event_of(each, str(path), number))
+            if not super().append(event_of(each, str(path), number)):
+                raise HearthError.of(Code.BAD_JSON, f"line {number} is not the event that comes there", file=str(path))
 
     def append(self, event: Event) -> bool:
         """Keep an event in the file."""

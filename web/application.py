@@ -24,7 +24,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, front, sessions
-from hearth.web.limits import Rate, usual_rates
+from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.link import Link, nobody
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
@@ -124,8 +124,20 @@ def _answer(web: Web, address: Address, request: Request, body: bytes) -> Respon
     is_form = request.headers.get("content-type", "").startswith("application/x-www-form-urlencoded")
     fields = dict(request.query_params)
     if is_form:
-        fields = dict(parse_qsl(body.decode("utf-8", "replace"), keep_blank_values=True, max_num_fields=2_000))
+        fields = _form(body)
     return address.handler(Visit(web, request, session, body, fields))  # type: ignore[no-any-return]
+
+
+def _form(body: bytes) -> dict[str, str]:
+    """The fields of a form; of several of one name, the last.
+
+    Raises:
+        WebError: BAD_ARGUMENT: there are too many.
+    """
+    try:
+        return dict(parse_qsl(body.decode("utf-8", "replace"), keep_blank_values=True, max_num_fields=MOST_FIELDS))
+    except ValueError:
+        raise WebError(Code.BAD_ARGUMENT, "form", f"at most {MOST_FIELDS:,} fields", "more") from None
 
 
 def token_of(asked: HTTPConnection) -> str:

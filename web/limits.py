@@ -12,6 +12,9 @@ from hearth.web.web_errors import WebError
 MOST_BODY = 256 * 1024
 """Bytes of a request's body, unless its address says otherwise."""
 
+MOST_FIELDS = 2_000
+"""Fields of a form."""
+
 MOST_MESSAGE = 64 * 1024
 """Bytes of a message over a socket."""
 

@@ -62,7 +62,8 @@ class Security:
             return WebError(Code.NOT_ALLOWED, "Host", "this server's name", host[:100])
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        if changes and origin is not None and urlsplit(origin).netloc != host:
+        scheme = "http" if _name(f"//{host}") in OWN else "https"
+        if changes and origin is not None and origin != f"{scheme}://{host}":
             return WebError(Code.NOT_ALLOWED, "Origin", "a page of this server", origin[:100])
         return None
 

@@ -97,6 +97,7 @@ def test_the_desk_needs_its_token(server, person):
 @pytest.mark.parametrize(
     ("headers", "allowed"),
     [({}, True), ({"origin": "http://127.0.0.1"}, True), ({"origin": "http://evil.example"}, False),
+     ({"origin": "https://127.0.0.1"}, False), ({"origin": "http://127.0.0.1:81"}, False), ({"origin": ""}, False),
      ({"origin": "null"}, False), ({"host": "evil.example"}, False), ({"host": "127.0.0.1.evil.example"}, False)],
 )  # fmt: skip
 def test_pages_of_other_servers_change_nothing(server, headers, allowed):
@@ -108,6 +109,9 @@ def test_pages_of_other_servers_change_nothing(server, headers, allowed):
 def test_bodies_and_rates_have_limits(server, tmp_path, knowledge):
     answer = server.client().post("/begin", content=b"x" * 300_000)
     assert answer.status_code == 413 and answer.json()["error"]["code"] == "FILE_TOO_LARGE"
+    for form in ({f"f{n}": "1" for n in range(3_000)}, {"to": "/", **{f"f{n}": "" for n in range(2_500)}}):
+        answer = server.client().post("/begin", data=form)
+        assert answer.status_code == 400 and answer.json()["error"]["place"] == "form"
     clock = [0.0]
     rate = Rate(each_second=2, burst=3, now=lambda: clock[0])
     assert [rate.allows("a") for _ in range(5)] == [True, True, True, False, False]
