@@ -1,8 +1,8 @@
-"""`kill -9` at random moments of a build: `python benchmarks/kills.py [--times 200] [--chain 5] [--limit N]`.
+"""`kill -9` at random moments of a long job: `python benchmarks/kills.py [--job build] [--times 200] [--chain 5]`.
 
-Builds the tier `mini` undisturbed, then again and again in another folder, each time killing
-all of the build's processes at a random moment; the next build goes on from what is there. Whenever one gets to its end
-its bytes are compared with the undisturbed build's. The status is 1 when they differ or anything half-written is left.
+Does the job undisturbed, then again and again in another folder, each time killing all of its processes at a random
+moment; the same command goes on from what is there. Whenever one gets to its end its bytes are compared with those of
+the undisturbed one. The status is 1 when they differ or anything half-written is left. The jobs are those of `JOBS`.
 """
 
 from __future__ import annotations
@@ -26,6 +26,36 @@ CLI = Path(__file__).resolve().parents[1] / "cli.py"
 VARYING = {"timing.json", "catalog.duckdb", ".lock"}
 """Files with varying bytes: times, DuckDB's database, and the lock."""
 
+STUDY = """
+name: short
+title: A short study
+room: play
+seed: 3
+people: 4
+consent: You may stop.
+tasks: {challenge: owah, split: test, number: 4}
+conditions: [{name: alone, title: Alone}, {name: hp_rg, title: HP_RG, helper: hp_random, goal: random}]
+questions: [{name: helpful, text: How was it, scale: {from: 1, to: 7}}]
+"""
+
+MINI = ("build", "--tier", "mini", "--pictures", "1", "--workers", "2", "--out")
+
+JOBS: dict[str, tuple[str, ...]] = {
+    "build": (*MINI, "{out}"),
+    "clips": ("build", "--tier", "clips", "--clips", "3", "--limit", "40", "--workers", "2", "--out", "{out}"),
+    "run": ("challenge", "run", "{given}/tasks.json", "--helper", "hp_true", "--seeds", "2", "--out", "{out}/r.jsonl"),
+    "challenge": ("challenge", "build", "wah", "--limit", "40", "--workers", "2", "--out", "{out}"),
+    "train": ("model", "train", "unaries", "{given}/dataset", "--epochs", "4", "--out", "{out}"),
+    "study": ("study", "simulate", "{given}/study.yaml", "--workers", "2", "--out", "{out}"),
+}
+"""Commands, by the names of jobs; `{given}` is a folder with what they read, `{out}` the one that they write to."""
+
+GIVEN: dict[str, tuple[str, ...]] = {
+    "run": ("challenge", "tasks", "wah", "--limit", "20", "--out", "{given}/tasks.json"),
+    "train": (*MINI, "{given}/dataset"),
+}
+"""Commands that make what a job reads."""
+
 
 def contents(out: Path) -> dict[str, bytes]:
     """The contents of a build's deterministic files, by name."""
@@ -36,21 +66,36 @@ def contents(out: Path) -> dict[str, bytes]:
     }
 
 
-def started(options: Sequence[str], out: Path) -> subprocess.Popen[bytes]:
-    """Start a build in a new process group."""
-    command = [sys.executable, str(CLI), "build", *options, "--out", str(out)]
+def started(words: Sequence[str], out: Path) -> subprocess.Popen[bytes]:
+    """Start a command in a new process group."""
+    out.mkdir(parents=True, exist_ok=True)
+    given = out.parent / "given"
+    command = [
+        sys.executable,
+        str(CLI),
+        *(word.replace("{out}", str(out)).replace("{given}", str(given)) for word in words),
+    ]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 
-def finished(options: Sequence[str], out: Path) -> None:
-    """Build to the end.
+def finished(words: Sequence[str], out: Path) -> None:
+    """Do a job to its end.
 
     Raises:
-        SystemExit: the build failed.
+        SystemExit: it failed.
     """
-    status = started(options, out).wait()
+    status = started(words, out).wait()
     if status:
-        raise SystemExit(f"a build ended with status {status} in {out}")
+        raise SystemExit(f"{words[0]} ended with status {status} in {out}")
+
+
+def given(job: str, folder: Path) -> None:
+    """Make what a job reads."""
+    folder.mkdir()
+    (folder / "study.yaml").write_text(STUDY)
+    if job in GIVEN:
+        finished(GIVEN[job], folder.parent / "whole")
+        shutil.rmtree(folder.parent / "whole")
 
 
 def differing(one: Path, other: Path) -> list[str]:
@@ -73,7 +118,7 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: i
     process = started(options, whole)
     total, numbers = written(process, whole), random.Random(seed)
     if process.wait():
-        raise SystemExit(f"the undisturbed build ended with status {process.returncode}")
+        raise SystemExit(f"the undisturbed job ended with status {process.returncode}")
     kills = ends = 0
     faults: list[str] = []
     while kills < times:
@@ -84,7 +129,7 @@ def killed(options: Sequence[str], folder: Path, times: int, seed: int, chain: i
         found = differing(whole, out)
         shutil.rmtree(out)
         faults += found
-        print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *found, flush=True)
+        print(f"{kills} killed, {ends} got to their end, {len(faults)} files differed", *found, flush=True)
     return kills, ends, faults
 
 
@@ -98,7 +143,7 @@ def hit(options: Sequence[str], out: Path, files: int, numbers: random.Random) -
         process.wait()
         return True
     if process.returncode:
-        raise SystemExit(f"a build ended with status {process.returncode} in {out}")
+        raise SystemExit(f"{options[0]} ended with status {process.returncode} in {out}")
     return False
 
 
@@ -132,17 +177,17 @@ def files(out: Path) -> set[tuple[str, int, int]]:
 def main() -> int:
     """Kill builds and report."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--job", choices=list(JOBS), default="build")
     parser.add_argument("--times", type=int, default=200)
     parser.add_argument("--chain", type=int, default=5, help="kills before a build may go on to its end")
-    parser.add_argument("--limit", type=int, help="programs read; as many as the tier has if not given")
+    parser.add_argument("--limit", type=int, help="of a build: programs read")
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    options = ["--tier", "mini", "--pictures", "1", "--workers", "2"]
-    if asked.limit:
-        options += ["--limit", str(asked.limit)]
+    words = [*JOBS[asked.job], *(["--limit", str(asked.limit)] if asked.limit else [])]
     with tempfile.TemporaryDirectory() as folder:
-        kills, ends, faults = killed(options, Path(folder), asked.times, asked.seed, asked.chain)
-    print(f"{kills} builds killed, {ends} got to their end, {len(faults)} files differed", *faults, sep="\n")
+        given(asked.job, Path(folder) / "given")
+        kills, ends, faults = killed(words, Path(folder), asked.times, asked.seed, asked.chain)
+    print(f"{asked.job}: {kills} killed, {ends} got to their end, {len(faults)} files differed", *faults, sep="\n")
     return 1 if faults else 0
 
 

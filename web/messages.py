@@ -37,7 +37,7 @@ class Inbox:
         message = json_object(raw, "message")
         if not isinstance(message.get("type"), str):
             raise WebError(Code.BAD_ARGUMENT, "type", "the name of a kind of message", _kind(message.get("type")))
-        if message.get("n") != self.last + 1 or isinstance(message["n"], bool):
+        if type(message.get("n")) is not int or message["n"] != self.last + 1:
             raise WebError(Code.OUT_OF_ORDER, "n", str(self.last + 1), repr(message.get("n"))[:40])
         self.last += 1
         return message

@@ -79,6 +79,7 @@ def test_killed_at_random_moments_and_taken_up_again(made, kills, inputs, tmp_pa
         "--workers",
         "2",
     ]
-    done, ends, faults = kills.killed([str(inputs / "programs"), *options], tmp_path, times, seed=times)
+    words = ["build", str(inputs / "programs"), *options, "--out", "{out}"]
+    done, ends, faults = kills.killed(words, tmp_path, times, seed=times)
     assert done == times and ends >= 1
     assert faults == []

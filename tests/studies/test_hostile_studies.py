@@ -98,7 +98,6 @@ def test_events_as_they_were_collected_are_opened(changed):
         ("did", {"condition": "other"}, "it is not the trial that comes there"),
         ("did", {"record": {}}, "it has no record of its task"),
         ("did", {"seconds": "long"}, "`seconds` is long"),
-        ("consented", {"stream": "somebody"}, "is not of this study: nobody of that id joined"),
         ("did", {"stream": "somebody"}, "is not the event that comes there"),
         ("did", {"kind": "danced"}, "`danced` does not happen there"),
         ("answered", {"answers": {"helpful": 8}}, "`helpful` is no answer to what is asked"),
