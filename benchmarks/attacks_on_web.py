@@ -180,7 +180,7 @@ def site() -> Site:
 
 
 def checked(answer: Any, refused: bool = False) -> str:
-    """An answer is no fault of the server, and has the policy; `refused` ones are no success."""
+    """The text of an answer that is not a fault of the server, and has the policy; `refused` ones have no success."""
     assert answer.status_code < 500 or answer.status_code == 503, answer.status_code
     assert "script-src 'self'" in answer.headers["content-security-policy"]
     assert "set-cookie" not in answer.headers or "\n" not in answer.headers["set-cookie"]

@@ -56,7 +56,7 @@ def films_of(data: Any, file: str) -> tuple[JudgedFilm, ...]:
         HearthError: BAD_JSON with the number of the film.
     """
     if not isinstance(data, list):
-        raise HearthError.of(Code.BAD_JSON, "it is no list of films", file=file, suggestion=REMEDY)
+        raise HearthError.of(Code.BAD_JSON, "it is not a list of films", file=file, suggestion=REMEDY)
     found = []
     for number, each in enumerate(data):
         if fault := _fault_of(each):
@@ -82,20 +82,20 @@ def _fault_of(film: Any) -> str:
         return "it has other keys than a film"
     for name, most in _MOST.items():
         if not isinstance(film[name], str) or len(film[name]) > most:
-            return f"`{name}` is no text of at most {most:,} characters"
+            return f"`{name}` is not a text of at most {most:,} characters"
     if not _NAME.fullmatch(film["name"]):
-        return "`name` is no number and a name"
+        return "`name` is not a number and a name"
     if not isinstance(film["item"], int) or isinstance(film["item"], bool) or not 0 <= film["item"] < 100_000:
-        return "`item` is no number of a task"
+        return "`item` is not a number of a task"
     if not isinstance(film["measure"], (int, float)) or not math.isfinite(film["measure"]):
-        return "`measure` is no number"
+        return "`measure` is not a number"
     return _content_fault(film["content"])
 
 
 def _content_fault(content: Any) -> str:
     if isinstance(content, list):
         few = len(content) <= 10_000 and all(isinstance(line, str) and len(line) <= 1_000 for line in content)
-        return "" if few else "`content` is no program"
+        return "" if few else "`content` is not a program"
     return "" if isinstance(content, dict) and episode_of(content) else "`content` is neither program nor episode"
 
 

@@ -123,7 +123,8 @@ def test_bodies_and_rates_have_limits(server, tmp_path, knowledge):
 def test_messages_are_numbered_and_a_refused_one_does_not_count():
     inbox = Inbox()
     for raw, code in (
-        (b'{"type": "act", "n": 2}', "OUT_OF_ORDER"), (b'{"type": "act", "n": true}', "OUT_OF_ORDER"), (b'{"type": "act", "n": 1.0}', "OUT_OF_ORDER"),
+        (b'{"type": "act", "n": 2}', "OUT_OF_ORDER"), (b'{"type": "act", "n": true}', "OUT_OF_ORDER"),
+        (b'{"type": "act", "n": 1.0}', "OUT_OF_ORDER"),
         (b"[]", "BAD_JSON"), (b"\xff", "BAD_JSON"), (b"{}", "BAD_ARGUMENT"), (b" " * 70_000, "FILE_TOO_LARGE"),
     ):  # fmt: skip
         with pytest.raises(WebError) as refused:

@@ -30,6 +30,10 @@ from hearth.web.web_errors import WebError
 SKETCH, COMPLETENESS, FILM = "sketch", "completeness", "film"
 
 
+KINDS = {".webm": "video/webm", ".mp4": "video/mp4"}
+"""Types of films by the endings of their files; a dataset could call any file a film."""
+
+
 class Film(NamedTuple):
     """A film of an execution, and the program that was filmed."""
 
@@ -46,8 +50,10 @@ def films_of(dataset: Path) -> dict[str, Film]:
         FROM videos v JOIN executions e USING (execution_id) GROUP BY e.program_id ORDER BY 1"""
     found = {}
     for execution, file, program in opened.rows(query)[1]:
-        lines = "\n".join(print_lines(opened[program].program.unbound()))
-        found[execution] = Film(execution, inside(opened.folder, file), lines)
+        path = inside(opened.folder, str(file))
+        if path.suffix in KINDS and path.is_file():
+            lines = "\n".join(print_lines(opened[program].program.unbound()))
+            found[execution] = Film(execution, path, lines)
     return found
 
 
@@ -98,7 +104,8 @@ def keep_film(visit: Visit) -> Response:
 
 def film_file(visit: Visit) -> Response:
     """The film itself."""
-    return FileResponse(_film(visit).path)
+    path = _film(visit).path
+    return FileResponse(path, media_type=KINDS[path.suffix])
 
 
 def _films(visit: Visit) -> dict[str, Film]:
