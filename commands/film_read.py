@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def show(model: str, film: Path, home: str, homes: Path | None, kb: Path | None, out: Path | None) -> dict[str, Any]:
-    """Read a film, print nothing yet: the document of what was found, with the pages that were written into `out`.
+    """What a film shows, as JSON, with the pages that were written into `out`.
 
     Raises:
         HearthError: the film or the model can't be read.
@@ -26,6 +26,9 @@ def show(model: str, film: Path, home: str, homes: Path | None, kb: Path | None,
     from hearth.schemas.failures import Code
     from hearth.simulation.world.home import Home
 
+    if film.suffix != ".npz":
+        message = f"`{film.name}` has colours, and films are read by their class masks"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="give the `clips.npz` of a dataset of clips")
     known, masks = read_knowledge(kb), read_masks(film)
     trained = restore(model)[1]
     if not isinstance(trained, TrainedSeenModel):
@@ -38,9 +41,10 @@ def show(model: str, film: Path, home: str, homes: Path | None, kb: Path | None,
 
 
 def _document(found: FilmShown) -> dict[str, Any]:
+    from hearth.schemas.program import Program
     from hearth.schemas.syntax import print_step
 
-    steps = [print_step(step) for step in found.seen.steps]
+    steps = [print_step(step) for step in Program(steps=found.seen.steps).unbound().steps]
     timed = [{"time": time, "step": step} for time, step in zip(found.times, steps, strict=True)]
     runs = found.failure is None and found.execution.executable
     return {"clips": found.clips, "steps": timed, "program": steps, "executable": runs, "failure": found.failure}

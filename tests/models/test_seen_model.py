@@ -9,6 +9,7 @@ import pytest
 import torch
 
 import hearth
+from hearth.commands import film_read
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
 from hearth.models.films.class_accuracy import accuracies
@@ -162,6 +163,18 @@ def test_a_film_becomes_a_program_that_runs(model, clips, tmp_path):
     assert shown.execution.executable and shown.clips == 2 and shown.times == (0.89,)
     with pytest.raises(HearthError, match="shorter than a clip"):
         cut(masks[:5])
+
+
+def test_the_command_prints_steps_with_times(model, clips, tmp_path, capsys):
+    save(model.checkpoint(), tmp_path / "model")
+    np.savez_compressed(tmp_path / "film.npz", class_ids=clips.films[0])
+    found = film_read.show(str(tmp_path / "model"), tmp_path / "film.npz", "maple", None, None, None)
+    assert found["steps"] == [{"time": 0.89, "step": "[Walk] <sofa> (1)"}] and found["executable"]
+    film_read.printed(found)
+    assert "0.9 s  [Walk] <sofa> (1)" in capsys.readouterr().out
+    (tmp_path / "film.webm").write_bytes(b"")
+    with pytest.raises(HearthError, match="has colours"):
+        film_read.show(str(tmp_path / "model"), tmp_path / "film.webm", "maple", None, None, None)
 
 
 def test_steps_follow_each_other_as_in_programs(clips):

@@ -37,7 +37,10 @@ def test_what_one_sees_most_has_three_forms():
     fewer = []
     for name in seen()[:MOST]:
         choice = choice_of(name, default())
-        if choice.recipe not in ("floor", "wall", "ceiling", "window", "doorjamb", "door") and forms(name, choice) < ASKED:
+        if (
+            choice.recipe not in ("floor", "wall", "ceiling", "window", "doorjamb", "door")
+            and forms(name, choice) < ASKED
+        ):
             fewer.append((name, choice.recipe))
     assert {recipe for _, recipe in fewer} <= FEWER, fewer
 
