@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock web wheel clean distclean help $(STAGES)
+.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -161,6 +161,18 @@ web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
 
 wheel: $(READY)  ## dist/: the package for installation
 	@$(PY) -m build --no-isolation --outdir dist . >/dev/null && ls dist
+
+sbom: $(READY)  ## dist/: the bill of materials of .venv, CycloneDX as JSON
+	@[ -x build/sbom/bin/cyclonedx-py ] || { $(PYTHON) -m venv build/sbom && build/sbom/bin/python -m pip install -q 'cyclonedx-bom>=7'; }
+	@mkdir -p dist && build/sbom/bin/cyclonedx-py environment .venv/bin/python --pyproject pyproject.toml --mc-type library \
+	  --output-reproducible -o dist/hearth-sbom.cdx.json && ls dist/hearth-sbom.cdx.json
+
+# torch is in no lock; its line is written by hand.
+licences:  ## docs/licences.md: the licence of every library of both locks
+	@rm -rf build/licences && $(PYTHON) -m venv build/licences
+	@build/licences/bin/python -m pip install -q --no-compile --no-deps -r requirements.lock -r requirements-tools.lock
+	@build/licences/bin/python -m pip install -q --no-compile 'pip-licenses>=5'
+	@build/licences/bin/python docs/hooks/licences.py build/licences/bin/pip-licenses && rm -rf build/licences
 
 clean:  ## remove the output; .venv stays
 	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/challenges $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -44,7 +44,7 @@ def library(module: str) -> Any:
 
 def remedy(extra: str) -> str:
     """How to install an extra."""
-    command = f"`pip install '.[{extra}]'` in Hearth's folder"
+    command = f"`pip install '.[{extra}]'` in Hearth's folder, as `.venv/bin/python -m pip` after `make setup`"
     return f"run `make setup`, or {command}" if extra in SET_UP else f"run {command}"
 
 

@@ -343,7 +343,7 @@ def beside(name: str) -> Any:
 
 
 def notice() -> str:
-    """The sources of facts, the licence, and the licences of what is needed."""
+    """The sources of facts, and the licence."""
     texts = [(name, (ROOT / name).read_text("utf-8").rstrip()) for name in ("NOTICE", "LICENSE")]
     return "# Sources and licences\n" + "".join(f"\n## {name}\n\n```text\n{text}\n```\n" for name, text in texts)
 

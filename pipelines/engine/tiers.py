@@ -30,7 +30,7 @@ programs small, in the homes of their part, as some 20,000 clips of two seconds.
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:
     """The options with those of a tier and, where it has none, of their `strength`; what the user gave is kept.
 
-    Nobody asks for `standard`, so a strength goes before it.
+    Nobody asks for `standard`, so a strength goes before it. Who wants no pictures wants no films, either.
 
     Args:
         tier: one of `TIERS`, or "" for none.
@@ -46,4 +46,6 @@ def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict
     of_strength = strength(options.get("strength", MILD)).options or {}
     of_tier = TIERS[tier] if tier else {}
     implied = {**of_tier, **of_strength} if tier == STANDARD else {**of_strength, **of_tier}
+    if "pictures" in given and not options["pictures"]:
+        implied["videos"] = 0
     return {**options, **{name: value for name, value in implied.items() if name not in given}}

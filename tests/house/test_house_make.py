@@ -11,6 +11,7 @@ import pytest
 
 from hearth.pipelines.engine.dependencies import files_of
 from hearth.pipelines.engine.stages import STAGES
+from hearth.version import VERSION
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = (
@@ -273,6 +274,20 @@ def test_set_up_says_what_debian_leaves_out(bare):
     assert done.returncode == 1
     assert "sudo apt-get install python3.11-venv" in done.stderr
     assert not (bare / ".venv").exists()
+
+
+def test_the_citation_and_the_change_log_name_this_version():
+    assert f"\nversion: {VERSION}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f"\n## {VERSION} " in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_every_library_of_the_locks_has_a_line_on_the_page_of_licences(module):
+    made = module("docs/hooks/licences.py")
+    text = made.PAGE.read_text("utf-8")
+    for lock in made.LOCKS:
+        names = made.locked(lock)
+        lost = [name for name in names if not re.search(rf"^\| {re.escape(name)} \| \S", text, re.M)]
+        assert len(names) > 50 and not lost, "write it with: make licences"
 
 
 @pytest.mark.parametrize("file", ["requirements.lock", "requirements-tools.lock"])

@@ -19,6 +19,12 @@ def test_a_tier_says_what_nobody_chose():
     assert tiered("", PLAIN, []) == PLAIN
 
 
+def test_who_wants_no_pictures_wants_no_films():
+    assert tiered("", {**PLAIN, "pictures": 0}, ["pictures"])["videos"] == 0
+    assert tiered("", {**PLAIN, "pictures": 0}, ["pictures", "videos"])["videos"] == 1
+    assert tiered("", {**PLAIN, "pictures": 2}, ["pictures"])["videos"] == 1
+
+
 def test_mini_and_full_have_no_pictures_and_only_mini_is_cut():
     found = {name: tiered(name, PLAIN, []) for name in TIERS}
     assert [name for name, options in found.items() if not options["pictures"]] == ["mini", "full", "clips"]
