@@ -1,22 +1,25 @@
 """A human-like agent with faults: less than rational, forgetful, untidy, mistaken, changing its mind, distracted.
 
-Who gives the rates decides what for: demonstrations that are worth watching, or a population of people to be helped.
+Who gives the rates decides what for: `population` has people to be helped. Demonstrations have errands of their own,
+which depend on a challenge's goals (`challenges/demonstrator.py`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
+from hearth.agents.errands import Errand
 from hearth.agents.human_like import PLAIN, Habits, HumanLike
 from hearth.agents.regression import Regression
 from hearth.agents.subgoals import Missing, Subgoal
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import Literal
+from hearth.schemas.literals import Literal, Name
 from hearth.schemas.program import Step
+from hearth.schemas.rng import derive
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
@@ -24,6 +27,9 @@ from hearth.simulation.world.states import CLOSED
 
 MOST_TICKS = 20
 """Ticks after which an agent gives up what is not for its goal."""
+
+ERRANDS = replace(PLAIN, closes=False)
+"""Habits while it does that: what it opens it leaves open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +78,8 @@ class Faulty(HumanLike):
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode (see `agents.protocol`)."""
         super().reset(observation, goal, seed)
-        self._errand: Literal[int] | None = None
-        self._until = 0
+        self._errand: Errand | None = None
+        self._seed = seed
 
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The first instruction of its plan, or of what it does instead."""
@@ -81,10 +87,13 @@ class Faulty(HumanLike):
         if self._happens(self.faults.change_of_mind):
             self._turn()
         step = super().act(observation, legal)
-        if self._errand is None:
-            self._errand = self._tempted(observation, step)
-            self._until = observation.tick + MOST_TICKS
-        return self._instead(observation, legal) or step
+        if self._errand is None and (wanted := self._tempted(observation, step)) is not None:
+            seed = derive(self._seed, "errand", observation.tick)
+            self._errand = Errand(wanted, observation, MOST_TICKS, seed, ERRANDS)
+        instead = self._errand.act(observation, legal) if self._errand else None
+        if instead is None:
+            self._errand = None
+        return instead or step
 
     def choose(self, view: View, subgoals: Sequence[Subgoal], missing: Missing) -> Subgoal | None:
         """One of some subgoals: the better, the more probable."""
@@ -110,43 +119,25 @@ class Faulty(HumanLike):
             self._blocked.add(self.subgoal)
             self.subgoal = None
 
-    def _tempted(self, view: View, step: Step | None) -> Literal[int] | None:
-        """What it does instead of an instruction; None if it goes on."""
+    def _tempted(self, view: View, step: Step | None) -> Literal[Name] | None:
+        """What it brings about instead of an instruction, by ids; None if it goes on."""
         home = view.world.home
         me = view.world.agents[view.agent]
         places = list(indices(home.properties["SURFACES"] & home.furniture & view.mask))
         if step is not None and step.action in home.knowledge.group("puts") and self._happens(self.faults.mistake):
-            thing = home.index[step.objects[0].node or 0]
-            wrong = [i for i in places if home.ids[i] != step.objects[1].node]
-            return Literal("ON", (thing, self.chooser.choice(wrong))) if wrong else None
+            wrong = [home.ids[i] for i in places if home.ids[i] != step.objects[1].node]
+            return Literal.of("ON", step.objects[0].node or 0, self.chooser.choice(wrong)) if wrong else None
         if me.held:
             return None
         if self._happens(self.faults.detour):
             closed = list(indices(view.world.states[CLOSED] & home.able("Open") & home.furniture & view.mask))
-            return Literal("OPEN", (self.chooser.choice(closed),)) if closed else None
+            return Literal.of("OPEN", home.ids[self.chooser.choice(closed)]) if closed else None
         if self._happens(self.faults.distractor):
             things = list(indices(home.properties["GRABBABLE"] & view.mask & ~self.aims.things & ~home.characters))
             if things and places:
-                return Literal("ON", (self.chooser.choice(things), self.chooser.choice(places)))
+                thing, place = self.chooser.choice(things), self.chooser.choice(places)
+                return Literal.of("ON", home.ids[thing], home.ids[place])
         return None
-
-    def _instead(self, view: View, legal: Legal) -> Step | None:
-        """The next instruction of what is not for its goal, until that is done, has failed or is out of view."""
-        errand = self._errand
-        if errand is None:
-            return None
-        search = Regression(view, legal, self.belief)
-        seen = view.mask >> errand.terms[0] & 1
-        step = search.first(errand) if seen and view.tick < self._until else None
-        made = step is not None and len(step.objects) == len(errand.terms) and self._makes(step, errand, view)
-        if step is None or made:
-            self._errand = None
-        return step
-
-    def _makes(self, step: Step, errand: Literal[int], view: View) -> bool:
-        """Whether an instruction is the last of what it is for."""
-        known = view.world.home.knowledge
-        return errand.name in (known.relation_of(step.action), known.state_of(step.action))
 
     def _closing(self, search: Regression, step: Step | None, open_now: Sequence[Subgoal], needed: int) -> Step | None:
         closing = super()._closing(search, step, open_now, needed)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import reduce
 from operator import or_
 
+from hearth.agents.errands import Errand
 from hearth.agents.human_like import HumanLike
 from hearth.challenges.definition import Challenge
 from hearth.challenges.goal_grammar import instance, wanted_things
@@ -49,8 +50,7 @@ class Demonstrator:
         self.chooser = rng(seed, "habits")
         self.seed = seed
         self.began: list[tuple[int, str]] = []
-        self.errand: HumanLike | None = None
-        self.until = 0
+        self.errand: Errand | None = None
         once = ("distractor", "change_of_mind")
         self.waiting = [name for name in once if self.chooser.random() < self.habits[name]]
 
@@ -62,8 +62,7 @@ class Demonstrator:
                 return failing
             self._begin(observation)
         if self.errand is not None:
-            done = observation.tick >= self.until or Progress.at(self.errand.goal, observation.world).satisfied
-            step = None if done else self.errand.act(observation, legal)
+            step = self.errand.act(observation, legal)
             if step is not None:
                 return step
             self.errand = None
@@ -93,10 +92,9 @@ class Demonstrator:
             choices = list(self._errands(name, view))
             if not choices:
                 continue
-            goal = Goal.of(self.chooser.choice(choices))
-            self.errand = HumanLike(replace(self.main.habits, closes=self.chooser.random() < 0.5))
-            self.errand.reset(view, goal, derive(self.seed, "errand", view.tick))
-            self.until = view.tick + ERRAND
+            wanted = self.chooser.choice(choices)
+            habits = replace(self.main.habits, closes=self.chooser.random() < 0.5)
+            self.errand = Errand(wanted, view, ERRAND, derive(self.seed, "errand", view.tick), habits)
             self.began.append((view.tick, name))
             self.waiting = [each for each in self.waiting if each != name]
             return
