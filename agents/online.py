@@ -63,6 +63,7 @@ class OnlineHelper(ABC):
         self.first_places: dict[int, Place] = {}
         self.other: Pose | None = None
         self.subgoal = None
+        self._puts_down = False
 
     def act(self, observation: View, legal: Legal) -> Choice:
         """The first instruction towards what helps most."""
@@ -105,9 +106,24 @@ class OnlineHelper(ABC):
 
     def _first(self, search: Regression, subgoal: Edge) -> Step | None:
         relation, thing, target = subgoal
+        if (clearing := self._clearing(search, subgoal)) is not None:
+            return clearing
         if target < 0:
             return search.first(Literal(HANDS[0], (self.me, thing)))
         return search.first(Literal("ON" if relation == HOLDS else relation, (thing, target)))
+
+    def _clearing(self, search: Regression, subgoal: Edge) -> Step | None:
+        """Put something down, if both hands are full and what it has come to is closed.
+
+        Until that is done it does not go back to what is closed.
+        """
+        target = subgoal.target
+        shut = subgoal.relation == "INSIDE" and bool(self.scene.closed >> target & 1)
+        if not (search.me.right and search.me.left and search.spare and shut):
+            self._puts_down = False
+        elif search.near(target):
+            self._puts_down = True
+        return search.first(Literal(HANDS[0], (self.me, search.spare[0]), negated=True)) if self._puts_down else None
 
     def _spare(self, view: View) -> tuple[int, ...]:
         pursued = -1 if self.subgoal is None else self.subgoal.thing

@@ -20,6 +20,7 @@ from hearth.schemas.literals import HANDS, HOLDS
 from hearth.schemas.program import Step
 from hearth.simulation.observation.views import Pose
 from hearth.simulation.world.home import Home
+from hearth.simulation.world.pose import Pose as Place
 
 MOST = 1_000
 """Things of a predicate that goals want, at most."""
@@ -36,11 +37,13 @@ class ActionModel:
         rationality: how much less probable a thing becomes with each tick that it is farther.
         slip: probability of an action that the model does not explain.
         searching: how probably it looks for a thing in a place where the thing is not, since it does not see all.
+        rest: how probably it does nothing though there is something to fetch.
     """
 
     rationality: float = 0.3
     slip: float = 0.02
     searching: float = 0.0
+    rest: float = 0.2
 
 
 USUAL_MODEL = ActionModel()
@@ -64,6 +67,7 @@ class Posterior:
         self._known = home.knowledge
         self._home = home
         self._last: tuple[Step, Failure | None] | None = None
+        self._stood: tuple[tuple[Step, Failure | None] | None, Place | None] = (None, None)
         self.places: Places = []
 
     def observe(self, scene: Scene, other: Pose) -> None:
@@ -74,8 +78,12 @@ class Posterior:
             other: how that one stands, with what it last tried.
         """
         last = None if other.last is None else (other.last.instruction, other.last.failure)
-        if last is not None and self.places and last != self._last:
-            self._weigh(last[0])
+        stood, self._stood = self._stood, (last, other.place)
+        if self.places and last is not None:
+            if stood == self._stood and last[1] is None:
+                self._rest()
+            elif last != self._last:
+                self._weigh(last[0])
         self._last = last
         places = scene.places
         if places != self.places:
@@ -178,6 +186,10 @@ class Posterior:
         """Weigh the goals by what somebody says: a predicate that is still wanted, and how many are missing."""
         slip, lacking = self.model.slip, np.maximum(1, (self.missing > 0).sum(axis=1))
         self._keep((1 - slip) * (self.missing[:, row] == count) / lacking + slip * slip)
+
+    def _rest(self) -> None:
+        """Weigh the goals by a tick in which nothing was done: who can fetch nothing waits for what others have."""
+        self._keep(np.where(self.pursued.any(axis=1), self.model.rest, 1.0))
 
     def _keep(self, likelihood: Floats) -> None:
         weights = self.weights * likelihood

@@ -7,6 +7,7 @@ which needs it within reach and its container open, which needs that within reac
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -135,7 +136,7 @@ class Regression:
         return rows.room_of(self.world, node)
 
     def _put_down(self, thing: int, above: tuple[Literal[int], ...]) -> Step | None:
-        """A held thing on a surface within reach, or else on one that is in view."""
+        """A held thing on a surface within reach, or else on the nearest that is in view."""
         home = self.home
         surfaces = home.properties["SURFACES"] & home.furniture & self.seen
         for name in sorted(home.knowledge.group("puts") & self.legal.masks.keys()):
@@ -143,10 +144,15 @@ class Regression:
                 near = surfaces & self.legal.masks[name][1]
                 if near and (step := self._legal_step(name, thing, lowest(near))) is not None:
                     return step
-        for surface in indices(surfaces):
+        for surface in sorted(indices(surfaces), key=lambda i: (self._metres(i), i)):
             if (step := self.first(Literal("CLOSE", (self.me.index, surface)), above)) is not None:
                 return step
         return None
+
+    def _metres(self, node: int) -> float:
+        """As the crow flies to something that stays where it is; 0 without geometry."""
+        box, pose = self.home.node(node).box, self.me.pose
+        return 0.0 if box is None or pose is None else math.dist(pose.point, (box.center[0], box.center[2]))
 
     def _missing(self, formula: Formula, bound: Bound) -> tuple[Literal[int], ...]:
         """What would make a condition hold, best first; nothing if it holds by belief, or if nothing is known to."""

@@ -16,7 +16,10 @@ from hearth.storage.parallel import Seen, unseen
 PROPOSALS = {"proposals": "train", "proposals-small": "train-small"}
 """The split that goal proposals are learnt from, by what is learnt."""
 
-WHAT = ("goals", "subgoals", "actions", *PROPOSALS)
+GOALS = {"goals": "things", "goals-moments": "moments"}
+"""The shape of the network that infers goals, by what is learnt."""
+
+WHAT = (*GOALS, "subgoals", "actions", *PROPOSALS)
 """What may be learnt."""
 
 PASSES = 12
@@ -58,11 +61,11 @@ def train(
     if what not in WHAT:
         raise HearthError.of(Code.BAD_ARGUMENT, f"nobody learns `{what[:40]}`", suggestion=", ".join(WHAT))
     found: Any
-    if what == "goals":
+    if what in GOALS:
         from hearth.challenges import learning_to_watch
 
         how = Training(seed=seed, epochs=epochs or PASSES, patience=0)
-        found = learning_to_watch.learn(name, known, how, limit, rate, workers, seen, trained)
+        found = learning_to_watch.learn(name, known, how, limit, rate, workers, seen, trained, GOALS[what])
     elif what in PROPOSALS:
         from hearth.challenges import learning_to_propose
 

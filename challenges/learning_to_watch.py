@@ -55,6 +55,7 @@ def learn(
     workers: int = 1,
     seen: Seen = unseen,
     trained: Seen = unseen,
+    shape: str = "things",
 ) -> TrainedGoalInference:
     """Goal inference trained on the published demonstrations.
 
@@ -66,11 +67,12 @@ def learn(
         rate: of habits (see `Wish`).
         workers: processes that play demonstrations.
         seen, trained: report progress: demonstrations and epochs done.
+        shape: of the network (see `GoalInference`).
     """
     grammar = challenge(name).grammar
     found = suite(name, DEMONSTRATIONS, limit=limit)
     shown = examples(found.tasks, known, rate, workers, seen)
     possible = possible_goals(tuple(grammar.goals), tuple(map(str, grammar.predicates)))
-    done = GoalInference().fit(shown, grammar.predicates, possible, goals_of_tests(name), how, trained)
+    done = GoalInference(shape=shape).fit(shown, grammar.predicates, possible, goals_of_tests(name), how, trained)
     facts: dict[str, Any] = {"challenge": name, "digest": found.digest, "rate_of_habits": rate, **done.facts}
     return replace(done, facts=facts)

@@ -210,10 +210,10 @@ def learn(
     workers: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Train what helpers have learnt, and write a checkpoint: goals, subgoals, actions, proposals or proposals-small.
+    """Train what helpers have learnt, and write a checkpoint: goals, policies or proposals.
 
-    `goals` infers goals from the states of demonstrations. `subgoals` is Hybrid's policy and `actions` HRL's second:
-    both imitate the planner on tasks of training, and go on by A2C.
+    `goals` infers goals from the states of demonstrations, `goals-moments` by the thesis's network. `subgoals` is
+    Hybrid's policy and `actions` HRL's second: both imitate the planner on tasks of training, and go on by A2C.
 
     \b
     Examples:

@@ -23,6 +23,7 @@ from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
+    from hearth.models.watching.moment_network import MomentNetwork
     from hearth.models.watching.thing_network import ThingNetwork
 
 NAME = "goal-inference"
@@ -39,6 +40,7 @@ class GoalInference(Settings):
         width, layers, heads, dropout: see `ThingNetwork`.
         batch: demonstrations of a step of training.
         joined: the share of demonstrations that are joined with another of another set.
+        shape: `things`, ours, or `moments`, the thesis's (see `MomentNetwork`).
     """
 
     width: int = 128
@@ -47,12 +49,16 @@ class GoalInference(Settings):
     dropout: float = 0.1
     batch: int = 64
     joined: float = 0.6
+    shape: str = "things"
 
-    def network(self, layout: Layout) -> ThingNetwork:
+    def network(self, layout: Layout) -> ThingNetwork | MomentNetwork:
         """A network that has learnt nothing."""
+        from hearth.models.watching.moment_network import MomentNetwork
         from hearth.models.watching.thing_network import ThingNetwork
 
-        return ThingNetwork(layout, self.width, self.layers, self.heads, dropout=self.dropout)
+        shapes: dict[str, type[ThingNetwork | MomentNetwork]] = {"things": ThingNetwork, "moments": MomentNetwork}
+        kind = shapes[self.shape]
+        return kind(layout, self.width, self.layers, self.heads, dropout=self.dropout)
 
     def fit(
         self,
@@ -134,7 +140,7 @@ class TrainedGoalInference:
 
     settings: GoalInference
     predicates: tuple[str, ...]
-    network: ThingNetwork
+    network: ThingNetwork | MomentNetwork
     layout: Layout
     facts: Mapping[str, Any] = field(default_factory=dict)
 

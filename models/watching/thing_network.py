@@ -82,7 +82,8 @@ class ThingNetwork(nn.Module):
         return ((1 - LEAST) * found + LEAST / (self.most + 1)).log()
 
 
-def loss_of(network: ThingNetwork, batch: Packed) -> Tensor:
+def loss_of(network: nn.Module, batch: Packed) -> Tensor:
     """The mean of minus the logarithm of the probability of goals, their predicates being independent."""
-    wanted = torch.as_tensor(batch.counts).clamp(max=network.most)
-    return -network(batch).gather(2, wanted[:, :, None]).sum((1, 2)).mean()
+    found: Tensor = network(batch)
+    wanted = torch.as_tensor(batch.counts).clamp(max=found.shape[2] - 1)
+    return -found.gather(2, wanted[:, :, None]).sum((1, 2)).mean()

@@ -1,6 +1,7 @@
 """Helpers that are not told the goal: the posterior, NOPA's values, handing over, bringing back."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,10 +22,12 @@ from hearth.challenges.play import play as played_by
 from hearth.homes.library import load_graph
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HOLDS, Literal
+from hearth.schemas.program import Step
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.env import Env
 from hearth.simulation.observation.views import LastAction, pose
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
 
 PLAIN = sorted(name for name, kind in ONLINE.items() if not kind.network and not name.startswith("nopa_k"))
@@ -55,7 +58,7 @@ class Nobody:
 
 def play(world, goal, agents, seed=0, limit=250):
     """An episode in which everybody sees everything, and only the first is told the goal."""
-    players = [Player(agents[0], goal), Player(agents[1] or Nobody(), None)]
+    players = [Player(agents[0] or Nobody(), goal), Player(agents[1] or Nobody(), None)]
     return played_by(world, goal, players, seed, actions=ALLOWED, partial=False, limit=limit)
 
 
@@ -365,6 +368,56 @@ def test_what_is_not_wanted_is_brought_back(home):
     helper.first_places[apple] = Place("ON", desk)
     helper.act(env.observe(1), legal(env.world, 1, env.rules))
     assert helper.subgoal == Edge("ON", apple, desk)
+
+
+def test_who_waits_wants_what_the_helper_has(home):
+    """Two goals want plates, one the only apple, too, which the helper holds: who does nothing waits for it."""
+    env, _ = holding(start(home, {"plate": 2, "apple": 1}), "apple")
+    plates = wanted(env.world, "ON", "desk", plate=2)
+    goals = {plates: 0.9, wanted(env.world, "INSIDE", "fridge", apple=1): 0.1}
+    space = GoalSpace.of(goals, env.world.home)
+    posterior = Posterior(space, env.world.home, 1.0)
+    done = LastAction(Step("StandUp", (), 0))
+    for _ in range(6):
+        posterior.observe(space.scene(env.world), pose(env.world, 0, done))
+    assert posterior.probability(1) > 0.9
+    moving = Posterior(space, env.world.home, 1.0)
+    for tick in range(6):
+        moved = replace(pose(env.world, 0, done), place=replace_x(env.world.agents[0].pose, tick))
+        moving.observe(space.scene(env.world), moved)
+    assert moving.probability(1) == pytest.approx(0.1)
+
+
+def replace_x(where, metres):
+    return where._replace(x=where.x + 0.01 * metres)
+
+
+@pytest.mark.parametrize("name", ["expected_time", "asking", "nopa", "nopa_no_return", "likeliest"])
+def test_what_the_helper_holds_alone_is_brought_in_the_end(home, name):
+    """Nobody can reach the goal without what the helper has taken."""
+    env, _ = holding(start(home, {"plate": 3, "apple": 1}), "apple")
+    goals = {
+        wanted(env.world, "ON", "desk", plate=2): 0.85,
+        wanted(env.world, "INSIDE", "fridge", apple=1): 0.1,
+        wanted(env.world, "ON", "coffee_table", apple=1): 0.05,
+    }
+    done = play(env.world, list(goals)[1], [HumanLike(), ONLINE[name].make(lambda home: goals)], 0)
+    assert done.success
+
+
+@pytest.mark.parametrize("name", ["expected_time", "nopa", "nopa_no_return"])
+def test_who_has_both_hands_full_before_a_closed_door_puts_something_down_once(home, name):
+    """Nobody else opens the fridge: it does not walk to and fro between a place to put things and the fridge."""
+    world = start(home, {"apple": 2, "plate": 1})
+    apples = [world.home.ids[i] for i in indices(world.home.instances("apple"))]
+    desk = target(world, "desk")
+    world = edit(
+        world, place=dict.fromkeys(apples, ("ON", desk)), set=[(target(world, "fridge"), "CLOSED")], check=False
+    )
+    goal = wanted(world, "INSIDE", "fridge", apple=2)
+    done = play(world, goal, [None, ONLINE[name].make(lambda home: {goal: 1.0})], limit=60)
+    steps = [tick.instructions[1].action for tick in done.env.ticks if 1 in tick.instructions]
+    assert steps.count("PutIn") == 2 and steps.count("Open") == 1 and len(steps) < 40
 
 
 def test_empowerment_wants_what_most_goals_want(world):

@@ -94,20 +94,21 @@ def test_what_is_out_of_sight_is_not_read(knowledge):
     assert len(moves) > 5
 
 
-def untrained(seed=0):
+def untrained(seed=0, shape="things"):
     import torch
 
     torch.manual_seed(seed)
-    network = GoalInference(width=16).network(LAYOUT)
-    torch.nn.init.normal_(network.counts_for.weight)
+    network = GoalInference(width=16, shape=shape).network(LAYOUT)
+    torch.nn.init.normal_((network.counts_for if shape == "things" else network.count).weight)
     network.eval()
     return network
 
 
-def test_answers_depend_neither_on_the_order_of_things_nor_on_the_batch(shown):
+@pytest.mark.parametrize("shape", ["things", "moments"])
+def test_answers_depend_neither_on_the_order_of_things_nor_on_the_batch(shown, shape):
     import torch
 
-    network = untrained()
+    network = untrained(shape=shape)
     turned = [replace(each, things=each.things[::-1]) for each in shown]
     with torch.no_grad():
         every = network(packed(shown, 30))
@@ -170,9 +171,21 @@ def test_no_goal_of_a_test_is_learnt():
     assert not {GRAMMAR.counts(task.goal) for task in tasks("wah", "demonstrations")} & forbidden
 
 
-def test_it_learns_few_demonstrations_by_heart_and_its_checkpoint_answers_the_same(shown, possible):
-    settings = GoalInference(width=32, joined=0.0, dropout=0.0, batch=3)
-    how = Training(epochs=60, rate=3e-3, patience=0, halve_after=0)
+def test_the_thesis_s_network_sees_where_each_thing_was_last_at_each_moment():
+    import torch
+
+    from hearth.models.watching.moment_network import MOMENTS, _places_at
+
+    places, times = torch.tensor([[[2, 5, 0]]]), torch.tensor([[[0.25, 0.75, 0.0]]])
+    found = _places_at(places, times)[0, :, 0].tolist()
+    expected = [0 if t < 0.25 else 2 if t < 0.75 else 5 for t in np.linspace(0, 1, MOMENTS)]
+    assert found == expected
+
+
+@pytest.mark.parametrize(("shape", "epochs"), [("things", 60), ("moments", 250)])
+def test_it_learns_few_demonstrations_by_heart_and_its_checkpoint_answers_the_same(shown, possible, shape, epochs):
+    settings = GoalInference(width=32, joined=0.0, dropout=0.0, batch=3, shape=shape)
+    how = Training(epochs=epochs, rate=3e-3, patience=0, halve_after=0)
     trained = settings.fit(shown[:8], GRAMMAR.predicates, possible, frozenset(), how)
     assert trained.counts(shown[:8], possible) == [each.counts for each in shown[:8]]
     again = GoalInference.restored(trained.checkpoint())
