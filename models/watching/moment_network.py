@@ -12,7 +12,7 @@ from torch import Tensor, nn
 from hearth.models.watching.sightings import Layout
 from hearth.models.watching.watched_batches import Packed
 
-MOMENTS = 24
+MOMENTS = 12
 """Moments of a demonstration, at equal distances; the thesis has every tick."""
 
 EMBEDDED = 32
