@@ -106,7 +106,7 @@ TORCH := 2.13.0
 models: .venv/.models $(call manifest,publish)  ## train the models that come with Hearth, in models/trained
 	@$(HEARTH) model train retrieve-edit $(OUT) --seed $(SEED) --out models/trained/retrieve-edit
 	@$(HEARTH) model train mle-composed $(OUT) --seed $(SEED) --out models/trained/mle-composed --epochs 15 --rate 0.003
-	@$(HEARTH) model train chooser $(OUT) --seed $(SEED) --out models/trained/chooser --epochs 12
+	@$(HEARTH) model train chooser $(OUT) --seed $(SEED) --out models/trained/chooser --epochs 10
 
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"
