@@ -318,6 +318,26 @@ def test_a_film_is_described(browser, serving, filmed):
     assert [fault for fault in faults if "401" not in fault and "400" not in fault] == []
 
 
+OTHER_PAGES = ("/", "/mine", "/play/", "/play/join/x", "/study/", "/desk/enter", "/nowhere")
+DESKS = ("/desk", "/desk/annotate/", "/desk/play", "/desk/study/")
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 360)])
+def test_pages_of_the_other_rooms_are_accessible_and_fit(browser, serving, scheme, width):
+    server = serving("--study", "people-alone")
+    page = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme).new_page()
+    page.goto(server.address)
+    page.click("text=Begin with Annotate")
+    page.context.request.post(f"{server.address}/study/agree", form={"agree": "yes"})
+    found = {}
+    for path in (*OTHER_PAGES, "desk", *DESKS):
+        page.goto(server.desk if path == "desk" else server.address + path)
+        found[path] = accessibility(page)
+        if page.evaluate("document.documentElement.scrollWidth") > width:
+            found[path].append("wider than the window")
+    assert {path: each for path, each in found.items() if each} == {}
+
+
 PAGES = ("/", "/mine", "/desk/enter", *(f"/annotate/{name}" for name in (
     "", "tutorial", "describe", "tasks", "test", "review", "sketch", "rate", "film")))  # fmt: skip
 

@@ -19,10 +19,9 @@ HELD = dict(zip(HANDS, ("right", "left"), strict=True))
 
 
 def changed_in_words(change: Change, world: World) -> str:
-    """What changed; `world` is the one before."""
-    parts = list(dict.fromkeys(_parts(change, world)))
-    text = "; ".join(parts)
-    return text[:1].upper() + text[1:] if text else "Nothing else changes"
+    """What changed, "" where only the person's place did; `world` is the one before."""
+    text = "; ".join(dict.fromkeys(_parts(change, world)))
+    return text[:1].upper() + text[1:]
 
 
 def _parts(change: Change, world: World) -> Iterator[str]:
