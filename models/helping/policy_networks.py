@@ -84,8 +84,24 @@ class GoalEncoder(nn.Module):
         return (torch.relu(self.part(words)) * wanted[..., 2:]).sum(-2)
 
 
-class SubgoalNetwork(nn.Module):
-    """Chooses the class of things and the place of the next subgoal (figure B-8).
+class Seen(NamedTuple):
+    """What both networks make of B sequences of T scenes before they choose.
+
+    Attributes:
+        nodes: (B, T, N, width), of each visible node.
+        goal: (B, T, width), of what is missing.
+        latent: (B, T, width), of all that was seen until then.
+        state: of the LSTM after the last scene.
+    """
+
+    nodes: Tensor
+    goal: Tensor
+    latent: Tensor
+    state: State
+
+
+class Trunk(nn.Module):
+    """Scene, goal and memory, which both networks have, and the expected return.
 
     Args:
         things, places: how many words there are.
@@ -93,57 +109,56 @@ class SubgoalNetwork(nn.Module):
         heads: of attention.
     """
 
-    def __init__(self, things: int, places: int, width: int = 128, heads: int = 4) -> None:
+    def __init__(self, things: int, places: int, width: int, heads: int) -> None:
         super().__init__()
         self.encoder = SceneEncoder(width, heads)
         self.goal = GoalEncoder(things, places, width)
-        self.attention = nn.Linear(width, width)
         self.memory = nn.LSTM(2 * width, width, batch_first=True)
+        self.value = nn.Linear(width, 1)
+
+    def seen(self, batch: Batch, attention: nn.Linear, state: State | None) -> Seen:
+        """Remember scenes, with attention to what the goal lacks."""
+        nodes, context = self.encoder(batch)
+        goal = self.goal(torch.as_tensor(batch.wanted))
+        context = context * torch.sigmoid(attention(goal))
+        latent, state = self.memory(torch.cat([context, goal], -1), state)
+        return Seen(nodes, goal, latent, state)
+
+
+class SubgoalNetwork(Trunk):
+    """Chooses the class of things and the place of the next subgoal (figure B-8); arguments as of `Trunk`."""
+
+    def __init__(self, things: int, places: int, width: int = 128, heads: int = 4) -> None:
+        super().__init__(things, places, width, heads)
+        self.attention = nn.Linear(width, width)
         self.things = nn.Linear(width, things)
         self.places = nn.Linear(width, places)
         self.given = nn.Embedding(things, width)
-        self.value = nn.Linear(width, 1)
 
     def forward(self, batch: Batch, state: State | None = None) -> Outlook:
         """Shapes as in `Outlook`: A things, M places."""
-        _, context = self.encoder(batch)
-        goal = self.goal(torch.as_tensor(batch.wanted))
-        context = context * torch.sigmoid(self.attention(goal))
-        latent, state = self.memory(torch.cat([context, goal], -1), state)
+        _, _, latent, state = self.seen(batch, self.attention, state)
         chosen = torch.tanh(latent[:, :, None] + self.given.weight)  # (B, T, things, width)
         first, second = self.things(latent), self.places(chosen)
         return Outlook(first.log_softmax(-1), second.log_softmax(-1), self.value(latent)[..., 0], state)
 
 
-class ActionNetwork(nn.Module):
-    """Chooses a kind of action and a visible node for a subgoal (figure B-7).
-
-    Args:
-        things, places: how many words there are.
-        width: of every vector.
-        heads: of attention.
-    """
+class ActionNetwork(Trunk):
+    """Chooses a kind of action and a visible node for a subgoal (figure B-7); arguments as of `Trunk`."""
 
     def __init__(self, things: int, places: int, width: int = 128, heads: int = 4) -> None:
-        super().__init__()
-        self.encoder = SceneEncoder(width, heads)
-        self.goal = GoalEncoder(things, places, width)
+        super().__init__(things, places, width, heads)
         self.of_nodes, self.of_context = nn.Linear(width, width), nn.Linear(width, width)
-        self.memory = nn.LSTM(2 * width, width, batch_first=True)
         self.kinds = nn.Linear(width, len(KINDS))
         self.given = nn.Embedding(len(KINDS), width)
         self.asked, self.key = nn.Linear(width, width), nn.Linear(width, width)
-        self.value = nn.Linear(width, 1)
         self.near = nn.Linear(width, 1)
 
     def forward(self, batch: Batch, state: State | None = None) -> Outlook:
         """Shapes as in `Outlook`: A kinds of actions, M nodes."""
-        nodes, context = self.encoder(batch)
-        goal = self.goal(torch.as_tensor(batch.wanted))
+        nodes, goal, latent, state = self.seen(batch, self.of_context, state)
         close = self.near(nodes)[..., 0]
         nodes = nodes * torch.sigmoid(self.of_nodes(goal))[:, :, None]
-        context = context * torch.sigmoid(self.of_context(goal))
-        latent, state = self.memory(torch.cat([context, goal], -1), state)
         asked = self.asked(torch.tanh(latent[:, :, None] + self.given.weight))  # (B, T, kinds, width)
         scores = asked @ self.key(nodes).transpose(-1, -2) / asked.shape[-1] ** 0.5
         legal = torch.as_tensor(batch.legal)
