@@ -88,6 +88,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Make pictures": {
         "render-program": Entry("render:program", "Picture one program step by step, with a contact sheet."),
         "render-visible": Entry("render:visible", "Count the steps whose objects are visible, over many programs."),
+        "render-gallery": Entry("render:gallery", "Picture steps in as many homes, in one sheet."),
         "render-sheet": Entry("render:sheet", "Draw every model, variant and state."),
     },
     "Look around": {

@@ -169,6 +169,51 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
     output.say(f"Every model ({len(labels)}) is in {out}.", {"file": out, "models": labels}, as_json)
 
 
+def gallery(
+    out: Path,
+    sources: list[Path] | None = None,
+    count: int = 24,
+    seed: int = 0,
+    width: int = 320,
+    fine: bool = False,
+    as_json: bool = False,
+) -> None:
+    """Picture steps, each in another home, of another person, at another hour; actions differ as far as they can.
+
+    \b
+    Example:
+      python cli.py render-gallery --fine --width 224 --out docs/pictures/steps.png
+    """
+    from hearth.analysis.coverage import Script, scripts
+    from hearth.analysis.step_gallery import gallery as pictured
+    from hearth.commands.progress_line import bar, watched
+    from hearth.kb.loading.load import default
+    from hearth.rendering.film.contact import contact_sheet
+    from hearth.rendering.film.png import encode
+    from hearth.schemas.syntax import print_step
+
+    known = default()
+    programs = [script.program for script in scripts(inputs.paths(sources or []), known) if isinstance(script, Script)]
+    size, quality = (width, width * 3 // 4), "fine" if fine else "draft"
+    with bar("steps pictured") as seen:
+        steps = pictured(programs, known, count, seed, size=size, quality=quality)
+        found = list(watched(steps, seen, count))
+    captions = [f"{number}. {print_step(step.step)}" for number, step in enumerate(found, 1)]
+    frames = [(step.picture, caption) for step, caption in zip(found, captions, strict=True)]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_bytes(encode(contact_sheet(frames, columns=6)))
+    rows = [
+        {"home": one.home, "hour": one.hour, "program": one.title, "step": print_step(one.step), "shown": one.shown}
+        for one in found
+    ]
+    shown = sum(step.shown for step in found)
+    output.say(
+        f"{output.counted(len(found), 'step')} in {out}; person and object can be recognised in {shown}.",
+        {"file": out, "steps": rows},
+        as_json,
+    )
+
+
 def visible(sources: list[Path] | None = None, count: int = 30, seed: int = 0, as_json: bool = False) -> None:
     """Count the steps that the chosen picture shows, over programs drawn from a corpus.
 

@@ -23,8 +23,11 @@ HEIGHTS = ((1.5, 1.0), (1.05, 0.93), (2.1, 0.86))
 WIDEST, NARROWEST = 72.0, 14.0
 """Degrees of the vertical field of view."""
 
-CLOSEST = 0.4
-"""Metres of height that a picture shows at least."""
+CLOSEST, HANDS = 0.6, 0.4
+"""Metres of height that a picture shows at least, of a person and of hands that hold something tiny."""
+
+AT_HAND = 0.2
+"""Metres from a person's joints to what it holds or touches, at most."""
 
 INSET = 0.12
 """Metres from the walls of a room within which no camera stands."""
@@ -76,11 +79,12 @@ def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) 
         target = min(near, key=lambda one: _needed(one, aspect))
         head = who.points[who.points[:, 1].argmax()]
         reach = float(np.abs(_point(target, who) - head).max())
-        whole = 0.8 * reach + 0.4
-        # Of who holds a tiny thing, such as a coin, the hands are enough.
-        share = 0.45 * min(small / whole, 1.0)
-        middle = (1 - share) * _point(target, who) + share * head
-        height = max(min(small, whole), CLOSEST) if small < whole else max(small, whole)
+        middle, height = 0.55 * _point(target, who) + 0.45 * head, max(small, CLOSEST, 0.8 * reach + 0.4)
+        in_hand = np.linalg.norm(who.points - _point(target, who), axis=1).min() < AT_HAND
+        if in_hand and small < height:
+            # Of who holds a tiny thing, such as a coin, the hands are enough.
+            share = 0.45 * small / height
+            middle, height = (1 - share) * _point(target, who) + share * head, max(small, HANDS)
     return middle, height
 
 

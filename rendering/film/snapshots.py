@@ -16,11 +16,13 @@ from hearth.rendering.people.acting import Actor, elsewhere, initial_actors, mov
 from hearth.rendering.people.clearance import faults
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.holding import held_things
+from hearth.rendering.people.pushing import slid
 from hearth.rendering.people.reaching import posed, reach_for
+from hearth.rendering.people.skeleton import effort_of
 from hearth.rendering.rays.incremental import IncrementalFrame, incremental_frame
 from hearth.rendering.rays.shot import Shot, shoot
 from hearth.rendering.scene.added_furniture import furnished
-from hearth.rendering.scene.effects import changes
+from hearth.rendering.scene.effects import at_time, changes
 from hearth.rendering.scene.history import graphs
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.places import Places
@@ -249,7 +251,7 @@ def advanced(
             there = _with_room(there, actors, places, graph, step, elsewhere(there, graph, known, within, step, others))
         after.append(there)
     after = list(standing(after, world))
-    settled = _settled(places, graph, after, steps)
+    settled = slid(_settled(places, graph, after, steps), after, steps)
     return tuple(posed(actor, graph, settled, by_agent.get(n)) for n, actor in enumerate(after)), settled
 
 
@@ -259,6 +261,9 @@ def _settled(places: Places, graph: EnvironmentGraph, actors: Sequence[Actor], s
     put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
     return places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
 
+
+STOOPED = 1.2
+"""Cost of stooping as far as one can, in joints that are in solid things."""
 
 TRIED = 10
 """Spots that are tried for an act."""
@@ -278,19 +283,20 @@ def _with_room(
     near = {ref.node for ref in step.objects if ref.node}
     reached = near | {outermost(node, places)[0] for node in near}
 
-    def worth(tried: Actor) -> int:
+    def cost(tried: Actor) -> float:
         all_ = [tried if other.node.id == tried.node.id else other for other in actors]
         settled = _settled(places, graph, all_, (step,))
         there = posed(tried, graph, settled, step)
         arriving = reach_for(tried, there, places, step)
-        return faults(there, settled.solids, reached) + faults(arriving, places.solids, reached)
+        wrong = faults(there, settled.solids, reached) + faults(arriving, places.solids, reached)
+        return wrong + STOOPED * effort_of(arriving.body_pose, arriving.body.proportions)
 
-    best, least = actor, worth(actor)
-    for tried in islice(others if least else (), TRIED):
-        found = worth(tried)
+    best, least = actor, cost(actor)
+    for tried in islice(others if least >= 1 else (), TRIED):
+        found = cost(tried)
         if found < least:
             best, least = tried, found
-        if not least:
+        if least < 1:
             break
     return best
 
@@ -301,7 +307,8 @@ def scene_at(prepared: PreparedScene, places: Places, actors: tuple[Actor, ...])
     nodes = [node for node in places.nodes() if node.id not in held]
     figures = [(actor.node, actor.figure(), actor.position, actor.yaw) for actor in actors]
     scene = prepared.scene(nodes, figures)
-    return replace(scene, things=(*scene.things, *(thing for things in held.values() for thing in things)))
+    things = (*scene.things, *(thing for things in held.values() for thing in things))
+    return replace(scene, things=tuple(now for thing in things for now in at_time(thing, 0.0)))
 
 
 def snapshots(

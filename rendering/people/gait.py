@@ -147,15 +147,17 @@ def walking(place: Place, points: Sequence[Spot], speed: float, yaw: float) -> M
     """A walk along a route, which starts in the direction of `place` and ends in the direction `yaw`."""
     route = Route(points, speed)
     middle = place.yaw + angle(place.yaw, yaw) / 2
-    aside = abs(angle(middle, route.heading(route.length / 2)))
+    most = abs(angle(middle, route.heading(route.length / 2)))
     # Few steps are made without turning that way and back.
-    turned = 0.0 if route.length <= SIDEWAYS else min(1.0, TURNING * route.seconds / 4 / max(aside, 1.0))
+    turned = 0.0 if route.length <= SIDEWAYS else min(1.0, TURNING * route.seconds / 4 / max(most, 1.0))
 
     def at(time: float) -> Place:
         way = route.way(time)
         ends = eased(way / 0.45) * eased((route.length - way) / 0.45) * turned
         straight = place.yaw + angle(place.yaw, yaw) * eased(way / route.length)
-        return Place(*route.spot(way), straight + angle(straight, route.heading(way)) * ends)
+        aside = angle(straight, route.heading(way))
+        # Who walks backwards does not flip from one side to the other.
+        return Place(*route.spot(way), straight + aside * ends * min(1.0, (180 - abs(aside)) / 120))
 
     return Movement(route.seconds, at)
 

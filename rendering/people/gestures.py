@@ -23,6 +23,7 @@ class Gesture:
         about: index of the object that hands or gaze go to.
         rests: whether the object is a seat or bed to sit or lie on.
         asleep: whether the eyes stay closed until the next action.
+        moves: metres by which the object slides away from the actor; below 0 towards it.
     """
 
     hand: str = ""
@@ -36,6 +37,7 @@ class Gesture:
     grip: str = ""
     motion: str = ""
     seconds: float = 0.0
+    moves: float = 0.0
 
 
 LOOK = Gesture()

@@ -6,16 +6,21 @@ from typing import NamedTuple
 
 from hearth.rendering.film.snapshots import Keyframe, Trajectory
 from hearth.rendering.people.acting import Actor
+from hearth.rendering.people.gait import eased
 from hearth.rendering.people.holding import held_things
+from hearth.rendering.people.pushing import slides
 from hearth.rendering.people.tracks import HOLD, Track, motionless, track
 from hearth.rendering.scene.effects import at_time
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.scene import Scene
-from hearth.schemas.graph import Node
+from hearth.schemas.graph import Node, Spot
 from hearth.schemas.program import Step
 
 OPENING = 0.5
 """Seconds in which doors, lids and drawers open or close."""
+
+SLIDING = 0.5
+"""Seconds in which things that are pushed or pulled slide."""
 
 
 class Frame(NamedTuple):
@@ -59,16 +64,28 @@ def frames(trajectory: Trajectory, fps: float = 15.0, speed: float = 1.0) -> Ite
     number = 0
     for span, before, after, tracks in _spans(trajectory, speed):
         change, swings = _change(tracks), swinging(before, after)
+        slide = slides(before.places, after.places, span.steps)
         while number / fps < span.end:
             time = number / fps
             past = (time - span.start) * speed
             actors = tuple(track.at(past) for track in tracks)
             keyframe, share = (after, (past - change) / OPENING) if past >= change else (before, 1.0)
             ajar = {node: share if opens else 1 - share for node, opens in swings.items()} if share < 1 else {}
-            yield Frame(
-                time, span.tick, span.steps, set_.scene(keyframe, actors, ajar, time), actors, keyframe.places.holds
-            )
+            scene = set_.scene(keyframe, actors, ajar, time)
+            if slide and 0 <= past - change < SLIDING:
+                scene = _sliding(scene, slide, 1 - eased((past - change) / SLIDING))
+            yield Frame(time, span.tick, span.steps, scene, actors, keyframe.places.holds)
             number += 1
+
+
+def _sliding(scene: Scene, slide: Mapping[int, Spot], left: float) -> Scene:
+    """A scene in which things have a share of their way over the floor left."""
+
+    def back(thing: Thing) -> Thing:
+        (x, y, z), (dx, dz) = thing.position, slide[thing.id]
+        return replace(thing, position=(x - dx * left, y, z - dz * left))
+
+    return replace(scene, things=tuple(back(thing) if thing.id in slide else thing for thing in scene.things))
 
 
 def swinging(before: Keyframe, after: Keyframe) -> dict[int, bool]:

@@ -102,8 +102,8 @@ def _stooping(effort: float, body_pose: BodyPose, body: Proportions) -> tuple[fl
     base = -4.0 * seated(body_pose, body)
     if body_pose.posture != "standing":
         return 0.0, base + (62.0 - base) * effort
-    lean = 36.0 * min(effort / 0.4, 1.0) + 26.0 * max((effort - 0.4) / 0.6, 0.0)
-    return 0.30 * body.height * max((effort - 0.4) / 0.6, 0.0), lean
+    knees = max(2 * effort - 1, 0.0)
+    return 0.30 * body.height * knees, 50.0 * min(2 * effort, 1.0) + 12.0 * knees
 
 
 def seated(body_pose: BodyPose, body: Proportions) -> float:

@@ -80,7 +80,9 @@ def changes(thing: Thing) -> bool:
     """Whether a thing looks different from moment to moment."""
     if not isinstance(thing.model, Model):
         return False
-    return any(effect.moves for effect in effects_of(thing.model.recipe, thing.model.look.states))
+    return thing.model.recipe == STEAM or any(
+        effect.moves for effect in effects_of(thing.model.recipe, thing.model.look.states)
+    )
 
 
 def at_time(thing: Thing, time: float) -> Iterator[Thing]:

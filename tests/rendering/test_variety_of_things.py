@@ -12,6 +12,7 @@ from hearth.rendering.models.recipes import RECIPES
 from hearth.rendering.scene.prepared import prepared_scene
 
 BUILDING = {"Rooms", "Characters", "BodyParts", "Floors", "Floor", "Walls", "Wall", "Ceiling", "Doors", "Windows"}
+SHELL = ("floor", "wall", "ceiling", "window", "doorjamb", "door")
 MOST, ASKED = 60, 3
 FEWER = {"packet", "bottle"}
 """Recipes among them whose forms are their kinds."""
