@@ -24,6 +24,9 @@ GRID = 0.1
 TRIES = 40
 """Places whose ways are looked at, the best ones first."""
 
+DEEP = 0.2
+"""Metres of depth from which on a thing at a wall is furniture, and not hung like a picture."""
+
 FREE = 0.55
 """Metres in front of furniture that stay free, so that one can use it."""
 
@@ -39,9 +42,12 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
     nodes, locations = {node.id: node for node in graph.nodes}, locations_of(graph)
     for number in sorted(nodes):
         node, location = nodes[number], locations.get(number)
-        if number in places.poses or location is None or not _stands(node, location, nodes):
+        if number in places.poses or location is None or not _stands(node, location, nodes, places):
             continue
-        room = nodes.get(location.holder)
+        holder = location.holder
+        if nodes[holder].class_name == "wall" and holder in locations:
+            holder = locations[holder].holder
+        room = nodes.get(holder)
         room = room if room is not None and room.category == ROOM_CATEGORY else None
         pose = _pose(node, room, places, floors) if room is not None and room.box else None
         if pose is not None:
@@ -51,10 +57,13 @@ def furnished(places: Places, graph: EnvironmentGraph, floors: Floors) -> Places
     return places
 
 
-def _stands(node: Node, location: Location, nodes: Mapping[int, Node]) -> bool:
-    """Whether a node is furniture on the floor of a room."""
+def _stands(node: Node, location: Location, nodes: Mapping[int, Node], places: Places) -> bool:
+    """Whether a node is furniture on the floor of a room, or at one of its walls."""
     movable = "GRABBABLE" in node.properties or node.category in (CHARACTER_CATEGORY, ROOM_CATEGORY, "BodyParts")
-    return location.kind == "room" and not movable and node.box is None
+    holder = nodes.get(location.holder)
+    at_wall = location.kind == "on" and holder is not None and holder.class_name == "wall"
+    stands = location.kind == "room" or (at_wall and min(places.size_of(node)) > DEEP)
+    return stands and not movable and node.box is None
 
 
 class Place(NamedTuple):
