@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hearth.agents.belief import Place, place_of
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import Literal, Name
+from hearth.schemas.literals import HOLDS, Literal, Name
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.states import CLOSED
@@ -165,12 +165,15 @@ class GoalSpace:
 
     def counted(self, places: Places) -> Flags:
         """(P, T) whether a thing counts for a predicate where it is."""
-        nodes = np.array([node for _, node in places], np.int64)
-        here: Flags = self.fits & (self.targets[:, None] == nodes)
-        for number, relation in enumerate(self.relations):
-            if here[number].any():
-                here[number] &= np.array([found == relation for found, _ in places])
+        inside = np.array([relation == "INSIDE" for relation, _ in places], np.bool_)
+        nodes = np.array([-1 if relation == HOLDS else node for relation, node in places], np.int64)
+        here: Flags = self.fits & (self.targets[:, None] == nodes) & (self._inside[:, None] == inside)
         return here
+
+    @cached_property
+    def _inside(self) -> Flags:
+        """(P,) whether things are wanted in the furniture, not on it."""
+        return np.array([relation == "INSIDE" for relation in self.relations], np.bool_)
 
     def missing(self, counted: Flags) -> Numbers:
         """(G, P) how many of each predicate a goal still lacks."""

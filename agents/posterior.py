@@ -65,6 +65,7 @@ class Posterior:
         self.weights: Floats = space.prior
         self.distances = Distances(home, stride)
         self._known = home.knowledge
+        self._trips: dict[tuple[int, int], int] = {}
         self._home = home
         self._last: tuple[Step, Failure | None] | None = None
         self._stood: tuple[tuple[Step, Failure | None] | None, Place | None] = (None, None)
@@ -160,9 +161,11 @@ class Posterior:
             shut = relation == "INSIDE" and closed >> node & 1
             for row in self.space.rows_of[number]:
                 target = int(self.space.targets[row])
-                metres, cell = distances.leg(distances.end(target), node)
-                there = distances.ticks(distances.leg(cell, target)[0])
-                found[row, number] = distances.ticks(metres) + there + 2 + shut
+                if (node, target) not in self._trips:
+                    metres, cell = distances.leg(distances.end(target), node)
+                    back = distances.leg(cell, target)[0]
+                    self._trips[node, target] = distances.ticks(metres) + distances.ticks(back) + 2
+                found[row, number] = self._trips[node, target] + shut
         return found
 
     def _weigh(self, step: Step) -> None:
