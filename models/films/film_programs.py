@@ -55,12 +55,12 @@ class Filter:
     """How programs are followed through a film.
 
     Attributes:
-        beam: programs at a time.
+        beam: worlds at a time, each with its best program.
         options: instructions that each of them may go on with in a clip.
     """
 
-    beam: int = 16
-    options: int = 12
+    beam: int = 48
+    options: int = 24
 
 
 def even_moves(count: int, change: float = CHANGE) -> Moves:
@@ -125,7 +125,7 @@ def followed(
     """The program that explains a film best among those that run in the world in which it begins.
 
     In each clip a program goes on with its last instruction, or with another one that can be done then; objects are
-    the nearest of their class.
+    the nearest of their class. Of programs that have come to the same world by the same instruction the best is kept.
 
     Args:
         scores: of the clips.
@@ -138,21 +138,22 @@ def followed(
     search = _Search(instructions, even_moves(len(instructions)) if moves is None else moves, how, rules)
     beam = [_Followed(0.0, world, (), (), -1)]
     for place, row in enumerate(_normalised(scores)):
-        best: dict[Steps, _Followed] = {}
+        best: dict[tuple[World, int], _Followed] = {}
         for one in beam:
             for each in search.going_on(one, row, place):
-                if each.steps not in best or best[each.steps].score < each.score:
-                    best[each.steps] = each
+                known = best.get((each.world, each.last))
+                if known is None or known.score < each.score:
+                    best[each.world, each.last] = each
         beam = sorted(best.values(), key=lambda each: -each.score)[: how.beam]
     return FilmProgram(beam[0].steps, beam[0].starts)
 
 
 class _Search:
-    """The ways in which programs go on; what an instruction does after a program is computed once."""
+    """The ways in which programs go on; what an instruction does in a world is computed once."""
 
     def __init__(self, instructions: Sequence[Instruction], moves: Moves, how: Filter, rules: Rules) -> None:
         self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
-        self.after: dict[tuple[Steps, int], tuple[Step, World] | None] = {}
+        self.after: dict[tuple[World, int], tuple[Step, World] | None] = {}
 
     def going_on(self, one: _Followed, row: Scores, place: int) -> Iterator[_Followed]:
         """The ways in which a program explains one more clip."""
@@ -167,7 +168,7 @@ class _Search:
                 yield _Followed(score, done[1], (*one.steps, done[0]), (*one.starts, place), number)
 
     def _done(self, one: _Followed, number: int) -> tuple[Step, World] | None:
-        key = one.steps, number
+        key = one.world, number
         if key not in self.after:
             program = Program(steps=(_step(self.instructions[number]),))
             (step,) = nearest(program, one.world).apply(program).steps

@@ -15,6 +15,9 @@ from hearth.models.films.step_order import START, StepOrder
 OF_A_CLIP = 8
 """Instructions that a clip adds."""
 
+TRUST = 0.5
+"""By which logarithms are multiplied: neighbouring clips share frames, and networks are surer than they are right."""
+
 OBJECTS = 4
 """Objects of an action that are tried."""
 
@@ -35,14 +38,14 @@ class Reading(NamedTuple):
         return -trust * order.logs([*self.instructions, START], self.instructions)
 
 
-def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = 1.0) -> Reading:
+def reading(actions: Scores, objects: Scores, table: ClassTable, trust: float = TRUST) -> Reading:
     """The reading of a film.
 
     Args:
         actions: (N, A) logarithms of the probabilities of actions in its clips.
         objects: (N, 2, A, rows) of their objects.
         table: of the classes.
-        trust: by which logarithms are multiplied: networks are surer than they are right.
+        trust: see `TRUST`.
     """
     found = sorted({each for clip in zip(actions, objects, strict=True) for each in _probable(*clip, table)})
     rows = np.array(found, np.int64).reshape(-1, 3)

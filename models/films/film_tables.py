@@ -19,6 +19,7 @@ from hearth.models.films.film_programs import FilmProgram, alone, described, fol
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
+from hearth.repair.completion import complete
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
 from hearth.scoring.bootstrap import Interval
@@ -75,11 +76,21 @@ class Shown(NamedTuple):
 
 Way = Callable[[Reading, StepOrder, World], FilmProgram]
 
+
+def _repaired(program: FilmProgram, world: World) -> FilmProgram:
+    """A program that runs: repaired, and what no repair makes run left out; inserted steps have no clips."""
+    done = complete(program.steps, world, world.home.knowledge)
+    return FilmProgram(done.execution.program.steps, ())
+
+
 WAYS: dict[str, Way] = {
     "each clip alone": lambda found, order, world: alone(found.scores, found.instructions),
     "Viterbi": lambda found, order, world: described(found.scores, found.instructions),
     "Viterbi, order of steps": lambda found, order, world: described(
         found.scores, found.instructions, found.moves(order)
+    ),
+    "Viterbi, order of steps, repaired": lambda found, order, world: _repaired(
+        described(found.scores, found.instructions, found.moves(order)), world
     ),
     "engine": lambda found, order, world: followed(found.scores, found.instructions, world),
     "engine, order of steps": lambda found, order, world: followed(

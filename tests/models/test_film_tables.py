@@ -35,7 +35,7 @@ def test_with_the_engine_programs_run_and_without_they_need_not():
     for name, write in WAYS.items():
         steps = write(Reading(DONE, scores), order, world).steps
         runs[name] = hearth.run(world, Program(steps=steps)).executable if steps else None
-    assert runs["engine"] and runs["engine, order of steps"]
+    assert runs["engine"] and runs["engine, order of steps"] and runs["Viterbi, order of steps, repaired"]
     assert not runs["each clip alone"]
 
 
