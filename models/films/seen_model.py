@@ -178,7 +178,8 @@ class TrainedSeenModel:
                 clip, classes = self.network.read(batch)
                 asked = every.expand(len(clip), -1)
                 objects = [self.network.objects(batch, clip, classes, asked, place) for place in range(PLACES)]
-                yield Scored(self.network.actions(clip).numpy(), torch.stack(objects, 1).numpy())
+                found = Scored(self.network.actions(clip).numpy(), torch.stack(objects, 1).numpy())
+            yield found  # outside: generators that take turns would leave gradients off
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """It has no programs for requests.

@@ -184,3 +184,8 @@ def test_steps_follow_each_other_as_in_programs(clips):
     logs = order.logs([START, walk], [walk, touch, Instruction("Touch", ("bed",))])
     assert logs[0, 0] > logs[0, 1] and logs[1, 1] > logs[1, 0] and logs[1, 1] > logs[1, 2] + 1
     assert programs_of(clips)[0] == [Instruction("Walk", ("sofa",))]
+
+
+def test_a_reading_that_is_not_finished_leaves_gradients_on(model, clips):
+    begun = model._scored(seen_clips(clips, model.table))
+    assert next(begun) and torch.is_grad_enabled()
