@@ -18,6 +18,7 @@ from hearth.rendering.modalities import render as render
 from hearth.rendering.scene.prepared import scene_of as scene_of
 from hearth.repair.sketch import sketch as sketch
 from hearth.repair.variants import augment as augment
+from hearth.schemas.diagnostics import HearthError as HearthError
 from hearth.schemas.goals import Goal as Goal
 from hearth.schemas.literals import Literal as Literal
 from hearth.schemas.program import Program

@@ -70,7 +70,7 @@ class Forecast:
 
         Args:
             stops: what the helper does first; after that it does what seems best to it.
-            wait: ticks until it begins, because it watches; in vain, where nothing is left to do for the other.
+            wait: ticks until it begins, because it watches; where nothing is left for the other, for nothing.
         """
         heaps = self.at.heaps
         self.lacking = dict(self._wanted)

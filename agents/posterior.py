@@ -185,7 +185,7 @@ class Posterior:
         slip = self.model.slip
         self._keep((1 - slip) * (self.space.counts[:, row] > 0) + slip)
 
-    def told(self, row: int, count: int) -> None:
+    def answered(self, row: int, count: int) -> None:
         """Weigh the goals by what somebody says: a predicate that is still wanted, and how many are missing."""
         slip, lacking = self.model.slip, np.maximum(1, (self.missing > 0).sum(axis=1))
         self._keep((1 - slip) * (self.missing[:, row] == count) / lacking + slip * slip)

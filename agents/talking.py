@@ -24,7 +24,7 @@ QUIET = 3
 
 
 class Answering:
-    """The human-like agent, which, when asked, tells a part of its goal that it has not told yet."""
+    """The human-like agent, which, when asked, names a part of its goal that it has not named yet."""
 
     def __init__(self, main: HumanLike | None = None) -> None:
         self.main = main or HumanLike()
@@ -37,10 +37,10 @@ class Answering:
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode (see `agents.protocol`)."""
         self.main.reset(observation, goal, seed)
-        self._told: set[int] = set()
+        self._named: set[int] = set()
 
     def act(self, observation: View, legal: Legal) -> Choice:
-        """An answer, if it was asked and there is something to be told; otherwise what it does anyway."""
+        """An answer, if it was asked and there is something to answer; otherwise what it does anyway."""
         if any(message.wanted is None for _, message in observation.messages):
             answer = self._answer(observation)
             if answer is not None:
@@ -53,12 +53,12 @@ class Answering:
         main.belief.observe(view)
         missing = {part: number for part, (number, _) in main.aims.missing(main.belief, view).items()}
         parts = {each.part: each for each in main.aims.wanted if _is_of_things(each)}
-        open_now = [part for part in parts if part in missing and part not in self._told]
+        open_now = [part for part in parts if part in missing and part not in self._named]
         if not open_now:
             return None
         mine = -1 if main.subgoal is None else main.subgoal.part
         chosen = max(open_now, key=lambda part: (missing[part] - (part == mine), -part))
-        self._told.add(chosen)
+        self._named.add(chosen)
         return Message(parts[chosen].literal, missing[chosen])
 
 
@@ -116,7 +116,7 @@ class Asking(ExpectedTime):
         """Take in an answer; who does not answer is not asked again."""
         for _, message in view.messages:
             if message.wanted in self.space.predicates and self.posterior.places:
-                self.posterior.told(self.space.predicates.index(message.wanted), message.count)
+                self.posterior.answered(self.space.predicates.index(message.wanted), message.count)
                 self._asked = None
         if self._asked is not None and view.tick - self._asked > QUIET:
             self._silent = True

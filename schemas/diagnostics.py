@@ -51,6 +51,16 @@ class Diagnostic:
 class HearthError(Exception):
     """Bad input, with every fault that was found. The command line prints it and exits with status 1,
     or with status 2 where a name on the command line is at fault.
+
+    Attributes:
+        diagnostics: the faults, each with code, place, message and remedy.
+
+    Examples:
+        >>> try:
+        ...     hearth.home("castle")
+        ... except hearth.HearthError as error:
+        ...     print(error.diagnostics[0].code, error.diagnostics[0].message)
+        UNKNOWN_HOME there is no home `castle`
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:

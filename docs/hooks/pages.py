@@ -42,6 +42,7 @@ ENTRY_POINTS = {
         "hearth.scoring.metrics.lcs:score", "hearth:executability", "hearth.scoring.metrics.graph_f1:score",
         "hearth:evaluate",
     ),
+    "What is refused": ("hearth:HearthError",),
     "A dataset of one's own": ("hearth:build", "hearth.analysis.corpus_statistics:gather"),
 }  # fmt: skip
 """The entry points as `module:name`, in the order of their use."""

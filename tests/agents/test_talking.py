@@ -80,7 +80,7 @@ def test_an_answer_weighs_the_goals_that_lack_just_that(world):
     posterior = Posterior(space, world.home, 1.0)
     posterior.observe(space.scene(world), pose(world, 0))
     literal, count = next(iter(list(goals)[3]))
-    posterior.told(space.predicates.index(literal), count)
+    posterior.answered(space.predicates.index(literal), count)
     assert posterior.probability(3) > 0.99
 
 
