@@ -5,6 +5,7 @@ found thing (`room(o)`) is stated for every such thing. Where a Grab would remem
 domain remembers all of them, its only difference from the engine.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
@@ -77,7 +78,7 @@ def both(parts: list[str]) -> str:
     return parts[0] if len(parts) == 1 else f"(and {' '.join(parts)})"
 
 
-class Writer:
+class Writer(ABC):
     """Writes actions. A subclass defines functions, derived predicates and the names of variables."""
 
     agent = typed = ""
@@ -95,13 +96,13 @@ class Writer:
         """All of the parts of a conjunction."""
         return both(parts)
 
+    @abstractmethod
     def found(self, term: Term, names: Names, variable: str) -> str:
         """The condition under which a variable is the thing that a function finds."""
-        raise NotImplementedError
 
+    @abstractmethod
     def derived(self, literal: Literal[Term], names: Names) -> str:
         """A derived predicate of some terms."""
-        raise NotImplementedError
 
     def relation(self, name: str) -> str:
         """`HOLDS_RH` -> `holds-rh`."""
