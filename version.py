@@ -5,5 +5,9 @@ VERSION = "0.2.0"
 RELEASED = "2026-11-21"
 """The date of this version, stored in its datasets instead of the date of the build, so that bytes do not change."""
 
-ACTION_SET = "hearth-actions/1"
-"""Identifies the meaning of the actions; it changes whenever a program could run differently."""
+ACTION_SET = "hearth-actions/2"
+"""Identifies the meaning of the actions; it changes whenever a program could run differently.
+
+1: version 0.1. 2: `Walktowards`, `Walkforward`, `Turnleft` and `Turnright` are simulated, step modifiers have effects, and
+nothing is put on or into itself.
+"""

@@ -2,13 +2,15 @@
 
 from pathlib import Path
 
+import typer
+
 from hearth.commands import output
 
 
 def export(
     dataset: Path,
-    form: str,
     out: Path,
+    form: str = "",
     program: list[str] | None = None,
     limit: int | None = None,
     failures: bool = False,
@@ -26,9 +28,11 @@ def export(
     """
     from hearth.datasets.dataset import Dataset
     from hearth.datasets.export.batches import Wanted
-    from hearth.datasets.export.formats import COUNTED
+    from hearth.datasets.export.formats import COUNTED, FORMATS
     from hearth.datasets.export.formats import export as exported
 
+    if not form:
+        raise typer.BadParameter(f"which form? One of {', '.join(FORMATS)}", param_hint="--format")
     number = exported(Dataset.open(dataset, failures), form, out, Wanted(tuple(program or ()), limit))
     text = f"{output.counted(number, COUNTED.get(form, 'program'))} in {out}"
     output.say(text, {"format": form, "out": out, "count": number}, as_json)

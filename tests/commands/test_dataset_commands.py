@@ -93,8 +93,9 @@ def test_a_dataset_is_exported(dataset, tmp_path, form):
     assert any(path.is_file() and path.stat().st_size for path in (tmp_path / form).rglob("*"))
 
 
-def test_an_unknown_format_is_refused_with_those_there_are(dataset, tmp_path):
-    result = run("export", dataset, "--format", "nothing", "--out", tmp_path / "x")
+@pytest.mark.parametrize("asked", [("--format", "nothing"), ()])
+def test_an_unknown_or_missing_format_is_answered_with_those_there_are(dataset, tmp_path, asked):
+    result = run("export", dataset, *asked, "--out", tmp_path / "x")
     assert result.exit_code == 2
     assert "jsonl" in result.output
 
