@@ -8,6 +8,6 @@ RELEASED = "2026-11-21"
 ACTION_SET = "hearth-actions/2"
 """Identifies the meaning of the actions; it changes whenever a program could run differently.
 
-1: version 0.1. 2: `Walktowards`, `Walkforward`, `Turnleft` and `Turnright` are simulated, step modifiers have effects, and
-nothing is put on or into itself.
+1: version 0.1. 2: `Walktowards`, `Walkforward`, `Turnleft` and `Turnright` are simulated, step modifiers have effects,
+and nothing is put on or into itself.
 """
