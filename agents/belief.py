@@ -127,7 +127,7 @@ class Belief:
         self.known |= self.things & mask
         for thing in indices(self.things & ~mask):
             if self.known >> thing & 1:
-                if self._refuted(self.where[thing], empty):
+                if self._refuted(self.where[thing]):
                     self.known &= ~(1 << thing)
                     self._possible[thing] = self._usual[thing] & ~empty
                     self._rest[thing] = self._everywhere
@@ -150,13 +150,16 @@ class Belief:
         self._rest[thing] = self._everywhere
         self._draw(thing, 0)
 
-    def _refuted(self, place: Place, empty: int) -> bool:
-        """Whether a thing that is out of view can't be there: its place is in view, or its holder out of view."""
+    def _refuted(self, place: Place) -> bool:
+        """Whether a thing that is out of view can't be there: one would see it in this room, on what is in view or in
+        what is in view and not closed (a sink never is); who held it is not asked.
+        """
         if place.relation == HOLDS:
             return True
-        if place.relation == "ON":
-            return bool(self.seen >> place.node & 1)
-        return bool(empty >> place.node & 1)
+        if self._rooms >> place.node & 1:
+            return place.node == self.room
+        hidden = self.states[CLOSED] if place.relation == "INSIDE" else 0
+        return bool((self.seen & ~hidden) >> place.node & 1)
 
     def _draw(self, thing: int, empty: int) -> None:
         """A place among those that nothing seen refutes: where such things belong, or else anywhere; once every one is

@@ -10,6 +10,7 @@ from hearth.agents.hierarchical import HELPING
 from hearth.agents.human_like import HumanLike
 from hearth.agents.scene_reading import SceneReader
 from hearth.agents.subgoals import Missing, Subgoal
+from hearth.agents.whereabouts import note_others
 from hearth.models.helping.policy_inputs import Pair, Scene
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
@@ -35,8 +36,8 @@ class Choice:
 class Hybrid(HumanLike):
     """A policy chooses the class of things and the place of the next subgoal; regression does the rest.
 
-    Of the things of the class it takes the one that costs least by belief, where the thesis takes any. If nothing of
-    what the policy chose is missing by belief, it waits for a tick and asks again.
+    Of the things of the class it takes what it holds, else the one that costs least by belief, where the thesis takes
+    any. If nothing of what the policy chose is missing by belief, it waits for a tick and asks again.
 
     Attributes:
         choices: of subgoals, since the episode began.
@@ -61,6 +62,7 @@ class Hybrid(HumanLike):
     def act(self, observation: View, legal: Legal) -> Step | None:
         """The first instruction of the plan for its subgoal."""
         self.reader.note(observation)
+        note_others(self.belief, observation, self.chooser)
         return super().act(observation, legal)
 
     def available(self, view: View, open_now: list[Subgoal], missing: Missing) -> list[Subgoal]:
@@ -75,8 +77,8 @@ class Hybrid(HumanLike):
         pair, self._state = self.policy.choose(scene, self._state, self.chooser)
         self.choices.append(Choice(view.tick, scene, pair))
         fitting = [each for each in subgoals if self.reader.pairs.get(each.part) == pair]
-        cell = self.distances.cell(view.me.place)
-        return min(fitting, key=lambda each: self.cost(cell, each)[0], default=None)
+        cell, held = self.distances.cell(view.me.place), view.world.agents[view.agent].held
+        return min(fitting, key=lambda each: (not held >> each.thing & 1, self.cost(cell, each)[0]), default=None)
 
 
 class Learned(Hybrid):
@@ -103,6 +105,7 @@ class Learned(Hybrid):
     def act(self, observation: View, legal: Legal) -> Step | None:
         """What the second policy chooses for the subgoal."""
         self.reader.note(observation)
+        note_others(self.belief, observation, self.chooser)
         self.belief.observe(observation)
         missing = self.aims.missing(self.belief, observation)
         open_now = self.aims.open(self.belief, missing)
