@@ -35,7 +35,15 @@ ROOT = Path(__file__).resolve().parents[1]
 ROOMS = ("simulation", "grounding", "repair", "scoring", "datasets")
 APART = (".*", "*.egg-info", "__pycache__", "build", "dist", "data_out")
 NOT_SLOW = "not slow and not tools"
-BUDGET = 60.0
+PYTEST = """
+import resource, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where this runs in the background of a shell
+resource.setrlimit(resource.RLIMIT_CPU, ({limit}, {limit}))
+sys.path.insert(0, {place!r})
+import pytest
+sys.exit(pytest.main(sys.argv[1:]))
+"""
+BUDGET = 60
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
 
 Reached = Mapping[str, Mapping[str, Sequence[str]]]
@@ -136,10 +144,14 @@ def copied(folder: Path, root: Path = ROOT) -> Path:
     return copy
 
 
-def pytest_run(copy: Path, words: Sequence[str], limit: float) -> int | None:
-    """The status of pytest with the package taken from the copy; None after the time limit."""
+def pytest_run(copy: Path, words: Sequence[str], limit: int) -> int | None:
+    """The status of pytest with the package taken from the copy; None where it did not end.
+
+    A process ends after `limit` seconds of the processor, so that a busy machine does not end one that works. What
+    waits for ever uses none: ten times as long by the clock is the end for all.
+    """
     place = str(copy.parent)
-    code = f"import sys; sys.path.insert(0, {place!r}); import pytest; sys.exit(pytest.main(sys.argv[1:]))"
+    code = PYTEST.format(place=place, limit=limit)
     data = os.environ.get("HEARTH_REAL_DATA", str(ROOT.parent / "shared/real"))
     environment = {**os.environ, "PYTHONPATH": place, "PYTHONDONTWRITEBYTECODE": "1", "HEARTH_REAL_DATA": data}
     command = [sys.executable, "-c", code, "-q", "-p", "no:cacheprovider", "-m", NOT_SLOW, *words]
@@ -148,7 +160,7 @@ def pytest_run(copy: Path, words: Sequence[str], limit: float) -> int | None:
         process = subprocess.Popen(command, cwd=copy, env=environment, start_new_session=True,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
         try:
-            return process.wait(limit)
+            return process.wait(10 * limit)
         except subprocess.TimeoutExpired:
             return None
         finally:
