@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import challenge_checks, challenge_export, challenge_online, output
+from hearth.commands import (
+    challenge_checks,
+    challenge_export,
+    challenge_learning,
+    challenge_online,
+    challenge_pictures,
+    output,
+)
 from hearth.commands.challenge_film import film
 
 if TYPE_CHECKING:
@@ -150,200 +157,15 @@ def build(
         output.figures({"out": out, **counts})
 
 
-@app.command()
-def watch(
-    file: Path,
-    source: str = "actions",
-    *,
-    model: str | None = None,
-    rate: float = 1.0,
-    workers: int = 0,
-    as_json: bool = False,
-) -> None:
-    """Infer the goals of tasks from their demonstrations, and print precision and recall of predicates with counts.
-
-    \b
-    Examples:
-      python cli.py challenge watch test-1.json --from states
-      python cli.py challenge watch test-1.json --from last-frame
-      python cli.py challenge watch test-1.json --rate 0   (clean demonstrations)
-    """
-    from hearth.agents.demonstrations import agreement
-    from hearth.challenges.metrics import mean
-    from hearth.challenges.task_files import read
-    from hearth.challenges.watching import inferred
-    from hearth.commands.progress_line import bar
-    from hearth.kb.loading.load import default
-
-    suite = read(file)
-    with bar("demonstrations") as seen:
-        found = list(inferred(suite.tasks, source, default, rate, workers, seen, model))
-    each = [agreement(goal, task.goal) for goal, task in zip(found, suite.tasks, strict=True)]
-    precision, recall = mean([one.precision for one in each]), mean([one.recall for one in each])
-    exact = sum(dict(goal) == dict(task.goal) for goal, task in zip(found, suite.tasks, strict=True))
-    figures = {
-        "source": source,
-        "rate": rate,
-        "tasks": len(found),
-        "precision": precision.value,
-        "precision_se": precision.error,
-        "recall": recall.value,
-        "recall_se": recall.error,
-        "exact": exact / len(found),
-    }
-    if as_json:
-        output.emit(figures)
-    else:
-        output.figures(figures)
-
-
-@app.command()
-def learn(
-    name: str,
-    what: str = "goals",
-    *,
-    out: Path,
-    limit: int | None = None,
-    rate: float = 1.0,
-    epochs: int | None = None,
-    seed: int = 0,
-    workers: int = 0,
-    as_json: bool = False,
-) -> None:
-    """Train what helpers have learnt, and write a checkpoint: goals, policies or proposals.
-
-    `goals` infers goals from the states of demonstrations, `goals-moments` by the thesis's network. `subgoals` is
-    Hybrid's policy and `actions` HRL's second: both imitate the planner on tasks of training, and go on by A2C.
-
-    \b
-    Examples:
-      python cli.py challenge learn wah --out build/goal-inference
-      python cli.py challenge watch test-1.json --from states --model build/goal-inference
-      python cli.py challenge learn wah --what subgoals --limit 430 --out build/helping-subgoals
-      python cli.py challenge learn owah --what proposals-small --out build/goal-proposals-small
-    """
-    from hearth.challenges.learning import train
-    from hearth.commands.progress_line import bar
-    from hearth.kb.loading.load import default
-
-    with bar("episodes") as seen, bar("epochs") as passed:
-        facts = train(name, what, out, default, seed, limit, rate, epochs, workers, seen, passed)
-    shown = {"out": out, **{key: value for key, value in facts.items() if not isinstance(value, dict)}}
-    if as_json:
-        output.emit(shown)
-    else:
-        output.figures(shown)
-
-
-@app.command()
-def curves(checkpoints: list[Path], *, out: Path, as_json: bool = False) -> None:
-    """Draw how trainings went, one line for each checkpoint: seeds of one model belong together.
-
-    \b
-    Example:
-      python cli.py challenge curves build/subgoals-0 build/subgoals-1 build/subgoals-2 --out curves.svg
-    """
-    from hearth.analysis.training_curves import drawn, runs
-
-    found = runs(checkpoints)
-    out.write_text(drawn(found), encoding="utf-8")
-    rows = [run.row() for run in found]
-    if as_json:
-        output.emit(rows)
-    else:
-        output.records(rows)
-
-
-@app.command()
-def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None:
-    """Print where things and agents are when tasks start, and draw it as the thesis's figures B-4 and B-5.
-
-    \b
-    Example:
-      python cli.py challenge stats test-1.json --out figures
-    """
-    from hearth.analysis.challenge_starts import starts
-    from hearth.analysis.distribution import heat_map
-    from hearth.challenges.task_files import read
-    from hearth.kb.loading.load import default
-    from hearth.storage.names import inside
-
-    found = starts(read(file), default())
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        for name, counts, title in (
-            ("starts", found.everything, "Where all things are (figure B-4)"),
-            ("wanted", found.wanted, "Where wanted things are (figure B-5)"),
-        ):
-            some = {kind: each for kind, each in counts.items() if each.total()}
-            inside(out, f"{name}.svg").write_text(heat_map(some, title), encoding="utf-8")
-    if as_json:
-        output.emit(found._asdict())
-        return
-    for kind, places in found.everything.items():
-        shown = ", ".join(f"{place} {number / places.total():.0%}" for place, number in places.most_common(6))
-        mean = sum(number * tasks for number, tasks in found.numbers[kind].items()) / found.numbers[kind].total()
-        print(f"{kind:12} {mean:.2f} a task: {shown}")
-    rooms = ", ".join(f"{room} {number / found.agents.total():.0%}" for room, number in found.agents.most_common())
-    print(f"agents start in {rooms}")
-
-
-app.command()(film)
-
-
-@app.command()
-def show(
-    results: Path,
-    task: str,
-    episode: int = 0,
-    *,
-    alone: bool = False,
-    belief: bool = False,
-    out: Path | None = None,
-    goal_beliefs: Path | None = None,
-    as_json: bool = False,
-) -> None:
-    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
-    the helper believed of the goal as in figure 7-4.
-
-    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
-    believes wanted things to be, as time goes by (figure B-3).
-
-    \b
-    Examples:
-      python cli.py challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
-      python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
-    """
-    from hearth.analysis import belief_drawing
-    from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of
-    from hearth.challenges.result_files import read
-    from hearth.homes import plan_panels
-    from hearth.homes.library import load_layout
-    from hearth.kb.loading.load import default
-
-    found, known = read(results), default()
-    one, record = episode_of(found, str(results), task, episode, alone)
-    start, ticks = ticks_of(one, record, known)
-    if belief:
-        beliefs = belief_drawing.followed(one, start, ticks)
-        if out is not None:
-            out.write_text(belief_drawing.drawn(beliefs), encoding="utf-8")
-        output.emit(beliefs) if as_json else output.records([each.row() for each in beliefs])
-        return
-    if out is not None:
-        panels = panels_of(found, one, record, known)
-        plan_panels.write(load_layout(one.home, known), out, panels, furniture(one, start))
-    if goal_beliefs is not None:
-        challenge_online.draw_beliefs(goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks)))
-    rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
-    if as_json:
-        output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
-        return
-    print(f"{task} in {one.home}: {one.goal}\n")
-    output.records(rows)
-    reached = "reached" if record.metrics["success"] else "not reached"
-    print(f"\n{reached} after {record.metrics['ticks']} ticks")
+for _command in (
+    challenge_learning.watch,
+    challenge_learning.learn,
+    challenge_learning.curves,
+    challenge_pictures.stats,
+    film,
+    challenge_pictures.show,
+):
+    app.command()(_command)
 
 
 @app.command()

@@ -1,0 +1,94 @@
+"""`challenge stats | show`: where tasks start, and what was done in an episode, printed and drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hearth.commands import challenge_online, output
+
+
+def stats(file: Path, *, out: Path | None = None, as_json: bool = False) -> None:
+    """Print where things and agents are when tasks start, and draw it as the thesis's figures B-4 and B-5.
+
+    \b
+    Example:
+      python cli.py challenge stats test-1.json --out figures
+    """
+    from hearth.analysis.challenge_starts import starts
+    from hearth.analysis.distribution import heat_map
+    from hearth.challenges.task_files import read
+    from hearth.kb.loading.load import default
+    from hearth.storage.names import inside
+
+    found = starts(read(file), default())
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, counts, title in (
+            ("starts", found.everything, "Where all things are (figure B-4)"),
+            ("wanted", found.wanted, "Where wanted things are (figure B-5)"),
+        ):
+            some = {kind: each for kind, each in counts.items() if each.total()}
+            inside(out, f"{name}.svg").write_text(heat_map(some, title), encoding="utf-8")
+    if as_json:
+        output.emit(found._asdict())
+        return
+    for kind, places in found.everything.items():
+        shown = ", ".join(f"{place} {number / places.total():.0%}" for place, number in places.most_common(6))
+        mean = sum(number * tasks for number, tasks in found.numbers[kind].items()) / found.numbers[kind].total()
+        print(f"{kind:12} {mean:.2f} a task: {shown}")
+    rooms = ", ".join(f"{room} {number / found.agents.total():.0%}" for room, number in found.agents.most_common())
+    print(f"agents start in {rooms}")
+
+
+def show(
+    results: Path,
+    task: str,
+    episode: int = 0,
+    *,
+    alone: bool = False,
+    belief: bool = False,
+    out: Path | None = None,
+    goal_beliefs: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Show what agents did in an episode, and draw their ways on the floor plan as in the thesis's figure 6-6, and what
+    the helper believed of the goal as in figure 7-4.
+
+    An episode with a helper is drawn beside that of the main agent alone. With --belief it is where the main agent
+    believes wanted things to be, as time goes by (figure B-3).
+
+    \b
+    Examples:
+      python cli.py challenge show nopa.jsonl owah-test-0003 --goal-beliefs beliefs.svg
+      python cli.py challenge show hp.jsonl wah-test-1-0003 --out figure.png
+      python cli.py challenge show hp.jsonl wah-test-1-0003 --belief --out belief.svg
+    """
+    from hearth.analysis import belief_drawing
+    from hearth.analysis.episode_drawing import episode_of, furniture, narrated, panels_of, ticks_of
+    from hearth.challenges.result_files import read
+    from hearth.homes import plan_panels
+    from hearth.homes.library import load_layout
+    from hearth.kb.loading.load import default
+
+    found, known = read(results), default()
+    one, record = episode_of(found, str(results), task, episode, alone)
+    start, ticks = ticks_of(one, record, known)
+    if belief:
+        beliefs = belief_drawing.followed(one, start, ticks)
+        if out is not None:
+            out.write_text(belief_drawing.drawn(beliefs), encoding="utf-8")
+        output.emit(beliefs) if as_json else output.records([each.row() for each in beliefs])
+        return
+    if out is not None:
+        panels = panels_of(found, one, record, known)
+        plan_panels.write(load_layout(one.home, known), out, panels, furniture(one, start))
+    if goal_beliefs is not None:
+        challenge_online.draw_beliefs(goal_beliefs, one, record, found.header.lineup.helper, list(narrated(ticks)))
+    rows = [dict(zip(("tick", "agent", "instruction", "failure"), row, strict=True)) for row in narrated(ticks)]
+    if as_json:
+        output.emit({"task": task, "home": one.home, "goal": str(one.goal), **record.metrics, "instructions": rows})
+        return
+    print(f"{task} in {one.home}: {one.goal}\n")
+    output.records(rows)
+    reached = "reached" if record.metrics["success"] else "not reached"
+    print(f"\n{reached} after {record.metrics['ticks']} ticks")
