@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,6 +50,40 @@ class ActionModel:
 USUAL_MODEL = ActionModel()
 
 
+class _Lacking(NamedTuple):
+    """What goals lack, as long as the same things count.
+
+    Attributes:
+        missing: (G, P) what each goal lacks.
+        possible: (G,) 1 where it lacks something, and there are as many things as it lacks.
+        able: (P, T) whether a thing fits a predicate and does not count for it yet.
+        row, number: of each pair of a predicate and how many are missing, which many goals share.
+        goals: those that lack something.
+        pairs: (K, goals) the pairs of each, filled up with one more than there are.
+    """
+
+    missing: Numbers
+    possible: Floats
+    able: Flags
+    row: Numbers
+    number: Numbers
+    goals: Numbers
+    pairs: Numbers
+
+    @classmethod
+    def of(cls, space: GoalSpace, counted: Flags) -> _Lacking:
+        """What the goals of a space lack where some things count."""
+        missing, able = space.missing(counted), space.fits & ~counted
+        possible = missing.any(axis=1) & (missing <= able.sum(axis=1)).all(axis=1)
+        goals, rows = np.nonzero(missing)
+        needed, which = np.unique(rows * MOST + missing[goals, rows], return_inverse=True)
+        row, number = np.divmod(needed, MOST)
+        some, begins, lengths = np.unique(goals, return_index=True, return_counts=True)
+        pairs = np.full((lengths.max(initial=0), len(some)), len(needed))
+        pairs[np.arange(len(goals)) - np.repeat(begins, lengths), np.repeat(np.arange(len(some)), lengths)] = which
+        return cls(missing, possible.astype(np.float64), able, row, number, some, pairs)
+
+
 class Posterior:
     """Probabilities of all goals of a space, updated by every action that is seen.
 
@@ -70,6 +105,7 @@ class Posterior:
         self._last: tuple[Step, Failure | None] | None = None
         self._stood: tuple[tuple[Step, Failure | None] | None, Place | None] = (None, None)
         self.places: Places = []
+        self._counted: Flags = np.zeros((0, 0), np.bool_)
 
     def observe(self, scene: Scene, other: Pose) -> None:
         """Take in what somebody has just tried, and the home since then.
@@ -90,43 +126,34 @@ class Posterior:
         if places != self.places:
             self.places = places
             counted = self.space.counted(places)
-            self.missing = self.space.missing(counted)
-            self._keep(np.asarray(self.missing.any(axis=1) & self._possible(counted), np.float64))
-            self._expect(scene, other, counted)
+            if not np.array_equal(counted, self._counted):
+                self._counted, self._lacking = counted, _Lacking.of(self.space, counted)
+                self.missing = self._lacking.missing
+            self._keep(self._lacking.possible)
+            self._expect(scene, other)
             self._last = None
 
-    def _possible(self, counted: Flags) -> Flags:
-        """(G,) whether there are as many things as a goal lacks."""
-        left = (self.space.fits & ~counted).sum(axis=1)
-        found: Flags = (self.missing <= left).all(axis=1)
-        return found
-
-    def _expect(self, scene: Scene, other: Pose, counted: Flags) -> None:
+    def _expect(self, scene: Scene, other: Pose) -> None:
         """What is fetched or carried next under each goal.
 
         Whoever must fetch all of some things saves most by beginning with those that are near now, but far from where
         they are wanted: what counts is the cost from here less the cost from there, or that of the dearest thing that
         is needed otherwise.
         """
-        space, me = self.space, self._home.index[other.node]
+        lacking, me = self._lacking, self._home.index[other.node]
+        row, number = lacking.row, lacking.number
         self._held = np.array([place == (HOLDS, me) for place in self.places])
         cost = self.costs(scene.closed, other)
-        able = space.fits & ~counted & (cost < FAR)
+        able = lacking.able & (cost < FAR)
         trips = np.where(self._held, cost, self.round_trips(scene.closed))
         ordered = np.sort(np.where(able, trips, FAR), axis=1)
         last = able.sum(axis=1) - 1
-        goals, rows = np.nonzero(self.missing)
-        needed, which = np.unique(
-            rows * MOST + self.missing[goals, rows], return_inverse=True
-        )  # few pairs in many goals
-        row, number = np.divmod(needed, MOST)
         dearest = ordered[row, np.clip(last[row], 0, number - 1)]
         order = np.where(able[row], cost[row] - np.minimum(trips[row], dearest[:, None]), np.inf)
         least = float(order.min(initial=np.inf))
-        near = np.exp(-self.model.rationality * (order - (least if np.isfinite(least) else 0.0)))[which]
-        found = np.zeros((len(space.goals), len(space.things)))
-        begins = np.flatnonzero(np.diff(goals, prepend=-1))
-        found[goals[begins]] = np.add.reduceat(near, begins) if len(begins) else 0.0
+        near = np.exp(-self.model.rationality * (order - (least if np.isfinite(least) else 0.0)))
+        found = np.zeros((len(self.space.goals), len(self.space.things)))
+        found[lacking.goals] = np.vstack((near, np.zeros_like(near[:1]))).take(lacking.pairs, axis=0).sum(axis=0)
         carried = found * self._held
         found = np.where(carried.any(axis=1, keepdims=True), carried, found)
         total = found.sum(axis=1, keepdims=True)

@@ -157,7 +157,7 @@ def build(
         output.figures({"out": out, **counts})
 
 
-for _command in (
+for _before in (
     challenge_learning.watch,
     challenge_learning.learn,
     challenge_learning.curves,
@@ -165,7 +165,7 @@ for _command in (
     film,
     challenge_pictures.show,
 ):
-    app.command()(_command)
+    app.command()(_before)
 
 
 @app.command()
