@@ -17,6 +17,9 @@ MOMENTS = 12
 
 EMBEDDED = 32
 
+RARE = 4.0
+"""Logarithm of how much likelier a predicate is not wanted than wanted once, before anything is learnt."""
+
 
 class MomentNetwork(nn.Module):
     """How often each predicate is wanted.
@@ -39,11 +42,13 @@ class MomentNetwork(nn.Module):
         self.place = nn.Embedding(layout.places + 1, EMBEDDED)
         self.thing = nn.Linear(2 * EMBEDDED, width)
         layer = nn.TransformerEncoderLayer(width, heads, 2 * width, dropout, batch_first=True, norm_first=True)
-        self.over_things = nn.TransformerEncoder(layer, layers, enable_nested_tensor=False)
+        self.over_things = nn.TransformerEncoder(layer, layers, nn.LayerNorm(width), enable_nested_tensor=False)
         self.over_time = nn.LSTM(width, width, batch_first=True)
         self.count = nn.Linear(width, self.predicates * (most + 1))
         nn.init.zeros_(self.count.weight)
         nn.init.zeros_(self.count.bias)
+        # Few predicates are wanted. Were all counts as likely at first, learning that would saturate the LSTM.
+        nn.init.constant_(self.count.bias.data.unflatten(0, (self.predicates, most + 1))[:, 0], RARE)
 
     def forward(self, batch: Packed) -> Tensor:
         """The logarithms of the probabilities of each predicate's counts, (D, P, most + 1)."""
