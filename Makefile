@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: all models film-models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -107,6 +107,10 @@ models: .venv/.models $(call manifest,publish)  ## train the models that come wi
 	@$(HEARTH) model train retrieve-edit $(OUT) --seed $(SEED) --out models/trained/retrieve-edit
 	@$(HEARTH) model train mle-composed $(OUT) --seed $(SEED) --out models/trained/mle-composed --epochs 15 --rate 0.003
 	@$(HEARTH) model train chooser $(OUT) --seed $(SEED) --out models/trained/chooser --epochs 10
+
+film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
+	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002
+	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 30 --rate 0.002
 
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"

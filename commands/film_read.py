@@ -8,36 +8,57 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from hearth.models.films.film_shown import FilmShown
 
+MASKS = "masks"
+"""The checkpoint that predicts the masks of videos, unless another is named."""
 
-def show(model: str, film: Path, home: str, homes: Path | None, kb: Path | None, out: Path | None) -> dict[str, Any]:
+
+def show(
+    model: str, film: Path, home: str, homes: Path | None, kb: Path | None, out: Path | None, masks: str = MASKS
+) -> dict[str, Any]:
     """What a film shows, as JSON, with the pages that were written into `out`.
 
+    Args:
+        model: a classifier of clips by masks.
+        film: of a dataset of clips, or a video; or a folder with one.
+        home: where the program runs.
+        homes, kb: laid over ours.
+        out: the folder for films; None for none.
+        masks: the checkpoint that predicts the masks of a video.
+
     Raises:
-        HearthError: the film or the model can't be read.
+        HearthError: the film or a model can't be read.
     """
     from hearth.commands.inputs import read_knowledge
     from hearth.homes import library
-    from hearth.models.films.film_shown import read_masks, show_film
-    from hearth.models.films.seen_model import TrainedSeenModel
+    from hearth.models.films.clip_tables import classifier
+    from hearth.models.films.film_input import ARRAYS, film_file, read_masks, read_pictures
+    from hearth.models.films.film_shown import show_film
+    from hearth.simulation.world.home import Home
+
+    known, path, trained = read_knowledge(kb), film_file(film), classifier(model)[1]
+    seen = read_masks(path) if path.suffix == ARRAYS else _predicted(masks, read_pictures(path))
+    place = Home.from_graph(library.load_graph(home, known, homes), home, known)
+    found = show_film(trained, seen, place)
+    pages = _beside(found, path, seen, home, homes, kb, out) if out else []
+    return {"film": path, **_document(found), "home": home, "pages": pages}
+
+
+def _predicted(model: str, pictures: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    from hearth.models.films.mask_model import TrainedMaskModel
     from hearth.models.model_registry import restore
     from hearth.schemas.diagnostics import HearthError
     from hearth.schemas.failures import Code
-    from hearth.simulation.world.home import Home
 
-    if film.suffix != ".npz":
-        message = f"`{film.name}` has colours, and films are read by their class masks"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="give the `clips.npz` of a dataset of clips")
-    known, masks = read_knowledge(kb), read_masks(film)
     trained = restore(model)[1]
-    if not isinstance(trained, TrainedSeenModel):
-        message = f"`{model}` does not read films"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name a model such as `clips-seen`")
-    place = Home.from_graph(library.load_graph(home, known, homes), home, known)
-    found = show_film(trained, masks, place)
-    pages = _beside(found, film, masks, home, homes, kb, out) if out else []
-    return {"film": film, **_document(found), "home": home, "pages": pages}
+    if not isinstance(trained, TrainedMaskModel):
+        message = f"`{model}` does not predict masks"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="a checkpoint of `masks`")
+    return trained.masks(pictures)
 
 
 def _document(found: FilmShown) -> dict[str, Any]:
@@ -53,23 +74,29 @@ def _document(found: FilmShown) -> dict[str, Any]:
 def _beside(
     found: FilmShown, film: Path, masks: Any, home: str, homes: Path | None, kb: Path | None, out: Path
 ) -> list[str]:
-    """Write the film of the masks, that of the program, and a page with both."""
+    """Write the film, its masks, the film of the program, and a page with all."""
+    import shutil
     from html import escape
 
     from hearth.commands.model_shown import film_of
+    from hearth.models.films.film_input import VIDEOS
     from hearth.rendering.film.clips import RATE
     from hearth.rendering.film.mask_film import write_masks
     from hearth.storage.names import inside
 
     out.mkdir(parents=True, exist_ok=True)
-    write_masks(masks, out / "original.webm", RATE)
+    write_masks(masks, out / "masks.webm", RATE)
+    videos = {"The masks": "masks.webm"}
+    if film.suffix in VIDEOS:
+        original = inside(out, f"original{film.suffix}")
+        shutil.copyfile(film, original)
+        videos = {"The film": original.name, **videos}
     if found.failure is not None:
         return []
     made = film_of(found.execution, home, out, homes, kb)
-    folder = escape(inside(out, Path(home).name).name)
-    videos = (("The film", "original.webm"), ("The program", f"{folder}/auto.webm"))
+    videos["The program"] = f"{escape(inside(out, Path(home).name).name)}/auto.webm"
     cells = "".join(f'<figure><video src="{file}" controls muted width="512"></video><figcaption>{name}</figcaption>'
-                    "</figure>" for name, file in videos)  # fmt: skip
+                    "</figure>" for name, file in videos.items())  # fmt: skip
     steps = "".join(f"<li>{escape(row['step'])} at {row['time']:.1f} s</li>" for row in _document(found)["steps"])
     page = out / "beside.html"
     page.write_text(f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{escape(film.name)}</title>'

@@ -159,7 +159,7 @@ def table(
     as_json: bool = False,
 ) -> None:
     """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.3 and 4.6 of clips.
+    4.2, 4.3, 4.3b and 4.6 of clips.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
@@ -169,6 +169,7 @@ def table(
     Example:
       python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
       python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
+      python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
       python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
       python cli.py model table 4.6 data_out/clips --model clips-seen
     """
@@ -176,7 +177,7 @@ def table(
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)
-    if number in ("4.3", "4.6"):
+    if number in ("4.2", "4.3", "4.3b", "4.6"):
         _of_films(number, data, models or (), seed, as_json)
         return
     if number == "5.1":
@@ -206,18 +207,18 @@ def table(
 
 
 def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_json: bool) -> None:
-    """Tables 4.3 and 4.6."""
+    """Tables 4.2, 4.3, its part (b), and 4.6."""
     from hearth.commands.progress_line import bar
     from hearth.models.films import clip_tables, film_tables
 
     with bar("films") as seen:
-        if number == clip_tables.TABLE:
-            rows: Sequence[Any] = clip_tables.clip_table(dataset, models, seed)
+        if number in clip_tables.TABLES:
+            rows: Sequence[Any] = clip_tables.clip_table(number, dataset, models, seed)
         else:
             rows = film_tables.film_table(dataset, models, seed, seen=seen)
     if as_json:
         output.emit(rows)
-    elif number == clip_tables.TABLE:
+    elif number in clip_tables.TABLES:
         shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
                   row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
         output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
@@ -225,6 +226,33 @@ def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_js
         shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
                   row.films, row.seeds or None] for row in rows]  # fmt: skip
         output.table(["method", "of", "homes", *film_tables.COLUMNS, "films", "seeds"], shown)
+
+
+@app.command()
+def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool = False) -> None:
+    """Draw figure 4-4 (SVG: what actions are taken for) or 4-7 (HTML: films, what was done, and what is read).
+
+    \b
+    Examples:
+      python cli.py model figure 4-4 data_out/clips --model clips-seen --out figure-4-4.svg
+      python cli.py model figure 4-7 data_out/clips --model clips-seen --out figure-4-7.html
+    """
+    from hearth.datasets.dataset import Dataset
+    from hearth.models.films import clip_confusion, film_figure
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
+    from hearth.storage.files import write_bytes
+
+    data = Dataset.open(dataset)
+    if number == "4-4":
+        drawn = clip_confusion.drawn(clip_confusion.confusion(data, model))
+    elif number == "4-7":
+        drawn = film_figure.film_page(data, model)
+    else:
+        raise HearthError.of(Code.BAD_ARGUMENT, f"there is no figure `{number[:20]}`", suggestion="4-4 or 4-7")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(out, drawn.encode())
+    output.say(str(out), {"figure": number, "files": [str(out)]}, as_json)
 
 
 def _score(value: Any) -> str:
@@ -246,6 +274,7 @@ def show(
     kb: Path | None = None,
     beam: int = 1,
     film: Path | None = None,
+    masks: str = "masks",
     as_json: bool = False,
 ) -> None:
     """Write a program for a text or a sketch and run it in a home: the words, the sketch, the program, each step shown.
@@ -253,20 +282,23 @@ def show(
     The sketch is what a model of texts writes, or the file of --sketch for a model of sketches. Its objects are bound
     to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
     two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
-    A model of films reads a film of a dataset of clips in place of the text: its steps with times, and the program.
+    A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are
+    predicted: its steps with times, and the program.
 
     \b
     Example:
       python cli.py model show retrieve-edit "Turn on the TV and sit down" --home maple
       python cli.py model show planner --sketch sketch.txt --home maple --home birch
-      python cli.py model show clips-seen data_out/clips/films/FOLDER/clips.npz --film shown
+      python cli.py model show clips-seen data_out/clips/publish/films/FOLDER --film shown
+      python cli.py model show clips-seen film.webm --film shown
     """
     from hearth.commands import model_shown
+    from hearth.models.films.film_input import is_film
 
-    if text.endswith((".npz", ".webm")) and Path(text).exists():
+    if is_film(text):
         from hearth.commands import film_read
 
-        found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film)
+        found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)
         output.emit(found) if as_json else film_read.printed(found)
         output.status(int(not found["executable"]), strict=True)
         return

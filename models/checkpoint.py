@@ -192,6 +192,8 @@ class _About(NamedTuple):
 
 _NOT_REAL = "It is for research on people and helpers in simulated homes, and not for acting in real homes."
 
+_OF_FILMS = "It is for research on films of simulated homes, and knows nothing of pictures of real ones."
+
 _ABOUT = {
     "": _About(
         "program-synthesis",
@@ -205,6 +207,16 @@ _ABOUT = {
         "goal-inference",
         "A model of Hearth that infers what somebody wants from where things were seen (thesis 6.4, B.3.1).",
         (_NOT_REAL, "It knows the predicates of one challenge; other goals it reads as the nearest of those."),
+    ),
+    "clips": _About(
+        "video-classification",
+        "A model of Hearth that names what is done in films of our renderer, by their class masks (thesis 4.3.3).",
+        (_OF_FILMS,),
+    ),
+    "masks": _About(
+        "image-segmentation",
+        "A model of Hearth that predicts the class masks of pictures of our renderer (thesis 4.3.3).",
+        (_OF_FILMS,),
     ),
     "helping": _About(
         "reinforcement-learning",

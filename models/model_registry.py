@@ -73,14 +73,25 @@ MODELS: dict[str, Entry] = {
         "ours",
         {"text": True},
     ),
-    "clips": Entry(
-        "films.clip_model:ClipModel", "film", "Names the instruction of a two-second clip by its masks.", "thesis 4.3.3"
+    "masks": Entry("films.mask_model:MaskModel", "film", "Predicts the class masks of pictures.", "thesis 4.3.3"),
+    "clips-rgb": Entry(
+        "films.clip_model:ClipModel",
+        "film",
+        "Names the instruction of a two-second clip by its colours.",
+        "thesis 4.3.3",
     ),
     "clips-seen": Entry(
         "films.seen_model:SeenModel",
         "film",
         "Names it by what each class of the masks does beside the person; it points at the objects.",
         "ours",
+    ),
+    "clips-context": Entry(
+        "films.seen_model:SeenModel",
+        "film",
+        "The same; it looks at seven seconds before and after each clip, too.",
+        "ours",
+        {"context": True},
     ),
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",

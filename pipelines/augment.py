@@ -84,8 +84,11 @@ def process(record: CaseRow, context: Context) -> Iterator[Output]:
     original = (_conditions(record), rerun(record, context.homes))
     found = augment(program, home, context.seed, record["environment_id"], options, original)
     assert isinstance(found, Augmented), "the original is at hand"
-    yield from _sketched(record, program, original, context)
-    yield from _outputs(record, found, context, wanted=options.count > 0)
+    sketched = [*_sketched(record, program, original, context)]
+    yield from sketched
+    yield from _outputs(record, found, context)
+    if not found.pairs and (options.count or not sketched):
+        yield _nothing_to_perturb(record, options.count)
 
 
 def _sketched(
@@ -100,14 +103,12 @@ def _sketched(
         yield "sketches", _sketch(name, "inferred", program, context.keep)
 
 
-def _outputs(record: CaseRow, found: Augmented, context: Context, *, wanted: bool) -> Iterator[Output]:
+def _outputs(record: CaseRow, found: Augmented, context: Context) -> Iterator[Output]:
     for pair in found.pairs:
         if pair.failure is not None:
             yield _reject(record, pair, pair.failure)
         if pair.attempts:
             yield from _cases(record, pair, context)
-    if not found.pairs and wanted:
-        yield _nothing_to_perturb(record)
 
 
 def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> SketchRow:
@@ -115,8 +116,9 @@ def _sketch(program_id: str, origin: str, program: Program, keep: Keep) -> Sketc
     return {"program_id": program_id, "origin": origin, "keep": list(keep), "steps": steps}
 
 
-def _nothing_to_perturb(record: CaseRow) -> Reject:
-    failure = Failure(Code.UNPERTURBED, expected="a precondition that can be perturbed", actual="none")
+def _nothing_to_perturb(record: CaseRow, wanted: int) -> Reject:
+    expected = "a precondition that can be perturbed" if wanted else "a build that asks for variants"
+    failure = Failure(Code.UNPERTURBED, expected=expected, actual="none")
     return Reject.failed(failure, record["place"], where=f"in {record['home']}")
 
 

@@ -1,4 +1,4 @@
-"""The classifier of clips: it is trained on the masks of training films, and names the instruction of others."""
+"""The classifier of clips by colours: it is trained on pictures of training films (thesis table 4.3 b)."""
 
 from __future__ import annotations
 
@@ -14,19 +14,18 @@ from numpy.typing import NDArray
 from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clips, Instruction, Labels, Pictures, frames_of, pictures_of
+from hearth.models.films.clip_data import COLOURS, Clips, Instruction, no_programs
 from hearth.models.films.clip_network import RELATED, ClipNetwork, loss_of
 from hearth.models.films.film_readings import Reading
+from hearth.models.films.frame_data import Labels, Pictures, frames_of, pictures_of
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
-NAME = "clips"
+NAME = "clips-rgb"
 """Of its checkpoints."""
 
 AT_ONCE = 128
@@ -41,7 +40,6 @@ class ClipModel(Settings):
     """Settings of the classifier.
 
     Attributes:
-        vector: numbers for a class of the masks.
         width: numbers for a frame.
         dropout: share of numbers left out in training.
         batch: clips in a batch.
@@ -49,7 +47,6 @@ class ClipModel(Settings):
         films: of training, at most; 0 for all.
     """
 
-    vector: int = 12
     width: int = 128
     dropout: float = 0.3
     batch: int = 64
@@ -58,21 +55,22 @@ class ClipModel(Settings):
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedClipModel:
         """Train on the clips of `train`; those of `validation` decide when to stop."""
-        learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
+        learned = Clips.of(dataset, "train", self.films, array=COLOURS)
+        checked = Clips.of(dataset, "validation", array=COLOURS)
         labels = Labels.of(learned)
         torch.manual_seed(how.seed)
         model = TrainedClipModel(self, labels, self.network(labels))
         wanted = np.array([labels.numbers(clip.done) for clip in learned.clips])
         weights = [torch.tensor(each, dtype=torch.float32) for each in self._weights(wanted, labels)]
-        pictures, looked_at = pictures_of(learned, labels), pictures_of(checked, labels)
+        pictures, looked_at = pictures_of(learned), pictures_of(checked)
 
         def batches(random: Random) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
             order = random.sample(range(len(learned)), len(learned))
             for start in range(0, len(order), self.batch):
                 which = order[start : start + self.batch]
                 taken = sorted(random.sample(range(learned.frames), RELATED))
-                masks = frames_of(learned, pictures, which, taken)
-                yield torch.from_numpy(masks), torch.from_numpy(wanted[which])
+                frames = torch.from_numpy(frames_of(learned, pictures, which, taken))
+                yield frames, torch.from_numpy(wanted[which])
 
         def loss(batch: tuple[torch.Tensor, torch.Tensor]) -> torch.Tensor:
             return loss_of(model.network(batch[0]), batch[1], weights)
@@ -96,7 +94,7 @@ class ClipModel(Settings):
     def network(self, labels: Labels) -> ClipNetwork:
         """The network, with random weights."""
         sizes = len(labels.actions), len(labels.objects) + 1
-        return ClipNetwork(len(labels.seen) + 1, self.vector, self.width, *sizes, self.dropout)
+        return ClipNetwork(self.width, *sizes, self.dropout)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedClipModel:
@@ -122,7 +120,7 @@ class TrainedClipModel:
 
     def scores(self, clips: Clips, relations: Iterable[Sequence[int]] = RELATIONS) -> NDArray[np.float32]:
         """(N, I) logarithms of how probable each of training's instructions is in each clip, up to a constant."""
-        return self.scores_of(clips, pictures_of(clips, self.labels), relations)
+        return self.scores_of(clips, pictures_of(clips), relations)
 
     def scores_of(self, clips: Clips, pictures: Pictures, relations: Iterable[Sequence[int]]) -> NDArray[np.float32]:
         """The same by the pictures of the clips' films."""
@@ -152,8 +150,7 @@ class TrainedClipModel:
         Raises:
             HearthError: BAD_ARGUMENT.
         """
-        message = f"`{NAME}` is a model of films: it has no programs for texts or sketches"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model table 4.3 DATASET --model M` scores it")
+        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""

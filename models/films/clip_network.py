@@ -1,7 +1,6 @@
 """A network that names the instruction of a clip: frames by convolutions, their order by a relation of four frames.
 
-As the thesis's Temporal Relation Network with relations of four frames (4.3.3); its frames are class masks, whose
-numbers get learned vectors instead of colours.
+As the thesis's Temporal Relation Network with relations of four frames (4.3.3), on colours (table 4.3 b).
 """
 
 from __future__ import annotations
@@ -17,18 +16,15 @@ RELATED = 4
 
 
 class FrameNetwork(nn.Module):
-    """One frame of masks as a vector.
+    """One frame as a vector.
 
     Args:
-        colours: numbers of the palette, 0 included.
-        vector: numbers for a colour.
         width: of the result.
     """
 
-    def __init__(self, colours: int, vector: int, width: int) -> None:
+    def __init__(self, width: int) -> None:
         super().__init__()
-        self.colour = nn.Embedding(colours, vector)
-        sizes = (vector, 32, 64, 96, 96)
+        sizes = (3, 32, 64, 96, 96)
         self.layers = nn.ModuleList(
             nn.Conv2d(one, other, 5 if number == 0 else 3, stride=2, padding=2 if number == 0 else 1)
             for number, (one, other) in enumerate(pairwise(sizes))
@@ -36,9 +32,9 @@ class FrameNetwork(nn.Module):
         self.norms = nn.ModuleList(nn.GroupNorm(8, size) for size in sizes[1:])
         self.whole = nn.Linear(sizes[-1] * 12, width)
 
-    def forward(self, masks: Tensor) -> Tensor:
-        """(N, H, W) numbers of the palette -> (N, width)."""
-        found = self.colour(masks.long()).permute(0, 3, 1, 2)  # (N, vector, H, W)
+    def forward(self, frames: Tensor) -> Tensor:
+        """(N, H, W, 3) colours from 0 to 255 -> (N, width)."""
+        found = frames.permute(0, 3, 1, 2).float() / 128 - 1  # (N, 3, H, W)
         for layer, norm in zip(self.layers, self.norms, strict=True):
             found = functional.relu(norm(layer(found)))
         return functional.relu(self.whole(functional.adaptive_avg_pool2d(found, (3, 4)).flatten(1)))
@@ -48,23 +44,23 @@ class ClipNetwork(nn.Module):
     """Logarithms of the probabilities of action, first and second object of a clip.
 
     Args:
-        colours, vector, width: as of `FrameNetwork`.
+        width: as of `FrameNetwork`.
         actions, objects: how many there are; `objects` with none.
         dropout: share of numbers left out in training.
     """
 
-    def __init__(self, colours: int, vector: int, width: int, actions: int, objects: int, dropout: float) -> None:
+    def __init__(self, width: int, actions: int, objects: int, dropout: float) -> None:
         super().__init__()
-        self.frame = FrameNetwork(colours, vector, width)
+        self.frame = FrameNetwork(width)
         self.relation = nn.Sequential(
             nn.Dropout(dropout), nn.Linear(RELATED * width, 2 * width), nn.ReLU(), nn.Dropout(dropout)
         )
         self.heads = nn.ModuleList(nn.Linear(2 * width, count) for count in (actions, objects, objects))
 
-    def forward(self, masks: Tensor) -> list[Tensor]:
-        """(N, 4, H, W) numbers of the palette, in the order of time -> (N, actions), (N, objects), (N, objects)."""
-        count = len(masks)
-        frames = self.frame(masks.flatten(0, 1)).reshape(count, -1)  # (N, 4 * width)
+    def forward(self, pictures: Tensor) -> list[Tensor]:
+        """(N, 4, H, W, 3) colours, in the order of time -> (N, actions), (N, objects), (N, objects)."""
+        count = len(pictures)
+        frames = self.frame(pictures.flatten(0, 1)).reshape(count, -1)  # (N, 4 * width)
         related = self.relation(frames)
         return [head(related).log_softmax(-1) for head in self.heads]
 

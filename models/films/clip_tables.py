@@ -1,15 +1,18 @@
-"""Table 4.3 (a): what clips are taken for by true masks, the thesis's figures beside ours beside yardsticks."""
+"""Tables 4.2 and 4.3: what clips are taken for, the thesis's figures beside ours beside yardsticks."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clips, Instruction
+from hearth.models.films.clip_data import COLOURS, MASKS, Clips, Instruction
 from hearth.models.films.clip_model import TrainedClipModel
+from hearth.models.films.mask_model import TrainedMaskModel
+from hearth.models.films.predicted_masks import PredictedMasks
 from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.model_registry import restore
 from hearth.schemas.diagnostics import HearthError
@@ -19,19 +22,48 @@ from hearth.schemas.rng import rng
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
-TABLE = "4.3"
-
 COLUMNS = ("action", "objects", "steps", "mean")
 
 HOMES = {"seen": ("seen",), "unseen": ("unseen",), "all": ("seen", "validation", "unseen")}
-"""Rows of the table, and the kinds of homes that each has; the home of validation counts under all alone."""
+"""Rows of the tables, and the kinds of homes that each has; the home of validation counts under all alone."""
 
-THESIS = {
-    "seen": (0.7806, 0.7300, 0.5642, 0.6916),
-    "unseen": (0.5489, 0.5294, 0.4350, 0.5044),
-    "all": (0.6258, 0.6118, 0.4849, 0.5742),
-}
-"""Table 4.3 (a), ground-truth segmentation."""
+Classifier = TrainedClipModel | TrainedSeenModel
+
+
+class ClipTable(NamedTuple):
+    """A table of the thesis.
+
+    Attributes:
+        line: what is looked at.
+        kind: of the models that are compared.
+        array: of a film that is looked at.
+        thesis: the thesis's figures by homes.
+    """
+
+    line: str
+    kind: type[Any]
+    array: str
+    thesis: dict[str, tuple[float, ...]]
+
+
+TABLES = {
+    "4.2": ClipTable("predicted masks", TrainedSeenModel, COLOURS, {
+        "seen": (0.7032, 0.4214, 0.2381, 0.4542),
+        "unseen": (0.3134, 0.1455, 0.1148, 0.1912),
+        "all": (0.4685, 0.2576, 0.1841, 0.3034),
+    }),
+    "4.3": ClipTable("true masks", TrainedSeenModel, MASKS, {
+        "seen": (0.7806, 0.7300, 0.5642, 0.6916),
+        "unseen": (0.5489, 0.5294, 0.4350, 0.5044),
+        "all": (0.6258, 0.6118, 0.4849, 0.5742),
+    }),
+    "4.3b": ClipTable("colours", TrainedClipModel, COLOURS, {
+        "seen": (0.7746, 0.6021, 0.4445, 0.6071),
+        "unseen": (0.4056, 0.2656, 0.2646, 0.3119),
+        "all": (0.5460, 0.4044, 0.3517, 0.4340),
+    }),
+}  # fmt: skip
+"""By number; 4.3 is its part (a)."""
 
 
 class ClipRow(NamedTuple):
@@ -56,42 +88,75 @@ class ClipRow(NamedTuple):
     seeds: int = 0
 
 
-def clip_table(dataset: Dataset, models: Sequence[Path | str], seed: int = 0) -> list[ClipRow]:
-    """The rows of table 4.3 (a), over the clips of the test part.
+def clip_table(number: str, dataset: Dataset, models: Sequence[Path | str], seed: int = 0) -> list[ClipRow]:
+    """The rows of a table, over the clips of the test part.
 
     Args:
+        number: of `TABLES`.
         dataset: with clips.
-        models: checkpoints of classifiers of clips; several of one model are its seeds.
+        models: checkpoints of classifiers of clips, several of one model are its seeds; for 4.2 also one of `masks`.
         seed: of the random yardstick.
 
     Raises:
         HearthError: errors of `restore` and of `Clips.of`; BAD_ARGUMENT, for a model of another kind.
     """
-    learned, test = Clips.of(dataset, "train"), Clips.of(dataset, "test")
+    table = TABLES[number]
+    learned = Clips.of(dataset, "train")
+    test, found = looked_at(number, dataset, models)
     done = [clip.done for clip in learned.clips]
     draw = rng(seed, "random clips")
     commonest = Counter(done).most_common(1)[0][0]
-    rows = [ClipRow("MLE, true masks", "thesis", homes, dict(zip(COLUMNS, found, strict=True)))
-            for homes, found in THESIS.items()]  # fmt: skip
+    rows = [ClipRow(f"Thesis, {table.line}", "thesis", homes, dict(zip(COLUMNS, values, strict=True)))
+            for homes, values in table.thesis.items()]  # fmt: skip
     rows += _rows("random retrieval", "yardstick", test, [[draw.choice(done) for _ in test.clips]], 0)
     rows += _rows("commonest", "yardstick", test, [[commonest] * len(test)], 0)
     named: dict[str, list[list[Instruction]]] = {}
-    for model in models:
-        name, trained = classifier(model)
+    for name, trained in found:
         named.setdefault(name, []).append(trained.named(test))
     return [*rows, *(row for name, each in named.items() for row in _rows(name, "ours", test, each, len(each)))]
 
 
-def classifier(model: Path | str) -> tuple[str, TrainedClipModel | TrainedSeenModel]:
-    """A trained classifier of clips, and its name.
+def looked_at(
+    number: str, dataset: Dataset, models: Sequence[Path | str]
+) -> tuple[Clips, list[tuple[str, Classifier]]]:
+    """The test clips as a table's models look at them, and the models with their names.
+
+    Raises:
+        HearthError: as of `clip_table`.
+    """
+    table = TABLES[number]
+    test = Clips.of(dataset, "test", array=table.array)
+    given = [restore(model) for model in models]
+    if number == "4.2":
+        networks = [trained for _, trained in given if isinstance(trained, TrainedMaskModel)]
+        if len(networks) != 1:
+            message = f"{len(networks)} checkpoints of `masks`, not one"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name one beside classifiers of clips")
+        test = replace(test, films=PredictedMasks(test.films, networks[0]))
+        given = [each for each in given if each[1] is not networks[0]]
+    return test, [(name, _classifier(trained, name, table.kind)) for name, trained in given]
+
+
+def _classifier(trained: Any, name: str, kind: type[Any]) -> Classifier:
+    """A trained model.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, if it is of another kind.
+    """
+    if not isinstance(trained, kind):
+        message = f"`{name}` does not look at what the table is about"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model list` has the input of each model")
+    return trained  # type: ignore[no-any-return]
+
+
+def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
+    """A trained classifier of clips by masks, and its name.
 
     Raises:
         HearthError: errors of `restore`; BAD_ARGUMENT, for a model of another kind.
     """
     name, found = restore(model)
-    if not isinstance(found, TrainedClipModel | TrainedSeenModel):
-        raise HearthError.of(Code.BAD_ARGUMENT, f"`{model}` is not a classifier of clips")
-    return name, found
+    return name, _classifier(found, name, TrainedSeenModel)  # type: ignore[return-value]
 
 
 def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instruction]], seeds: int) -> Iterator[ClipRow]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from hearth.grounding.binding import nearest
 from hearth.models.films.clip_data import Instruction
 from hearth.models.interface import Steps
+from hearth.repair.completion import complete
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import act
 from hearth.simulation.rules import DEFAULT, Rules
@@ -44,6 +45,9 @@ class FilmProgram(NamedTuple):
     starts: tuple[int, ...]
 
 
+MOST_INSERTED = 3
+"""Steps that are inserted before one that could not be done."""
+
 NO_STEPS = FilmProgram((), ())
 
 Moves = NDArray[np.float32]
@@ -57,10 +61,14 @@ class Filter:
     Attributes:
         beam: worlds at a time, each with its best program.
         options: instructions that each of them may go on with in a clip.
+        repaired: of those options, the first ones may be repaired where they can't be done: steps are inserted.
+        inserted: what an inserted step costs, as a logarithm.
     """
 
     beam: int = 48
     options: int = 24
+    repaired: int = 6
+    inserted: float = 3.0
 
 
 def even_moves(count: int, change: float = CHANGE) -> Moves:
@@ -124,8 +132,9 @@ def followed(
 ) -> FilmProgram:
     """The program that explains a film best among those that run in the world in which it begins.
 
-    In each clip a program goes on with its last instruction, or with another one that can be done then; objects are
-    the nearest of their class. Of programs that have come to the same world by the same instruction the best is kept.
+    In each clip a program goes on with its last instruction, or with another one that can be done then, or after steps
+    that a repair inserts; objects are the nearest of their class. Of programs that have come to the same world by the
+    same instruction the best is kept.
 
     Args:
         scores: of the clips.
@@ -153,7 +162,7 @@ class _Search:
 
     def __init__(self, instructions: Sequence[Instruction], moves: Moves, how: Filter, rules: Rules) -> None:
         self.instructions, self.moves, self.how, self.rules = instructions, moves, how, rules
-        self.after: dict[tuple[World, int], tuple[Step, World] | None] = {}
+        self.after: dict[tuple[World, int, bool], tuple[Steps, World] | None] = {}
 
     def going_on(self, one: _Followed, row: Scores, place: int) -> Iterator[_Followed]:
         """The ways in which a program explains one more clip."""
@@ -161,21 +170,32 @@ class _Search:
         staying = float(row[one.last]) if one.last >= 0 else unexplained
         yield replace(one, score=one.score + max(staying, unexplained))
         worth = row - self.moves[one.last]
-        for number in np.argsort(-worth, kind="stable")[: self.how.options].tolist():
-            done = self._done(one, number) if number != one.last else None
+        for rank, number in enumerate(np.argsort(-worth, kind="stable")[: self.how.options].tolist()):
+            done = self._done(one, number, rank < self.how.repaired) if number != one.last else None
             if done is not None:
-                score = one.score + float(worth[number])
-                yield _Followed(score, done[1], (*one.steps, done[0]), (*one.starts, place), number)
+                steps, world = done
+                score = one.score + float(worth[number]) - self.how.inserted * (len(steps) - 1)
+                yield _Followed(score, world, (*one.steps, *steps), (*one.starts, *[place] * len(steps)), number)
 
-    def _done(self, one: _Followed, number: int) -> tuple[Step, World] | None:
-        key = one.world, number
+    def _done(self, one: _Followed, number: int, may_repair: bool) -> tuple[Steps, World] | None:
+        """The steps that do an instruction, the last of which it is, and the world after them."""
+        key = one.world, number, may_repair
         if key not in self.after:
             program = Program(steps=(_step(self.instructions[number]),))
             (step,) = nearest(program, one.world).apply(program).steps
             bound = all(ref.node is not None for ref in step.objects)
             after = act(one.world, step, self.rules) if bound else None
-            self.after[key] = (step, after) if isinstance(after, World) else None
+            if isinstance(after, World):
+                self.after[key] = (step,), after
+            else:
+                self.after[key] = self._repaired(one.world, step) if bound and may_repair else None
         return self.after[key]
+
+    def _repaired(self, world: World, step: Step) -> tuple[Steps, World] | None:
+        """The same where steps have to be inserted, and none is needed afterwards."""
+        done = complete((step,), world, world.home.knowledge, self.rules)
+        runs = not done.left_out and done.sources[-1:] == (0,) and len(done.sources) <= 1 + MOST_INSERTED
+        return (done.execution.program.steps, done.execution.final) if runs else None
 
 
 def _step(done: Instruction) -> Step:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.grounding.environments.sampling import sample
-from hearth.models.films.clip_data import LARGEST, Clip, Clips, masks_in
+from hearth.models.films.clip_data import Clip, Clips
 from hearth.models.films.film_programs import FilmProgram, described, followed
 from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.films.step_order import START
@@ -23,7 +21,6 @@ from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
-from hearth.storage.input_files import read_input
 
 APART = 2
 """Frames from the middle of a clip to the middle of the next one."""
@@ -46,15 +43,6 @@ class FilmShown:
     times: tuple[float, ...]
     execution: Execution
     failure: Failure | None
-
-
-def read_masks(path: Path) -> NDArray[np.uint16]:
-    """(T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
-
-    Raises:
-        HearthError: there is no such file; DAMAGED_FILE, if it is another.
-    """
-    return masks_in(BytesIO(read_input(path, LARGEST)), str(path))
 
 
 def cut(masks: NDArray[np.uint16]) -> Clips:

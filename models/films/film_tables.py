@@ -17,6 +17,7 @@ from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_tables import HOMES, classifier
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
 from hearth.models.films.film_readings import Reading
+from hearth.models.films.film_shown import cut
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
 from hearth.repair.completion import complete
@@ -103,7 +104,7 @@ WAYS: dict[str, Way] = {
 def film_table(
     dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", seen: Seen = unseen
 ) -> list[FilmRow]:
-    """The rows of table 4.6, over the films of a part.
+    """The rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
 
     Args:
         dataset: with clips.
@@ -126,7 +127,8 @@ def film_table(
     answers: dict[str, list[list[Steps]]] = {}
     for number, model in enumerate(models):
         name, trained = classifier(model)
-        for film, found in enumerate(trained.readings(test)):
+        for film, masks in enumerate(test.films):
+            (found,) = trained.readings(cut(masks))
             for way, write in WAYS.items():
                 seeds = answers.setdefault(f"{name}, {way}", [])
                 seeds += [[] for _ in range(number + 1 - len(seeds))]

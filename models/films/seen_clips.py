@@ -17,15 +17,18 @@ from hearth.storage.parallel import Seen, unseen
 MOST_SEEN = 40
 """Classes of a clip at most; of more, those that are nearest to the person or largest."""
 
+CONTEXT = (6, 9, 12, 16, 20, 25, 30)
+"""Frames before and after a clip that are looked at for its context, counted from its middle: up to seven seconds."""
+
 
 class SeenClips(NamedTuple):
-    """What N clips of T frames show.
+    """What N clips of F frames show, with T frames of context: T is F where there is none.
 
     Attributes:
         classes: (N, K) rows of the class table; 0 fills up.
-        numbers: (N, K, T, NUMBERS) of each class, see `seen_classes`.
+        numbers: (N, K, T, NUMBERS) of each class, see `seen_classes`; 0 before and after the film.
         people: (N, T, PEOPLE) of the person.
-        crops: (N, T, CROP, CROP) rows of the class table around the person.
+        crops: (N, F, CROP, CROP) rows of the class table around the person.
     """
 
     classes: NDArray[np.int16]
@@ -38,34 +41,46 @@ class SeenClips(NamedTuple):
         return SeenClips(*(getattr(self, name)[which] for name in self._fields))
 
 
-def seen_clips(clips: Clips, table: ClassTable, report: Seen = unseen) -> SeenClips:
+def offsets(frames: int, context: bool) -> NDArray[np.int64]:
+    """(T,) the frames of a clip and of its context, from the clip's first."""
+    around = sorted([-each for each in CONTEXT] + [*CONTEXT]) if context else []
+    return np.array([*range(frames), *(frames // 2 + each for each in around)], np.int64)
+
+
+def seen_clips(clips: Clips, table: ClassTable, context: bool = False, report: Seen = unseen) -> SeenClips:
     """What clips show, in their order; each film is read once.
 
     Args:
         clips: in the order of their films.
         table: of the classes.
+        context: look at frames before and after each clip, too.
         report: reports progress: films.
     """
     found = []
     for done, (film, group) in enumerate(groupby(clips.clips, key=lambda clip: clip.film), 1):
         seen = seen_film(clips.films[film], table.person)
-        found += [*_clips(seen, [*group], clips.frames, table)]
+        found += [*_clips(seen, [*group], clips.frames, table, offsets(clips.frames, context))]
         report(done, len(clips.films))
     return SeenClips(*(np.stack(columns) for columns in zip(*found, strict=True)))
 
 
-def _clips(seen: SeenFilm, clips: list[Clip], frames: int, table: ClassTable) -> Iterator[SeenClips]:
+def _clips(
+    seen: SeenFilm, clips: list[Clip], frames: int, table: ClassTable, taken: NDArray[np.int64]
+) -> Iterator[SeenClips]:
     rows = table.rows[seen.classes].astype(np.int16)
     known = rows > 0
     crops = table.rows[seen.crops].astype(np.int16)
     for clip in clips:
-        span = slice(clip.first, clip.first + frames)
-        numbers = seen.numbers[span].transpose(1, 0, 2)  # (C, T, NUMBERS)
+        places = clip.first + taken
+        inside = (places >= 0) & (places < len(seen.people))
+        places = np.where(inside, places, 0)
+        people = seen.people[places] * inside[:, None]
+        numbers = (seen.numbers[places] * inside[:, None, None]).transpose(1, 0, 2)  # (C, T, NUMBERS)
         worth = (numbers[..., 0] * (1 - numbers[..., 8] + numbers[..., 1])).max(1) * known
         order = np.argsort(-worth.astype(np.float64), kind="stable")[:MOST_SEEN]
         order = order[worth[order] > 0]
         classes = np.zeros(MOST_SEEN, np.int16)
         classes[: len(order)] = rows[order]
-        full = np.zeros((MOST_SEEN, frames, NUMBERS), np.float16)
+        full = np.zeros((MOST_SEEN, len(taken), NUMBERS), np.float16)
         full[: len(order)] = numbers[order]
-        yield SeenClips(classes, full, seen.people[span], crops[span])
+        yield SeenClips(classes, full, people, crops[clip.first : clip.first + frames])

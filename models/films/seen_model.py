@@ -16,15 +16,13 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.filled import filled
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import PLACES, ClassTable
-from hearth.models.films.clip_data import Clips, Instruction
+from hearth.models.films.clip_data import Clips, Instruction, no_programs
 from hearth.models.films.film_readings import Reading, reading
-from hearth.models.films.seen_clips import SeenClips, seen_clips
-from hearth.models.films.seen_network import SeenBatch, SeenNetwork, loss_of
+from hearth.models.films.seen_clips import SeenClips, offsets, seen_clips
+from hearth.models.films.seen_network import FRAMES, SeenBatch, SeenNetwork, loss_of
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.training import Task, train
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
@@ -61,6 +59,7 @@ class SeenModel(Settings):
         batch: clips in a batch.
         balance: the power of a class's share by which its loss is divided: 0 counts clips, 1 classes.
         films: of training, at most; 0 for all.
+        context: whether seconds before and after a clip are looked at, too, which the thesis's networks do not see.
     """
 
     width: int = 96
@@ -71,12 +70,13 @@ class SeenModel(Settings):
     batch: int = 64
     balance: float = 0.5
     films: int = 0
+    context: bool = False
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedSeenModel:
         """Train on the clips of `train`; those of `validation` decide when to stop."""
         learned, checked = Clips.of(dataset, "train", self.films), Clips.of(dataset, "validation")
         table = ClassTable.of(dataset.knowledge, [clip.done for clip in learned.clips])
-        shown, looked_at = seen_clips(learned, table), seen_clips(checked, table)
+        shown, looked_at = (seen_clips(each, table, self.context) for each in (learned, checked))
         torch.manual_seed(how.seed)
         model = TrainedSeenModel(self, table, StepOrder.of(programs_of(learned)), self.network(table))
         wanted = torch.tensor([table.numbers(clip.done) for clip in learned.clips])
@@ -114,7 +114,8 @@ class SeenModel(Settings):
         named = torch.zeros(len(table) + 1, dtype=torch.bool)
         named[list(table.named)] = True
         tensors = torch.from_numpy(table.traits), torch.from_numpy(table.afforded), named
-        return SeenNetwork(*tensors, self.width, self.layers, self.vector, self.dropout, self.unnamed)
+        times = len(offsets(FRAMES, self.context))
+        return SeenNetwork(*tensors, times, self.width, self.layers, self.vector, self.dropout, self.unnamed)
 
     @classmethod
     def restored(cls, checkpoint: Checkpoint) -> TrainedSeenModel:
@@ -145,7 +146,7 @@ class TrainedSeenModel:
 
     def named(self, clips: Clips) -> list[Instruction]:
         """The instruction that each clip is taken for."""
-        return self.named_of(seen_clips(clips, self.table))
+        return self.named_of(seen_clips(clips, self.table, self.settings.context))
 
     def named_of(self, shown: SeenClips) -> list[Instruction]:
         """The same of what clips show: the most probable action, and its most probable objects."""
@@ -165,7 +166,7 @@ class TrainedSeenModel:
     def readings(self, clips: Clips) -> Iterator[Reading]:
         """What the clips of each film may show, film by film."""
         for part in clips.by_film():
-            shown = seen_clips(part, self.table)
+            shown = seen_clips(part, self.table, self.settings.context)
             found = Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))
             yield reading(found.actions, found.objects, self.table)
 
@@ -187,8 +188,7 @@ class TrainedSeenModel:
         Raises:
             HearthError: BAD_ARGUMENT.
         """
-        message = f"`{NAME}` is a model of films: it has no programs for texts or sketches"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="`model table 4.3 DATASET --model M` scores it")
+        raise no_programs(NAME)
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""

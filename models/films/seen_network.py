@@ -38,7 +38,7 @@ class SeenBatch(NamedTuple):
     classes: Tensor  # (B, K) long
     numbers: Tensor  # (B, K, T, NUMBERS)
     people: Tensor  # (B, T, PEOPLE)
-    crops: Tensor  # (B, T, CROP, CROP) long
+    crops: Tensor  # (B, FRAMES, CROP, CROP) long
 
     def mirrored(self, which: Tensor) -> SeenBatch:
         """The batch with some clips, (B,) of bool, left and right exchanged."""
@@ -58,11 +58,12 @@ class PersonNetwork(nn.Module):
 
     Args:
         traits: of a class.
+        times: frames that are looked at, with those of the context.
         width: of the result.
         dropout: share of numbers left out in training.
     """
 
-    def __init__(self, traits: int, width: int, dropout: float) -> None:
+    def __init__(self, traits: int, times: int, width: int, dropout: float) -> None:
         super().__init__()
         zero, one, other = CHANNELS
         self.colour = nn.Linear(traits, zero)
@@ -71,11 +72,11 @@ class PersonNetwork(nn.Module):
             nn.ReLU(), nn.Flatten(), nn.Dropout(dropout), nn.Linear(other * 25, NEAR),
         )  # fmt: skip
         looked_at = len(range(FRAMES)[LOOKED_AT])
-        self.time = nn.Sequential(nn.Linear(looked_at * NEAR + FRAMES * PEOPLE, 2 * width), nn.ReLU(),
+        self.time = nn.Sequential(nn.Linear(looked_at * NEAR + times * PEOPLE, 2 * width), nn.ReLU(),
                                   nn.Dropout(dropout), nn.Linear(2 * width, width))  # fmt: skip
 
     def forward(self, people: Tensor, crops: Tensor, traits: Tensor) -> Tensor:
-        """(B, T, PEOPLE), (B, T, CROP, CROP) and (rows, traits) -> (B, width)."""
+        """(B, T, PEOPLE), (B, FRAMES, CROP, CROP) and (rows, traits) -> (B, width)."""
         seen = crops[:, LOOKED_AT]
         planes = self.colour(traits)[seen].permute(0, 1, 4, 2, 3)  # (B, looked at, zero, CROP, CROP)
         near = self.near(planes.flatten(0, 1)).unflatten(0, seen.shape[:2])
@@ -89,6 +90,7 @@ class SeenNetwork(nn.Module):
         traits: (rows, traits) of the classes.
         afforded: (actions, 2, rows) whether an action's object may be of a class.
         named: (rows,) whether a class can be named although it is not seen.
+        times: frames that are looked at, with those of the context.
         width, layers: of the transformer over the classes that are seen.
         vector: numbers that are learned for a class.
         dropout: share of numbers left out in training.
@@ -96,8 +98,8 @@ class SeenNetwork(nn.Module):
     """
 
     def __init__(
-        self, traits: Tensor, afforded: Tensor, named: Tensor, width: int, layers: int, vector: int, dropout: float,
-        unnamed: float,
+        self, traits: Tensor, afforded: Tensor, named: Tensor, times: int, width: int, layers: int, vector: int,
+        dropout: float, unnamed: float,
     ) -> None:  # fmt: skip
         super().__init__()
         self.unnamed = unnamed
@@ -107,8 +109,8 @@ class SeenNetwork(nn.Module):
         rows, actions = len(traits), len(afforded)
         self.vector = nn.Embedding(rows, vector)
         nn.init.normal_(self.vector.weight, std=0.1)
-        self.token = nn.Linear(FRAMES * NUMBERS + traits.shape[1] + vector, width)
-        self.person = PersonNetwork(traits.shape[1], width, dropout)
+        self.token = nn.Linear(times * NUMBERS + traits.shape[1] + vector, width)
+        self.person = PersonNetwork(traits.shape[1], times, width, dropout)
         layer = nn.TransformerEncoderLayer(width, 4, 2 * width, dropout, batch_first=True, norm_first=True)
         self.body = nn.TransformerEncoder(layer, layers, nn.LayerNorm(width), enable_nested_tensor=False)
         self.action = nn.Linear(width, actions)

@@ -1,4 +1,4 @@
-"""The classifier of clips: it learns what masks show, and what training never had is nothing to it."""
+"""The classifier of clips by colours: it learns what pictures show, and what training never had is nothing to it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import torch
 
 from hearth.models.checkpoint import load, save
 from hearth.models.films.class_accuracy import accuracies
-from hearth.models.films.clip_data import Clip, Clips, Instruction, Labels, frames_of, pictures_of
+from hearth.models.films.clip_data import Clip, Clips, Instruction
 from hearth.models.films.clip_model import RELATIONS, ClipModel, TrainedClipModel
 from hearth.models.films.clip_network import ClipNetwork, loss_of
+from hearth.models.films.frame_data import WIDTH, Labels, frames_of, pictures_of
 
 ALIKE = [torch.ones(3), torch.ones(2), torch.ones(2)]
 """Weights of three actions and of two objects, none being one."""
@@ -22,13 +23,13 @@ DONE = (Instruction("Walk", ("sofa",)), Instruction("Sit", ("sofa",)), Instructi
 
 @pytest.fixture(scope="module")
 def clips():
-    """Three films: a square of class 7 moves right, left or not at all over class 300."""
+    """Three films: a red square moves right, left or not at all over grey."""
     films, found = [], []
     for number, done in enumerate(DONE * 2):
-        frames = np.full((12, 48, 64), 300, np.uint16)
+        frames = np.full((12, 48, 64, 3), 90, np.uint8)
         for time, frame in enumerate(frames):
             left = {0: 2 + 3 * time, 1: 40 - 3 * time, 2: 20}[number % 3]
-            frame[10:30, left : left + 12] = 7
+            frame[10:30, left : left + 12] = (220, 30, 30)
         films.append(frames)
         found += [Clip(number, first, done, "seen", 1) for first in range(4)]
     return Clips(tuple(f"film {n}" for n in range(6)), tuple(films), tuple(found), 9)
@@ -43,7 +44,7 @@ def labels(clips):
 def model(clips, labels):
     torch.manual_seed(1)
     model = TrainedClipModel(settings := ClipModel(width=32, dropout=0.0), labels, settings.network(labels))
-    masks = torch.from_numpy(frames_of(clips, pictures_of(clips, labels), range(len(clips)), RELATIONS[0]))
+    masks = torch.from_numpy(frames_of(clips, pictures_of(clips), range(len(clips)), RELATIONS[0]))
     wanted = torch.tensor([labels.numbers(clip.done) for clip in clips.clips])
     optimiser = torch.optim.Adam(model.network.parameters(), 3e-3)
     for _ in range(40):
@@ -72,8 +73,8 @@ def test_the_order_of_frames_matters(model, clips):
 
 def test_untrained_it_is_indifferent(labels):
     torch.manual_seed(0)
-    network = ClipNetwork(3, 8, 32, 3, 2, 0.0).eval()
-    heads = network(torch.zeros(5, 4, 48, 64, dtype=torch.uint8))
+    network = ClipNetwork(32, 3, 2, 0.0).eval()
+    heads = network(torch.zeros(5, 4, 48, 64, 3, dtype=torch.uint8))
     loss = loss_of(heads, torch.zeros(5, 3, dtype=torch.long), ALIKE)
     assert abs(loss.item() - np.log(12)) < 0.7
 
@@ -83,15 +84,19 @@ def test_a_checkpoint_gives_the_same_scores(model, clips, tmp_path):
     assert np.array_equal(ClipModel.restored(load(tmp_path)).scores(clips), model.scores(clips))
 
 
-def test_classes_that_training_never_showed_are_nothing(labels, clips):
-    assert labels.seen == (300, 7)
-    assert labels.palette[[300, 7, 0, 9]].tolist() == [1, 2, 0, 0]
+def test_larger_pictures_are_looked_at_as_small_ones(clips):
+    larger = replace(clips, films=[film.repeat(2, 1).repeat(2, 2) for film in clips.films])
+    one, other = pictures_of(clips), pictures_of(larger)
+    assert one[0].shape[2] == other[0].shape[2] == WIDTH and np.array_equal(one[0], other[0])
+
+
+def test_what_training_never_had_has_no_number(labels):
     assert labels.numbers(Instruction("Fly", ("cup",))) == (-1, -1, 0)
 
 
 @pytest.mark.parametrize(
     ("name", "bad"),
-    [("seen", [70_000]), ("seen", []), ("actions", []), ("objects", []), ("instructions", [["Walk", "a", "b", "c"]])],
+    [("actions", []), ("objects", []), ("instructions", [["Walk", "a", "b", "c"]])],
 )
 def test_labels_that_do_not_fit(labels, name, bad):
     assert Labels.read(labels.document()) == labels

@@ -65,6 +65,16 @@ def test_whatever_is_seen_the_program_runs(world, seed):
     assert hearth.run(world, Program(steps=program.steps)).failure is None
 
 
+def test_a_step_that_no_clip_shows_is_inserted(world):
+    """Only the opening may be seen: without repairs there is nothing to do."""
+    only, seen = DONE[3:4], np.zeros((4, 1), np.float32)
+    assert followed(seen, only, world, how=Filter(repaired=0)) == NO_STEPS
+    program = followed(seen, only, world)
+    assert names(program) == [("Walk", "fridge"), ("Open", "fridge")] and program.starts == (0, 0)
+    assert hearth.run(world, Program(steps=program.steps)).failure is None
+    assert followed(seen, only, world, how=Filter(inserted=99.0)) == NO_STEPS
+
+
 def test_no_clips_no_program(world):
     assert described(scores([]), DONE) == followed(scores([]), DONE, world) == alone(scores([]), DONE) == NO_STEPS
 

@@ -15,10 +15,11 @@ from hearth.models.checkpoint import load, save
 from hearth.models.films.class_accuracy import accuracies
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_data import Clip, Clips, Instruction
+from hearth.models.films.film_input import read_masks
 from hearth.models.films.film_readings import reading
-from hearth.models.films.film_shown import cut, read_masks, show_film
+from hearth.models.films.film_shown import cut, show_film
 from hearth.models.films.seen_classes import CROP, seen_film
-from hearth.models.films.seen_clips import seen_clips
+from hearth.models.films.seen_clips import CONTEXT, offsets, seen_clips
 from hearth.models.films.seen_model import SeenModel, TrainedSeenModel, tensors
 from hearth.models.films.seen_network import loss_of
 from hearth.models.films.step_order import START, StepOrder, programs_of
@@ -172,8 +173,7 @@ def test_the_command_prints_steps_with_times(model, clips, tmp_path, capsys):
     assert found["steps"] == [{"time": 0.89, "step": "[Walk] <sofa> (1)"}] and found["executable"]
     film_read.printed(found)
     assert "0.9 s  [Walk] <sofa> (1)" in capsys.readouterr().out
-    (tmp_path / "film.webm").write_bytes(b"")
-    with pytest.raises(HearthError, match="has colours"):
+    with pytest.raises(HearthError, match="no film at"):
         film_read.show(str(tmp_path / "model"), tmp_path / "film.webm", "maple", None, None, None)
 
 
@@ -189,3 +189,24 @@ def test_steps_follow_each_other_as_in_programs(clips):
 def test_a_reading_that_is_not_finished_leaves_gradients_on(model, clips):
     begun = model._scored(seen_clips(clips, model.table))
     assert next(begun) and torch.is_grad_enabled()
+
+
+def test_the_context_of_a_clip_is_seen_where_the_film_has_it(clips, model):
+    late = [film.copy() for film in clips.films]
+    for film in late:
+        film[11] = 0  # the third clip's last frame is the eleventh
+    other = replace(clips, films=late)
+    narrow, wide = (seen_clips(clips, model.table, context) for context in (False, True))
+    assert np.array_equal(seen_clips(other, model.table).numbers, narrow.numbers)
+    assert not np.array_equal(seen_clips(other, model.table, context=True).numbers, wide.numbers)
+    assert wide.numbers.shape[2] == len(offsets(9, context=True)) == 9 + 2 * len(CONTEXT)
+    before = wide.people[0, 9 : 9 + len(CONTEXT)]
+    assert not before.any(), "nothing is before the film"
+    assert np.array_equal(wide.people[:, :9], narrow.people)
+
+
+def test_a_network_with_context_is_restored(clips, model, tmp_path):
+    settings = SeenModel(width=32, layers=1, context=True)
+    made = replace(model, settings=settings, network=settings.network(model.table).eval())
+    save(made.checkpoint(), tmp_path)
+    assert SeenModel.restored(load(tmp_path)).named(clips) == made.named(clips)

@@ -35,3 +35,15 @@ def test_the_original_that_runs_is_no_case(tmp_path):
     failed = hearth.load(made.dataset).rows("SELECT DISTINCT environment_id FROM executions WHERE NOT executable")[1]
     assert set(names) - set(failed)
     assert not verify(made.dataset).faults
+
+
+def test_without_variants_each_execution_has_a_reason(tmp_path):
+    """A program's sketch comes with its first execution; the others give nothing, and say why."""
+    batch = tmp_path / "programs.csv"
+    batch.write_text(f'{HEAD}\nPA01006a,written,finder,Approved,,Make coffee,I brew coffee.,,,"{COFFEE}"\n')
+    options = {"homes": ("juniper", "maple"), "variants": 0, "pictures": 0, "videos": 0}
+    made = hearth.build([str(batch)], str(tmp_path / "out"), **options)
+    dataset = hearth.load(made.dataset)
+    (ran,) = dataset.rows("SELECT count(*) FROM executions WHERE executable")[1][0]
+    codes = [code for (code,) in dataset.rows("SELECT code FROM rejects WHERE stage = 'augment'")[1]]
+    assert codes == ["UNPERTURBED"] * (ran - 1)

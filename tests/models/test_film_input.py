@@ -1,0 +1,55 @@
+"""Films as users have them: videos at the rate and size of clips, arrays, folders, and files that are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hearth.models.films.film_input import film_file, is_film, read_masks, read_pictures
+from hearth.rendering.film.clips import RATE, SIZE
+from hearth.rendering.film.video import Writer
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+
+@pytest.fixture
+def video(tmp_path):
+    """Four seconds that turn from dark to red."""
+    pytest.importorskip("cv2")
+    writer = Writer(tmp_path / "auto.webm", 64, 48, 15.0)
+    for number in range(60):
+        writer.add(np.full((48, 64, 3), (4 * number, 10, 10), np.uint8))
+    writer.close()
+    return tmp_path / "auto.webm"
+
+
+def test_a_video_is_read_at_the_rate_and_size_of_clips(video):
+    found = read_pictures(video)
+    assert found.shape == (4 * RATE, SIZE[1], SIZE[0], 3)
+    red = found[:, :, :, 0].mean((1, 2))
+    assert (np.diff(red) > 5).all() and found[-1, :, :, 2].mean() < 60
+
+
+def test_a_folder_stands_for_its_film(video, tmp_path):
+    assert film_file(tmp_path) == video == film_file(video)
+    np.savez_compressed(tmp_path / "clips.npz", class_ids=np.ones((9, 4, 4), np.uint16))
+    assert film_file(tmp_path).name == "clips.npz"
+    assert read_masks(film_file(tmp_path)).shape == (9, 4, 4)
+
+
+def test_what_names_a_film(tmp_path):
+    assert is_film("a.webm") and is_film("b/c.npz") and not is_film(str(tmp_path))
+    (tmp_path / "a.mp4").write_bytes(b"text")
+    assert is_film(str(tmp_path))
+    assert not any(map(is_film, ("", ".", "Turn on the TV", "sit " * 4_000, "sit\0down")))
+
+
+def test_files_that_are_refused(tmp_path):
+    pytest.importorskip("cv2")
+    with pytest.raises(HearthError) as found:
+        film_file(tmp_path)
+    assert found.value.diagnostics[0].code == Code.MISSING_FILE
+    (tmp_path / "a.mp4").write_bytes(b"text")
+    with pytest.raises(HearthError) as found:
+        read_pictures(tmp_path / "a.mp4")
+    assert found.value.diagnostics[0].code == Code.DAMAGED_FILE
