@@ -1,5 +1,7 @@
 """Measure what films show: `python benchmarks/film_quality.py [--pairs N] [--seed S] [--no-pictures] [--list]`.
 
+`--episodes FILE` judges N episodes of two agents instead, from a file of results that `challenge run` wrote.
+
 Programs of the embedded corpus, each in the next of our homes. Bodies are judged at ten poses a second, pictures at
 two: walks through solids; steps in which the person and what the step is about can be recognised (1.5 % and 0.1 % of
 the picture, less than half hidden); pictures with something nearer than 0.7 m that fills 15 %; lengths of shots. With
@@ -9,13 +11,19 @@ the picture, less than half hidden); pictures with something nearer than 0.7 m t
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from itertools import islice
+from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
 from measuring import Figure, as_line, finish, parser
 
+from hearth.analysis.episode_drawing import ticks_of
 from hearth.analysis.filmed_pairs import FilmedPair, pairs
+from hearth.challenges.episode_films import execution_of
+from hearth.challenges.result_files import read
+from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default
 from hearth.pipelines.build import corpus
 from hearth.rendering.film.quality import FilmQuality, film_quality
@@ -25,6 +33,17 @@ from hearth.rendering.people.motion import frames
 from hearth.schemas.syntax import print_step
 
 POSES = 10.0
+
+
+def episodes(file: Path) -> Iterator[FilmedPair]:
+    """The episodes of a file of results in which two agents act."""
+    found = read(file)
+    for record in found.records:
+        if record.helped:
+            task = next(each for each in found.header.suite.tasks if each.id == record.task)
+            execution = execution_of(*ticks_of(task, record, default()), task.id)
+            if execution.program.steps:
+                yield FilmedPair(execution, task.home, load_graph(task.home, default()))
 
 
 class Judged(NamedTuple):
@@ -57,14 +76,23 @@ def figures(found: list[Judged]) -> list[Figure]:
     steps = [step for film in films for step in film.steps]
     shots = [length for film in films for length in film.shots]
     pictures, blocked = sum(film.pictures for film in films), sum(film.blocked for film in films)
+    each = [share for film in films for share in by_agent(film)]
     return [
         *known,
         Figure("steps", len(steps), "steps"),
+        Figure("agents of whose steps a film shows half", 100 * sum(s >= 0.5 for s in each) / len(each), "%", 100),
         Figure("steps shown", 100 * sum(step.shown for step in steps) / len(steps), "%", 95),
         Figure("pictures with something in the way", 100 * blocked / pictures, "%", 2),
         Figure("median shot", median(shots), "s", 3),
         Figure("shots under three seconds", 100 * sum(length < 3 for length in shots) / len(shots), "%"),
     ]
+
+
+def by_agent(film: FilmQuality) -> list[float]:
+    """The share of its steps that a film shows of each agent."""
+    agents = sorted({step.step.agent for step in film.steps})
+    own = [[step.shown for step in film.steps if step.step.agent == agent] for agent in agents]
+    return [sum(shown) / len(shown) for shown in own]
 
 
 def faults(found: list[Judged]) -> None:
@@ -90,9 +118,11 @@ def main() -> None:
     known.add_argument("--pairs", type=int, default=30)
     known.add_argument("--seed", type=int, default=0)
     known.add_argument("--no-pictures", action="store_true")
+    known.add_argument("--episodes", type=Path)
     known.add_argument("--list", action="store_true")
     asked = known.parse_args()
-    drawn = islice(pairs([str(path) for path in corpus()], default(), asked.seed), asked.pairs)
+    every = pairs([str(path) for path in corpus()], default(), asked.seed)
+    drawn = islice(episodes(asked.episodes) if asked.episodes else every, asked.pairs)
     found = [judged(pair, asked.seed, not asked.no_pictures) for pair in drawn]
     if asked.list:
         faults(found)

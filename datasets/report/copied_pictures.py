@@ -20,6 +20,27 @@ def shown_as(dataset: Dataset) -> dict[str, str]:
     return {name: f"{FOLDER}/{number}{PurePosixPath(name).suffix}" for number, name in enumerate(found)}
 
 
+_LOOKS = """SELECT e.program_id, p.file, p.film FROM
+        (SELECT execution_id, file, false AS film, abs(tick - max(tick) OVER (PARTITION BY execution_id) * 0.6) AS away,
+            camera = 'top' AS above FROM frames WHERE modality = 'rgb'
+        UNION ALL SELECT execution_id, file, true, 0, false FROM videos) p
+    JOIN executions e USING (execution_id) ORDER BY e.program_id, p.film, p.above, p.away, p.file"""
+
+
+def pictured(dataset: Dataset) -> dict[str, tuple[str, bool]]:
+    """Program id -> what the report calls a picture of it, "" if there are films only, and whether there is a film.
+
+    The picture is one of a step past its middle, not from above if there are others.
+    """
+    ours = shown_as(dataset)
+    found: dict[str, tuple[str, bool]] = {}
+    for program, file, film in dataset.rows(_LOOKS)[1]:
+        if file in ours:
+            known, before = found.get(program, ("", False))
+            found[program] = known or ("" if film else ours[file]), before or film
+    return found
+
+
 def copy_pictures(dataset: Dataset, to: Path) -> None:
     """Copy them into a report; of a film, the other form as well, where there is one."""
     for name, ours in shown_as(dataset).items():

@@ -40,7 +40,7 @@ def draw(nodes: tuple[Node, ...]) -> str:
     left, top = min(x for x, _, _, _ in corners), min(y for _, y, _, _ in corners)
     right, bottom = max(x + w for x, _, w, _ in corners), max(y + h for _, y, _, h in corners)
     view = f"{left - 0.2:.2f} {top - 0.2:.2f} {right - left + 0.4:.2f} {bottom - top + 0.4:.2f}"
-    shapes = "".join((*_rooms(rooms), *_things(nodes), *_names(rooms)))
+    shapes = "".join((*_rooms(rooms), *_things(nodes), *_furniture_names(nodes), *_names(rooms)))
     return f'<svg class="plan" viewBox="{view}" role="img">{shapes}</svg>'
 
 
@@ -61,6 +61,26 @@ def _names(rooms: list[tuple[Node, Box]]) -> Iterator[str]:
         name = escape(node.class_name.replace("_", " "))
         size = min(0.35, 1.6 * (width - 0.3) / max(len(name), 1))
         yield f'<text x="{x + 0.15:.2f}" y="{y + 0.45:.2f}" font-size="{size:.2f}">{name}</text>'
+
+
+_LONGEST, _LETTER, _LEGIBLE = 0.24, 0.56, 0.085
+"""Metres of the largest letters on furniture, width of a letter as a share of its height, and the smallest letters."""
+
+
+def _furniture_names(nodes: tuple[Node, ...]) -> Iterator[str]:
+    """The names of furniture in which they fit, along its longer side."""
+    for node in nodes:
+        if node.box is None or node.category in _SHELL or node.category == "Doors":
+            continue
+        x, y, width, height = _rectangle(node.box)
+        name = node.class_name.replace("_", " ")
+        along, across = max(width, height), min(width, height)
+        size = min(_LONGEST, 0.9 * along / (_LETTER * len(name)), 0.7 * across)
+        if width * height >= _SMALLEST and size >= _LEGIBLE:
+            middle = f"{x + width / 2:.2f} {y + height / 2:.2f}"
+            turn = f' transform="rotate(-90 {middle})"' if height > width else ""
+            at = f'x="{x + width / 2:.2f}" y="{y + height / 2:.2f}"'
+            yield f'<text class="named" {at} font-size="{size:.3f}"{turn}>{escape(name)}</text>'
 
 
 def _things(nodes: tuple[Node, ...]) -> Iterator[str]:

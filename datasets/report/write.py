@@ -1,7 +1,7 @@
 """Writes the report: one page, data in scripts that a browser loads from disk, and pictures."""
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -11,7 +11,7 @@ import orjson
 
 from hearth.datasets.dataset import OWN, Dataset
 from hearth.datasets.format.datasheet import STRENGTH, datasheet
-from hearth.datasets.report.copied_pictures import copy_pictures
+from hearth.datasets.report.copied_pictures import copy_pictures, pictured
 from hearth.datasets.report.drawn_plans import plans
 from hearth.datasets.report.figures import figures
 from hearth.datasets.report.replays import write_replays
@@ -54,7 +54,7 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
         message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)
     (to / "data").mkdir(parents=True, exist_ok=True)
-    rows = _rows(dataset)
+    rows = [[*row, *_pictured(row[0], looks)] for looks in (pictured(dataset),) for row in _rows(dataset)]
     (to / "data/programs.js").write_bytes(b"HEARTH.programs(" + orjson.dumps(rows) + b");\n")
     _write_stories(dataset, to, workers, seen)
     played = write_replays(dataset, to, replays)
@@ -64,6 +64,12 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
     (to / "index.html").write_text(_page(dataset, len(rows)), encoding="utf-8")
     copy_pictures(dataset, to)
     return len(rows)
+
+
+def _pictured(program: str, looks: Mapping[str, tuple[str, bool]]) -> tuple[str, int]:
+    """A program's picture, or "", and 2 if there is a film of it, 1 if there are pictures, else 0."""
+    file, film = looks.get(program, ("", False))
+    return file, 2 if film else int(program in looks)
 
 
 def _page(dataset: Dataset, programs: int) -> str:
@@ -81,7 +87,7 @@ def _page(dataset: Dataset, programs: int) -> str:
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:
-    """A row per program: id, title, origin, split, steps, number of homes, failure code, repairs."""
+    """A row per program: id, title, origin, split, steps, number of homes, repairs, failure code."""
     query = f"""SELECT p.*,
             coalesce(e.homes, 0) AS homes, coalesce(e.code, '') AS code, coalesce(r.repairs, 0) AS repairs
         FROM (SELECT {_ROW} FROM programs) p

@@ -1,7 +1,8 @@
 """Cameras from which an action might be seen: around person and object, preferably at the height of eyes."""
 
 from collections.abc import Sequence
-from math import atan, cos, degrees, radians, sin, sqrt
+from itertools import product
+from math import atan, atan2, cos, degrees, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,17 +15,26 @@ from hearth.schemas.graph import Box
 TURNS = tuple(range(-180, 180, 30))
 """Degrees from the direction in which the person looks."""
 
-DISTANCES = (1.5, 2.1, 2.9, 4.0)
+DISTANCES = (1.1, 1.5, 2.1, 2.9, 4.0)
 """Metres from the middle of what is shown."""
 
 HEIGHTS = ((1.5, 1.0), (1.05, 0.93), (2.1, 0.86))
 """Metres above the floor, and how much they are preferred: eyes of who stands, of who sits, and the ceiling."""
+
+NEAREST, BETWEEN, MORE = 0.8, (0.7, 1.8), tuple(range(-180, 180, 18))
+"""A distance, heights and directions that are tried besides."""
+
+OVER = (0.78, 1.0, 1.4)
+"""Metres from an object of cameras that look over it."""
 
 WIDEST, NARROWEST = 72.0, 14.0
 """Degrees of the vertical field of view."""
 
 CLOSEST, HANDS = 0.6, 0.4
 """Metres of height that a picture shows at least, of a person and of hands that hold something tiny."""
+
+TINY = 0.28
+"""Metres of height that the closest pictures show."""
 
 AT_HAND = 0.2
 """Metres from a person's joints to what it holds or touches, at most."""
@@ -40,7 +50,14 @@ FRONT = 0.12
 
 
 def around(
-    actor: Actor, who: Target, objects: Sequence[Target], room: Box | None, size: tuple[int, int], name: str
+    actor: Actor,
+    who: Target,
+    objects: Sequence[Target],
+    room: Box | None,
+    size: tuple[int, int],
+    name: str,
+    closer: bool = False,
+    dense: bool = False,
 ) -> list[Camera]:
     """Cameras around a person and objects, inside the room, with a field of view that contains both.
 
@@ -50,19 +67,67 @@ def around(
         room: the box of its room.
         size: of the picture, pixels.
         name: of the cameras, before their number.
+        closer: whether to add closer views, which need not contain all of the person.
+        dense: whether to try more places, some nearer, as narrow rooms need.
     """
-    middle, height = framed(actor, who, objects, size[0] / size[1])
+    framings = [framed(actor, who, objects, size[0] / size[1])]
+    framings += _closer(who, objects, size[0] / size[1]) if closer else []
     found: list[Camera] = []
-    for distance in DISTANCES:
-        for up, _ in HEIGHTS:
-            for turn in TURNS:
-                angle = radians(actor.yaw + turn)
-                eye = (middle[0] + sin(angle) * distance, actor.level + up, middle[2] + cos(angle) * distance)
-                if room is None or inside(eye, room):
-                    far = max(float(np.linalg.norm(np.array(eye) - middle)), 0.3)
-                    fov = float(np.clip(degrees(2 * atan(height / 2 / far)), NARROWEST, WIDEST))
-                    found.append(Camera(f"{name}.{len(found)}", eye, point_of(middle), *size, fov))
+    heights = [up for up, _ in HEIGHTS]
+    places = product((NEAREST, *DISTANCES), (*heights, *BETWEEN), MORE) if dense else product(DISTANCES, heights, TURNS)
+    for (distance, up, turn), (middle, height) in product(places, framings):
+        angle = radians(actor.yaw + turn)
+        eye = (middle[0] + sin(angle) * distance, actor.level + up, middle[2] + cos(angle) * distance)
+        if room is None or inside(eye, room):
+            far = max(float(np.linalg.norm(np.array(eye) - middle)), 0.3)
+            fov = float(np.clip(degrees(2 * atan(height / 2 / far)), NARROWEST, WIDEST))
+            found.append(Camera(f"{name}.{len(found)}", eye, point_of(middle), *size, fov))
+    return [*found, *_over(actor, who, objects, room, size, f"{name}.over")] if dense else found
+
+
+def _over(
+    actor: Actor, who: Target, objects: Sequence[Target], room: Box | None, size: tuple[int, int], name: str
+) -> list[Camera]:
+    """Cameras that look over the smallest of some objects to the person, who stands farther away."""
+    near = _smallest(who, objects, size[0] / size[1])
+    if near is None:
+        return []
+    point, chest = _point(near, who), who.points.mean(axis=0)
+    away = degrees(atan2(point[0] - chest[0], point[2] - chest[2]))
+    height = 1.15 * max(_needed(near, size[0] / size[1]), TINY)
+    found: list[Camera] = []
+    for distance, up, turn in product(OVER, (0.1, 0.3, 0.6), (-50, -25, 0, 25, 50)):
+        angle = radians(away + turn)
+        eye = (point[0] + sin(angle) * distance, float(point[1]) + up, point[2] + cos(angle) * distance)
+        if room is None or inside(eye, room):
+            far = float(np.linalg.norm(np.array(eye) - point))
+            fov = float(np.clip(degrees(2 * atan(height / 2 / far)), NARROWEST, WIDEST))
+            # The object is below the middle, so that the person is seen above it.
+            target = (float(point[0]), float(point[1]) + 0.25 * height, float(point[2]))
+            found.append(Camera(f"{name}.{len(found)}", eye, target, *size, fov))
     return found
+
+
+def _smallest(who: Target, objects: Sequence[Target], aspect: float) -> Target | None:
+    """Of some objects near a person, the one that needs the closest view."""
+    near = [t for t in objects if np.linalg.norm(_point(t, who) - who.points.mean(axis=0)) < FAR_APART]
+    return min(near, key=lambda one: _needed(one, aspect)) if near else None
+
+
+def _closer(who: Target, objects: Sequence[Target], aspect: float) -> list[tuple[NDArray[np.float64], float]]:
+    """Closer views of the smallest of some objects near a person: middles, and metres that pictures are high there."""
+    target = _smallest(who, objects, aspect)
+    if target is None:
+        return []
+    point, small = _point(target, who), _needed(target, aspect)
+    head, hand = who.points[who.points[:, 1].argmax()], who.points[_nearest(who, point)]
+    upper = max(float(np.linalg.norm(point - head)) + 0.35, small)
+    return [((point + head) / 2, upper), (0.7 * point + 0.3 * hand, max(small, TINY))]
+
+
+def _nearest(who: Target, point: NDArray[np.float64]) -> int:
+    """The joint of a person that is nearest to a point."""
+    return int(np.linalg.norm(who.points - point, axis=1).argmin())
 
 
 def framed(actor: Actor, who: Target, objects: Sequence[Target], aspect: float) -> tuple[NDArray[np.float64], float]:

@@ -34,6 +34,9 @@ ENOUGH = 1.5
 BROAD, SHOULDERS = 0.17, 0.85
 """Metres of a body's radius, and the share of its height up to which it hides things."""
 
+HEAD, HEAD_FROM_TO = 0.2, (-0.1, 0.14)
+"""What the head adds to a camera's worth, and metres of it below and above the highest joint."""
+
 GRID = (12, 9)
 """Rays by which a camera finds what is close in front of it."""
 
@@ -98,6 +101,13 @@ class Obstacles(NamedTuple):
             tuple((part, np.array([one.id for one in part.things], np.int64)[part.owner]) for part in parts),
             tuple(people),
         )
+
+    @classmethod
+    def exact(cls, scene: Scene) -> Obstacles:
+        """Those of a scene with its figures and what hands hold, triangle by triangle."""
+        geometry = scene.geometry
+        parts = [part for part in (geometry.static, geometry.moving) if len(part.mesh)]
+        return cls(tuple((part, np.array([one.id for one in part.things], np.int64)[part.owner]) for part in parts))
 
     def cast(self, rays: Floats) -> tuple[Floats, NDArray[np.int64]]:
         """(N,) distances of the first hits of rays, in units of their directions, and the ids of what they hit."""
@@ -183,8 +193,20 @@ def unobstructed(cameras: Sequence[Camera], obstacles: Obstacles) -> NDArray[np.
     return np.asarray(close.reshape(len(cameras), -1).mean(axis=1) < FREE)
 
 
-def values(cameras: Sequence[Camera], who: Target, objects: Sequence[Target], obstacles: Obstacles) -> Coordinates:
-    """(cameras,) 1 for what shows a person and objects well enough, more for what shows them well, less for others."""
+class Worth(NamedTuple):
+    """What some cameras are worth.
+
+    Attributes:
+        total: (cameras,) 1 for what shows a person and objects well enough, more for what shows them well.
+        enough: (cameras,) whether they seem to be recognisable.
+    """
+
+    total: Coordinates
+    enough: NDArray[np.bool_]
+
+
+def values(cameras: Sequence[Camera], who: Target, objects: Sequence[Target], obstacles: Obstacles) -> Worth:
+    """What cameras are worth that show a person and objects."""
     found = [sight(cameras, target, obstacles) for target in (who, *objects)]
     parts = []
     enough = np.ones(len(cameras), np.bool_)
@@ -193,5 +215,17 @@ def values(cameras: Sequence[Camera], who: Target, objects: Sequence[Target], ob
         parts.append(size * np.minimum(one.unhidden / 0.7, 1.0))
         enough &= (one.share >= ENOUGH * target.least) & (one.unhidden > 0.6)
     total = 0.4 * np.mean(parts, axis=0) + 0.6 * enough
-    # A person that fills some of the picture is seen better than one far away.
-    return np.asarray(total + 0.15 * np.minimum(found[0].share / 0.08, 1.0) * (found[0].unhidden > 0.6))
+    # A person that fills some of the picture is seen better than one far away, and better with the head.
+    total += 0.15 * np.minimum(found[0].share / 0.08, 1.0) * (found[0].unhidden > 0.6)
+    return Worth(total + HEAD * _with_head(cameras, who), enough)
+
+
+def _with_head(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
+    """(cameras,) whether a person's whole head is in the picture."""
+    top = who.points[who.points[:, 1].argmax()]
+    around = np.array([(top[0], top[1] + up, top[2]) for up in HEAD_FROM_TO])
+    found = []
+    for camera in cameras:
+        (x, y), depth = camera.project(around)[0].T, camera.project(around)[1]
+        found.append((depth > 0.1) & (x > 0) & (x < camera.width) & (y > 0) & (y < camera.height))
+    return np.array(found, np.bool_).reshape(-1, len(around)).all(axis=1)

@@ -18,7 +18,7 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 JUDGED = (160, 120)
 """Size of the pictures by which cameras are judged, pixels."""
 
-LOOKED_AT = 8
+LOOKED_AT = 16
 """Number of the best cameras whose pictures are looked at."""
 
 
@@ -66,7 +66,6 @@ def best_view(
     actor: Actor,
     named: Sequence[int],
     room: Box | None = None,
-    others: Sequence[Actor] = (),
 ) -> Camera:
     """The camera that shows best what an actor does.
 
@@ -79,16 +78,15 @@ def best_view(
         actor: the acting character.
         named: ids of the step's objects.
         room: the box of the actor's room, which cameras must not leave.
-        others: the other characters.
     """
     fixed = views.get(actor.room, ())
     size = (fixed[0].width, fixed[0].height) if fixed else (320, 240)
     who, targets = person(actor), [thing(scene, node) for node in dict.fromkeys(named) if node != actor.node.id]
     objects = [target for target in targets if target is not None]
-    obstacles = Obstacles.of(scene, frozenset(named), (actor, *others))
-    cameras = free([*around(actor, who, objects, room, size, "near"), *fixed], obstacles)
+    obstacles = Obstacles.exact(scene)
+    cameras = free([*around(actor, who, objects, room, size, "near", closer=True), *fixed], obstacles)
     cameras = cameras or [*fixed] or [follow("follow", actor.position, actor.yaw, *size)]
-    worth = values(cameras, who, objects, obstacles) * preference(cameras, actor)
+    worth = values(cameras, who, objects, obstacles).total * preference(cameras, actor)
     best: list[Camera] = [cameras[number] for number in np.argsort(-worth, kind="stable")[:LOOKED_AT].tolist()]
     return next((camera for camera in best if _shows(scene, camera, actor, objects)), best[0])
 

@@ -52,9 +52,8 @@ def tick_visibilities(
     for keyframe in trajectory.keyframes[1:]:
         named = named_nodes(keyframe.steps, rooms)
         actor, shown = keyframe.acting, tuple(dict.fromkeys(_shown_as(node, keyframe) for node in named))
-        others = [other for other in keyframe.actors if other is not actor]
         objects = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named))
-        camera = best_view(keyframe.scene, views, actor, objects, rooms.get(actor.room), others)
+        camera = best_view(keyframe.scene, views, actor, objects, rooms.get(actor.room))
         missed = _missed(keyframe, camera, shown)
         unseen = _missed(keyframe, above, missed)
         in_closed = tuple(node for node in unseen if _is_in_closed(node, keyframe.places))
@@ -88,6 +87,13 @@ def seen_as(node: int, places: Places) -> int:
         if location.kind == "worn" or (location.kind == "inside" and "CLOSED" in states.get(node, ())):
             found = node
     return found
+
+
+def objects_of(step: Step, trajectory: Trajectory, keyframe: Keyframe) -> tuple[int, ...]:
+    """The nodes by which a step's objects are seen, without rooms and the person itself."""
+    named = named_nodes([step], trajectory.prepared.rooms)
+    person = keyframe.actors[step.agent].node.id
+    return tuple(dict.fromkeys(node for node in (seen_as(one, keyframe.places) for one in named) if node != person))
 
 
 def _missed(keyframe: Keyframe, camera: Camera, named: tuple[int, ...]) -> tuple[int, ...]:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.recognition import in_the_way, shows
-from hearth.rendering.cameras.visibility import seen_as
-from hearth.rendering.film.snapshots import AUTO, Keyframe, Trajectory, named_nodes
+from hearth.rendering.cameras.visibility import objects_of
+from hearth.rendering.film.snapshots import AUTO, Trajectory
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.people.motion import frames
 from hearth.rendering.rays.shot import shoot
@@ -72,13 +72,6 @@ def film_quality(trajectory: Trajectory, home: EnvironmentGraph, view: str = AUT
         for step in keyframe.steps
     ]
     return FilmQuality(tuple(steps), tuple(_lengths(cameras)), len(cameras), blocked)
-
-
-def objects_of(step: Step, trajectory: Trajectory, keyframe: Keyframe) -> tuple[int, ...]:
-    """The nodes by which a step's objects are seen, without rooms and the person itself."""
-    named = named_nodes([step], trajectory.prepared.rooms)
-    person = keyframe.actors[step.agent].node.id
-    return tuple(dict.fromkeys(node for node in (seen_as(one, keyframe.places) for one in named) if node != person))
 
 
 def _lengths(cameras: list[Camera]) -> Iterator[float]:

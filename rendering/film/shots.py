@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +13,13 @@ from numpy.typing import NDArray
 
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.candidates import around, free, preference
-from hearth.rendering.cameras.recognition import CLOSE
-from hearth.rendering.cameras.sight import Obstacles, Target, person, thing, values
+from hearth.rendering.cameras.recognition import CLOSE, in_the_way, shows
+from hearth.rendering.cameras.sight import Obstacles, Target, Worth, person, thing, values
+from hearth.rendering.cameras.visibility import objects_of
+from hearth.rendering.film.cuts import Acts, Numbers, Values, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
+from hearth.rendering.rays.shot import Shot, shoot
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -22,11 +27,17 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 RATE = 2.0
 """Moments a second at which cameras are compared."""
 
-SHORTEST = 7
-"""Moments of the shortest shot: three seconds, and half a second more for where frames fall."""
+JUDGED = (160, 120)
+"""Size of the pictures by which cameras are judged, pixels."""
 
-KEPT = 4
+SHORTEST = 6
+"""Moments of the shortest shot: three seconds."""
+
+KEPT = 5
 """Cameras kept for each act, and for each pair of acts that follow each other."""
+
+APART = 0.5
+"""Metres between the kept cameras of an act, unless their fields of view differ by a third."""
 
 AROUND = 8
 """Moments before and after a tick at which its cameras are tried."""
@@ -40,8 +51,14 @@ CUT = 0.5
 IN_THE_WAY = 1.5
 """Loss of value of a camera at a moment at which a person is close in front of it."""
 
-SEEN, SEEN_AT_ALL = 0.6, 4.0
-"""The value from which on an act is seen, and how much more what exceeds it counts at the best moment of an act."""
+SEEN, HALF = 8.0, 2.0
+"""Value of seeing an act, and how many times as much the acts count of who is seen in less than half of them."""
+
+MOST = 3
+"""Agents whose acts are counted apart."""
+
+ROUNDS, LOOKED_AT = 16, 40
+"""Cuts that are tried, and pictures that are looked at to find a camera for an act that none shows."""
 
 
 class Moment(NamedTuple):
@@ -86,6 +103,10 @@ class Planner:
         self.keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
         self.obstacles: dict[int, Obstacles] = {}
         self.moments = list(self._moments())
+        self.ticks = [moment.frame.tick for moment in self.moments]
+        self.agents = sorted({agent for number in range(len(self.moments)) for agent in self.acting(number)})[:MOST]
+        self.cameras: list[Camera] = []
+        self.tried: list[frozenset[int]] = []
 
     def _moments(self) -> Iterator[Moment]:
         rooms: dict[int, int] = {}
@@ -97,26 +118,37 @@ class Planner:
 
     def shots(self) -> Shots:
         """The camera of each moment."""
-        ticks = [moment.frame.tick for moment in self.moments]
-        cameras: list[Camera] = []
-        tried: list[frozenset[int]] = []
-        for tick in sorted(set(ticks)):
-            span = [n for n, known in enumerate(ticks) if known == tick]
-            for agent in self._acting(span[-1]):
-                found = self._candidates(span, agent)
-                cameras += found
-                tried += [frozenset(range(span[0] - AROUND, span[-1] + AROUND + 1))] * len(found)
+        for tick in sorted(set(self.ticks)):
+            for agent in self.acting(self._span(tick)[-1]):
+                self.add(self._candidates(self._span(tick), agent), self._span(tick))
         for room in sorted({room for moment in self.moments for room in moment.rooms}):
-            cameras += self.views.get(room, ())
-            tried += self._unobstructed(room)
-        if not cameras:
+            self.add(self.views.get(room, ()), (), self._unobstructed(room))
+        if not self.cameras:
             raise LookupError
-        worth = np.full((len(cameras), len(self.moments)), ELSEWHERE)
+        return Shots(tuple(self.cameras[row] for row in Verified(self).rows()))
+
+    def _span(self, tick: int) -> list[int]:
+        return [number for number, known in enumerate(self.ticks) if known == tick]
+
+    def add(
+        self, cameras: Sequence[Camera], span: Sequence[int], tried: Sequence[frozenset[int]] | None = None
+    ) -> None:
+        """Add cameras, to be tried at some moments each, or around a span of moments."""
+        for number, camera in enumerate(cameras):
+            self.cameras.append(camera)
+            near = tried[number] if tried else frozenset(range(span[0] - AROUND, span[-1] + AROUND + 1))
+            self.tried.append(near)
+
+    def worth(self, rows: Sequence[int]) -> tuple[Values, Numbers]:
+        """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit (see `cuts.Acts`)."""
+        total = np.full((len(rows), len(self.moments)), ELSEWHERE)
+        shown = np.zeros((len(rows), len(self.moments)), np.int64)
         for number in range(len(self.moments)):
-            some = [k for k, where in enumerate(tried) if number in where]
-            worth[some, number] = self._values([cameras[k] for k in some], number, self._acting(number))
-        worth = self._weighted(worth, ticks)
-        return Shots(tuple(cameras[number] for number in best_cut(worth, SHORTEST, CUT)))
+            some = [k for k, row in enumerate(rows) if number in self.tried[row]]
+            cameras = [self.cameras[rows[k]] for k in some]
+            if cameras:
+                total[some, number], shown[some, number] = self._values(cameras, number)
+        return total, shown
 
     def _unobstructed(self, room: int) -> list[frozenset[int]]:
         """For each fixed camera of a room the moments at which somebody is in the room and nothing in its way."""
@@ -129,16 +161,7 @@ class Planner:
                 moments.update(within if camera in good else ())
         return [frozenset(moments) for moments in found]
 
-    def _weighted(self, found: NDArray[np.float64], ticks: Sequence[int]) -> NDArray[np.float64]:
-        """(cameras, moments) values; what shows a tick's act counts more at the moment that shows it best."""
-        worth = found.copy()
-        for tick in sorted(set(ticks) - {0}):
-            span = np.flatnonzero(np.array(ticks) == tick)
-            for best in {int(span[found[:, span].max(axis=0).argmax()]), int(span[-1])}:
-                worth[:, best] += SEEN_AT_ALL * np.maximum(found[:, best] - SEEN, 0)
-        return worth
-
-    def _acting(self, moment: int) -> list[int]:
+    def acting(self, moment: int) -> list[int]:
         """The agents to be seen at a moment."""
         frame = self.moments[moment].frame
         if self.agent is not None:
@@ -169,7 +192,7 @@ class Planner:
         name = f"near.{last.frame.tick}.{agent}"
         way = [self.moments[n].frame.actors[agent] for n in span if self.moments[n].rooms == last.rooms]
         whole = _together([person(each) for each in way[-AROUND:]])
-        found = around(actor, who, objects, room, self.size, name)
+        found = around(actor, who, objects, room, self.size, name, closer=True)
         found += around(actor, whole, objects, room, self.size, f"{name}.way")
         kept = self._best(found, (span[-1], span[len(span) // 2], max(span[-1] - 2, span[0])), agent)
         follows = self._next(span[-1], agent)
@@ -184,7 +207,7 @@ class Planner:
         """The last moment of the next tick, if the agent acts then in the same room."""
         here = self.moments[number]
         later = [n for n, moment in enumerate(self.moments) if moment.frame.tick == here.frame.tick + 1]
-        if not later or agent not in self._acting(later[-1]) or self.moments[later[-1]].rooms != here.rooms:
+        if not later or agent not in self.acting(later[-1]) or self.moments[later[-1]].rooms != here.rooms:
             return None
         return later[-1]
 
@@ -192,19 +215,157 @@ class Planner:
         """Those of some cameras that show an agent best at some moments, with nothing in their way."""
         moved = [self.trajectory.variation.moved(camera) for camera in cameras]
         found = free(moved, self._obstacles(self.moments[moments[0]].frame))
-        worth = sum((self._values(found, number, [agent]) for number in moments), np.zeros(len(found)))
-        return [found[number] for number in np.argsort(-worth, kind="stable")[:KEPT].tolist()]
+        worth = sum((self._exact(found, number, agent) for number in dict.fromkeys(moments)), np.zeros(len(found)))
+        return _distinct([found[number] for number in np.argsort(-worth, kind="stable").tolist()], KEPT)
 
-    def _values(self, cameras: Sequence[Camera], number: int, agents: Sequence[int]) -> NDArray[np.float64]:
-        """(cameras,) the values at a moment, over some agents."""
+    def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Values:
+        """(cameras,) the values of showing an agent at a moment."""
         frame = self.moments[number].frame
-        total = np.zeros(len(cameras))
-        for agent in agents if cameras else ():
-            who, objects = self._targets(frame, agent)
-            total += values(cameras, who, objects, self._obstacles(frame)) * preference(cameras, frame.actors[agent])
-        for actor in frame.actors if cameras else ():
+        if not cameras:
+            return np.zeros(0)
+        found = values(cameras, *self._targets(frame, agent), Obstacles.exact(frame.scene))
+        return found.total * preference(cameras, frame.actors[agent])
+
+    def closer(self, number: int, agent: int) -> list[Camera]:
+        """Cameras for an act at a moment, the likeliest first, with closer views."""
+        moment = self.moments[number]
+        actor, room = moment.frame.actors[agent], self.rooms.get(moment.rooms[agent])
+        name = f"near.{moment.frame.tick}.{agent}.{number}"
+        found = around(actor, *self._targets(moment.frame, agent), room, self.size, name, closer=True, dense=True)
+        moved = free([self.trajectory.variation.moved(camera) for camera in found], Obstacles.exact(moment.frame.scene))
+        worth = self._exact(moved, number, agent)
+        return _distinct([moved[k] for k in np.argsort(-worth, kind="stable").tolist()], LOOKED_AT)
+
+    def _values(self, cameras: Sequence[Camera], number: int) -> tuple[Values, Numbers]:
+        """(cameras,) the values at a moment, over who acts, and whose acts cameras seem to show."""
+        frame = self.moments[number].frame
+        total, shown = np.zeros(len(cameras)), np.zeros(len(cameras), np.int64)
+        for agent in self.acting(number):
+            found: Worth = values(cameras, *self._targets(frame, agent), self._obstacles(frame))
+            total += found.total * preference(cameras, frame.actors[agent])
+            if agent in self.agents:
+                shown |= found.enough.astype(np.int64) << self.agents.index(agent)
+        for actor in frame.actors:
             total -= IN_THE_WAY * _too_near(cameras, person(actor))
-        return total
+        return total, shown
+
+    def shows(self, camera: Camera, number: int, agent: int) -> bool:
+        """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
+        frame = self.moments[number].frame
+        step = next((step for step in frame.steps if step.agent == agent), None)
+        shot: Shot = shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
+        objects = objects_of(step, self.trajectory, self.keyframes[frame.tick]) if step else ()
+        return not in_the_way(shot) and shows(shot, frame.actors[agent].node.id, objects)
+
+
+def _distinct(cameras: Sequence[Camera], most: int) -> list[Camera]:
+    """The first of some cameras that stand apart, or see more or less than each other."""
+    found: list[Camera] = []
+    for camera in cameras:
+        if all(_apart(camera, other) for other in found):
+            found.append(camera)
+        if len(found) == most:
+            break
+    return found
+
+
+def _apart(one: Camera, other: Camera) -> bool:
+    far = max(abs(a - b) for a, b in zip(one.eye, other.eye, strict=True))
+    return far > APART or not 0.75 < one.fov / other.fov < 4 / 3
+
+
+class Verified:
+    """The best cut of a film whose acts are seen in the pixels of its pictures.
+
+    Whether a camera shows an act is estimated first; the pictures on which a cut relies are drawn, and where they do
+    not show the act, the film is cut again. Acts that no camera shows get closer ones.
+    """
+
+    def __init__(self, planner: Planner) -> None:
+        self.planner = planner
+        self.total, self.shown = planner.worth(range(len(planner.cameras)))
+        self.ticks = np.array(planner.ticks)
+        self.known: dict[tuple[int, int, int], bool] = {}
+        self.gains = [SEEN] * len(planner.agents)
+
+    def rows(self) -> list[int]:
+        """The camera of each moment."""
+        rows, missed = self._cut()
+        if self._add_closer(missed):
+            rows, missed = self._cut()
+        rare = self._rare(missed)
+        if rare and len(self.gains) > 1:
+            self.gains = [gain * HALF if bit in rare else gain for bit, gain in enumerate(self.gains)]
+            rows, missed = self._cut()
+        return rows
+
+    def _acts(self) -> list[tuple[int, int]]:
+        """The (tick, agent's number among those that act) of all acts."""
+        planner, ends = self.planner, np.flatnonzero(np.diff(self.ticks, append=-1))
+        return [
+            (int(self.ticks[end]), planner.agents.index(agent))
+            for end in ends.tolist()
+            for agent in planner.acting(end)
+            if agent in planner.agents
+        ]
+
+    def _rare(self, missed: Sequence[tuple[int, int]]) -> set[int]:
+        """Who is seen in less than half of its acts."""
+        acts, unseen = Counter(bit for _, bit in self._acts()), Counter(bit for _, bit in missed)
+        return {bit for bit in acts if unseen[bit] > acts[bit] / 2}
+
+    def _cut(self) -> tuple[list[int], list[tuple[int, int]]]:
+        """A cut whose acts are verified, and those that it does not show."""
+        rows: list[int] = []
+        missed: list[tuple[int, int]] = []
+        for _ in range(ROUNDS):
+            rows = best_cut(self.total, SHORTEST, CUT, Acts(self.ticks, self.shown, self.gains))
+            missed, wrong = self._checked(rows)
+            if not wrong:
+                break
+        return rows, missed
+
+    def _checked(self, rows: Sequence[int]) -> tuple[list[tuple[int, int]], bool]:
+        """The acts that a cut does not show, and whether it was mistaken about any."""
+        missed: list[tuple[int, int]] = []
+        wrong = False
+        for tick, bit in self._acts():
+            span = np.flatnonzero(self.ticks == tick).tolist()
+            seeming = [n for n in reversed(span) if self.shown[rows[n], n] >> bit & 1]
+            if not any(self._verified(rows[n], n, bit) for n in seeming):
+                missed.append((tick, bit))
+                wrong |= bool(seeming)
+        return missed, wrong
+
+    def _verified(self, row: int, number: int, bit: int) -> bool:
+        """Whether a camera shows an act, by pixels; if not, this is remembered."""
+        key = row, number, bit
+        if key not in self.known:
+            planner = self.planner
+            self.known[key] = planner.shows(planner.cameras[row], number, planner.agents[bit])
+            if not self.known[key]:
+                self.shown[row, number] &= ~(1 << bit)
+        return self.known[key]
+
+    def _add_closer(self, missed: Sequence[tuple[int, int]]) -> bool:
+        """Find cameras for acts that are not shown; returns whether there are some."""
+        planner, first = self.planner, len(self.planner.cameras)
+        good: list[tuple[int, int, int]] = []
+        for tick, bit in missed:
+            span = np.flatnonzero(self.ticks == tick).tolist()
+            agent = planner.agents[bit]
+            for number in dict.fromkeys((span[-1], span[len(span) // 2], span[0])):
+                closer = (camera for camera in planner.closer(number, agent) if planner.shows(camera, number, agent))
+                found = list(islice(closer, KEPT))
+                good += [(len(planner.cameras) + k, number, bit) for k in range(len(found))]
+                planner.add(found, span)
+        new = range(first, len(planner.cameras))
+        if new:
+            total, shown = planner.worth(new)
+            self.total, self.shown = np.concatenate((self.total, total)), np.concatenate((self.shown, shown))
+        for row, number, bit in good:
+            self.shown[row, number] |= 1 << bit
+        return len(new) > 0
 
 
 def _too_near(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
@@ -222,42 +383,6 @@ def _together(found: Sequence[Target]) -> Target:
         np.max([target.high for target in found], axis=0),
     )
     return replace(found[-1], points=points, low=low, high=high)
-
-
-def best_cut(worth: NDArray[np.float64], shortest: int, cost: float) -> list[int]:
-    """The row to show at each moment: the greatest sum of values, less the cost of cuts, in runs of a least length.
-
-    Args:
-        worth: (rows, moments) the values.
-        shortest: least moments of a run; where there are fewer in all, one row is shown.
-        cost: of changing the row.
-
-    Returns:
-        A row for each moment.
-    """
-    rows, moments = worth.shape
-    if moments < 2 * shortest:
-        return [int(worth.sum(axis=1).argmax())] * moments
-    sums = np.concatenate((np.zeros((rows, 1)), np.cumsum(worth, axis=1)), axis=1)
-    # best[t]: the greatest value of moments before t, with a run that ends there.
-    best, row, start = np.full(moments + 1, -np.inf), np.zeros(moments + 1, int), np.zeros(moments + 1, int)
-    best[0] = 0.0
-    run = np.full(rows, -np.inf)
-    since = np.zeros(rows, int)
-    for t in range(shortest, moments + 1):
-        begin = t - shortest
-        fresh = best[begin] - (cost if begin else 0.0) - sums[:, begin]
-        better = fresh > run
-        run, since = np.where(better, fresh, run), np.where(better, begin, since)
-        total = run + sums[:, t]
-        row[t] = int(total.argmax())
-        best[t], start[t] = total[row[t]], since[row[t]]
-    found: list[int] = []
-    t = moments
-    while t > 0:
-        found[:0] = [int(row[t])] * (t - int(start[t]))
-        t = int(start[t])
-    return found
 
 
 def room_at(rooms: Mapping[int, Box], spot: Spot) -> int:

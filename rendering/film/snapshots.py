@@ -34,7 +34,7 @@ from hearth.rendering.scene.triangles import StaticThings
 from hearth.rendering.scene.variation import PLAIN, Variation, scattered
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import EnvironmentGraph, to_release
+from hearth.schemas.graph import EnvironmentGraph, Point, to_release
 from hearth.schemas.program import Step
 from hearth.schemas.rng import derive
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -257,9 +257,18 @@ def advanced(
 
 def _settled(places: Places, graph: EnvironmentGraph, actors: Sequence[Actor], steps: Sequence[Step]) -> Places:
     """The places after steps: what is put down is put down beside the actors, or where the steps say."""
-    near = {actor.node.id: actor.position for actor in actors}
+    near = {actor.node.id: _put_down_at(actor) for actor in actors}
     put = {step.objects[0].node: numbers(step, "at") for step in steps if len(step.objects) == 2}
     return places.settled(graph, near, {node: (at[0], at[1]) for node, at in put.items() if node is not None and at})
+
+
+BESIDE = (0.42, 0.0, 0.12)
+"""Metres right of, above and before who sits or lies at which things are put down."""
+
+
+def _put_down_at(actor: Actor) -> Point:
+    """Where an actor puts things down: near itself; who sits or lies, not under itself."""
+    return actor.position if actor.body_pose.posture == "standing" else actor.world(BESIDE)
 
 
 STOOPED = 1.2
@@ -349,8 +358,7 @@ def snapshots(
             camera = choice if isinstance(choice, Camera) else above
             if choice == AUTO:
                 actor = keyframe.acting
-                others = [other for other in keyframe.actors if other is not actor]
-                camera = best_view(keyframe.scene, views, actor, named, rooms.get(actor.room), others)
+                camera = best_view(keyframe.scene, views, actor, named, rooms.get(actor.room))
             if quality == "draft":
                 last_frames[choice] = incremental_frame(keyframe.scene, camera, last_frames.get(choice))
                 shot, known = replace(last_frames[choice].shot, after=later.scene), {"rgb": last_frames[choice].picture}

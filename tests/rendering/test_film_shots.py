@@ -14,9 +14,11 @@ from hearth.homes import library
 from hearth.kb.loading.load import default
 from hearth.rendering.cameras.camera import look_at
 from hearth.rendering.cameras.recognition import in_the_way, recognition, shows
+from hearth.rendering.cameras.viewpoints import room_views
 from hearth.rendering.cameras.visibility import seen_as
+from hearth.rendering.film.cuts import Acts, best_cut
 from hearth.rendering.film.quality import film_quality
-from hearth.rendering.film.shots import best_cut
+from hearth.rendering.film.shots import Planner, Verified
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.models.look import Look
 from hearth.rendering.models.looks import Model
@@ -39,9 +41,15 @@ It.
 """
 
 
-def value(worth, rows, cost):
+def value(worth, rows, cost, acts):
     cuts = sum(a != b for a, b in pairwise(rows))
-    return sum(worth[row, t] for t, row in enumerate(rows)) - cost * cuts
+    found = sum(worth[row, t] for t, row in enumerate(rows)) - cost * cuts
+    for tick in set(acts.ticks.tolist()):
+        seen = 0
+        for t in np.flatnonzero(acts.ticks == tick):
+            seen |= acts.shown[rows[t], t]
+        found += sum(gain for k, gain in enumerate(acts.gains) if seen >> k & 1)
+    return found
 
 
 def runs(rows):
@@ -49,15 +57,28 @@ def runs(rows):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(1, 3), st.integers(1, 7), st.integers(1, 3), st.integers(0, 2**31), st.sampled_from([0.0, 0.4, 2.0]))
-def test_the_best_cut_is_that_of_a_plain_search(rows, moments, shortest, seed, cost):
-    worth = np.random.default_rng(seed).normal(size=(rows, moments))
+@given(
+    st.integers(1, 3), st.integers(1, 7), st.integers(1, 3), st.integers(0, 2), st.integers(0, 2**31),
+    st.sampled_from([0.0, 0.4, 2.0]),
+)  # fmt: skip
+def test_the_best_cut_is_that_of_a_plain_search(rows, moments, shortest, agents, seed, cost):
+    numbers = np.random.default_rng(seed)
+    worth = numbers.normal(size=(rows, moments))
+    ticks, shown = np.cumsum(numbers.random(moments) < 0.4), numbers.integers(0, 1 << agents, (rows, moments))
+    acts = Acts(ticks, shown, tuple(3 * numbers.random(agents)))
     allowed = [found for found in product(range(rows), repeat=moments) if min(runs(found)) >= min(shortest, moments)]
     if moments < 2 * shortest:
         allowed = [found for found in allowed if len(set(found)) == 1]
-    found = best_cut(worth, shortest, cost)
+    found = best_cut(worth, shortest, cost, acts)
     assert tuple(found) in allowed
-    assert value(worth, found, cost) == pytest.approx(max(value(worth, each, cost) for each in allowed))
+    best = max(value(worth, each, cost, acts) for each in allowed)
+    assert value(worth, found, cost, acts) == pytest.approx(best)
+
+
+def test_values_alone_decide_without_acts():
+    worth = np.array([[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0]])
+    assert best_cut(worth, 2, 0.5) == [0, 0, 1, 1]
+    assert best_cut(worth, 2, 3.0) in ([0] * 4, [1] * 4)
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +95,19 @@ def test_a_film_shows_every_step_in_shots_of_three_seconds(filmed):
     assert [step.shown for step in found.steps] == [True] * 6
     assert min(found.shots) >= 3
     assert found.blocked <= 0.05 * found.pictures
+
+
+def test_cuts_rely_on_pictures_where_estimates_are_mistaken(filmed):
+    graph, trajectory = filmed
+    views = room_views(graph, 160, 120)
+    planner = Planner(trajectory, graph, views, (160, 120))
+    planner.shots()
+    cut = Verified(planner)
+    cut.shown[:] = 1  # every camera is said to show every act
+    rows = cut.rows()
+    for tick in range(1, len(trajectory.keyframes)):
+        span = np.flatnonzero(cut.ticks == tick).tolist()
+        assert any(planner.shows(planner.cameras[rows[number]], number, 0) for number in span), tick
 
 
 def test_what_is_in_a_closed_container_is_seen_by_that(filmed):

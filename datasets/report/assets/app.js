@@ -5,6 +5,8 @@ const HEARTH = (() => {
   const PLACE = [1, 0, 2, 3, 4, 5, 6, 7];
   const NUMBERS = new Set([4, 5, 6]);
   const KEPT = new Set([0, 4, 6]);
+  const [PICTURE, LOOKS] = [8, 9];
+  const STRIP = 12;
   const state = { all: [], shown: [], text: [], sorted: 1, down: false, height: 36 };
   const at = (id) => document.getElementById(id);
 
@@ -40,7 +42,9 @@ const HEARTH = (() => {
   function find() {
     const words = at("search").value.toLowerCase().split(/\s+/).filter(Boolean);
     const found = [];
+    const pictured = at("pictured").checked;
     for (let i = 0; i < state.all.length; i += 1) {
+      if (pictured && !state.all[i][LOOKS]) continue;
       if (words.every((word) => state.text[i].includes(word))) found.push(state.all[i]);
     }
     const place = state.sorted;
@@ -66,10 +70,36 @@ const HEARTH = (() => {
       line.append(...PLACE.map((place, column) => {
         const cell = element("span", row[place], kindOf(column));
         if (place === 7 && row[7]) cell.classList.add("bad");
+        if (column === 0 && row[LOOKS]) cell.prepend(row[PICTURE] ? thumbnail(row) : element("span", "▶", "film"));
         return cell;
       }));
       return line;
     }));
+  }
+
+  function thumbnail(row) {
+    const picture = element("img", null, "thumb");
+    picture.src = row[PICTURE].split("/").map(encodeURIComponent).join("/");
+    picture.alt = "";
+    picture.loading = "lazy";
+    return picture;
+  }
+
+  // Pictures of programs spread over the whole list, at the start page's head.
+  function drawStrip() {
+    const found = state.all.filter((row) => row[PICTURE]);
+    const step = Math.max(1, found.length / STRIP);
+    at("strip").hidden = !found.length;
+    at("strip").replaceChildren(...Array.from({ length: Math.min(STRIP, found.length) }, (_, number) => {
+      const row = found[Math.floor(number * step)];
+      const link = element("a", null, "look");
+      link.href = `#/program/${encodeURIComponent(row[0])}`;
+      link.append(thumbnail(row), element("span", row[1]));
+      return link;
+    }));
+    const looks = state.all.filter((row) => row[LOOKS]).length;
+    at("pictured").disabled = !looks;
+    at("looks").textContent = looks.toLocaleString("en");
   }
 
   const waiting = new Map();
@@ -140,6 +170,8 @@ const HEARTH = (() => {
       state.order = new Map(rows.map((row, place) => [row[0], place]));
       drawHead();
       at("search").oninput = find;
+      at("pictured").onchange = find;
+      drawStrip();
       at("scroll").onscroll = drawRows;
       addEventListener("hashchange", show);
       addEventListener("resize", drawRows);
