@@ -12,6 +12,10 @@ _SMALLEST = 0.25
 """Least area of a drawn thing, square metres."""
 
 
+Rectangle = tuple[float, float, float, float]
+"""Left, top, width and height, metres."""
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """A home's floor plan as SVG, or "" if its nodes have no boxes."""
@@ -44,7 +48,7 @@ def draw(nodes: tuple[Node, ...]) -> str:
     return f'<svg class="plan" viewBox="{view}" role="img">{shapes}</svg>'
 
 
-def _rectangle(box: Box) -> tuple[float, float, float, float]:
+def _rectangle(box: Box) -> Rectangle:
     (x, _, z), (width, _, depth) = box.center, box.size
     return x - width / 2, -z - depth / 2, width, depth
 
@@ -68,19 +72,35 @@ _LONGEST, _LETTER, _LEGIBLE = 0.24, 0.56, 0.085
 
 
 def _furniture_names(nodes: tuple[Node, ...]) -> Iterator[str]:
-    """The names of furniture in which they fit, along its longer side."""
-    for node in nodes:
-        if node.box is None or node.category in _SHELL or node.category == "Doors":
-            continue
-        x, y, width, height = _rectangle(node.box)
+    """The names of furniture in which they fit, along its longer side, where nothing stands on them."""
+    drawn = list(_furniture(nodes))
+    rooms = [_rectangle(node.box) for node in nodes if node.category == "Rooms" and node.box]
+    taken = [(x, y, width, 0.5) for x, y, width, _ in rooms]
+    for node, (x, y, width, height) in drawn:
         name = node.class_name.replace("_", " ")
         along, across = max(width, height), min(width, height)
         size = min(_LONGEST, 0.9 * along / (_LETTER * len(name)), 0.7 * across)
-        if width * height >= _SMALLEST and size >= _LEGIBLE:
-            middle = f"{x + width / 2:.2f} {y + height / 2:.2f}"
-            turn = f' transform="rotate(-90 {middle})"' if height > width else ""
-            at = f'x="{x + width / 2:.2f}" y="{y + height / 2:.2f}"'
-            yield f'<text class="named" {at} font-size="{size:.3f}"{turn}>{escape(name)}</text>'
+        line = (x, y + height / 2 - size / 2, width, size) if width >= height else (
+            x + width / 2 - size / 2, y, size, height)  # fmt: skip
+        others = [other for one, other in drawn if one is not node and other[2] * other[3] < width * height]
+        if size < _LEGIBLE or any(_overlap(line, other) for other in (*others, *taken)):
+            continue
+        middle = f"{x + width / 2:.2f} {y + height / 2:.2f}"
+        turn = f' transform="rotate(-90 {middle})"' if height > width else ""
+        at = f'x="{x + width / 2:.2f}" y="{y + height / 2:.2f}"'
+        yield f'<text class="named" {at} font-size="{size:.3f}"{turn}>{escape(name)}</text>'
+
+
+def _overlap(one: Rectangle, other: Rectangle) -> bool:
+    return all(one[k] < other[k] + other[k + 2] and other[k] < one[k] + one[k + 2] for k in (0, 1))
+
+
+def _furniture(nodes: tuple[Node, ...]) -> Iterator[tuple[Node, Rectangle]]:
+    """The things that are large enough to be drawn, and where, the largest first."""
+    drawn = [(node, _rectangle(node.box)) for node in nodes if node.box and node.category not in _SHELL]
+    for node, at in sorted(drawn, key=lambda each: -each[1][2] * each[1][3]):
+        if at[2] * at[3] >= _SMALLEST and node.category != "Doors":
+            yield node, at
 
 
 def _things(nodes: tuple[Node, ...]) -> Iterator[str]:

@@ -123,6 +123,66 @@ def test_a_plan_escapes_names_and_needs_boxes():
     assert draw((Node(1, "kitchen", "Rooms", (), (), None, None, None),)) == ""
 
 
+def test_a_plan_names_furniture_where_nothing_stands_on_it():
+    def piece(number, name, center, size):
+        return Node(number, name, "Furniture", (), (), None, Box(center, size), None)
+
+    room = Node(1, "kitchen", "Rooms", (), (), None, Box((0.0, 1.2, 0.0), (6.0, 2.4, 6.0)), None)
+    table, tray = (
+        piece(2, "table", (0.0, 0.4, 0.0), (2.0, 0.8, 1.0)),
+        piece(3, "tray", (0.0, 0.9, 0.0), (0.6, 0.1, 0.6)),
+    )
+    bed, box = piece(4, "bed", (2.0, 0.3, -2.0), (1.0, 0.6, 2.0)), piece(5, "box", (-2.0, 0.1, -2.0), (0.3, 0.2, 0.3))
+    names = re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, table, tray, bed, box)))
+    assert names == ["bed", "tray"]
+    assert "table" in re.findall(r'class="named"[^>]*>([^<]*)<', draw((room, table, bed)))
+    assert 'transform="rotate(-90 2.00 2.00)"' in draw((room, bed))
+
+
+@pytest.fixture(scope="module")
+def pictured(made, ds, tmp_path_factory):
+    """A report of a dataset with a picture of one program and a film of another, and their ids."""
+    folder = shutil.copytree(made.out / "publish", tmp_path_factory.mktemp("pictured") / "dataset")
+    programs = [name for name in ds if ds[name].runs][:2]
+    runs = [ds[name].runs[0].row["execution_id"] for name in programs]
+    for name in ("one.png", "late.png", "above.png", "film.webm"):
+        (folder / name).write_bytes(name.encode())
+    frame = {field.name: None for field in TABLES["frames"]} | {"modality": "rgb", "execution_id": runs[0]}
+    looks = ((0, "auto", "one.png"), (5, "top", "above.png"), (5, "auto", "late.png"))
+    rows = [{**frame, "tick": tick, "camera": camera, "file": file} for tick, camera, file in looks]
+    pq.write_table(pa.Table.from_pylist(rows, TABLES["frames"]), folder / "frames/part-00000.parquet")
+    film = {field.name: None for field in TABLES["videos"]} | {"execution_id": runs[1], "file": "film.webm"}
+    (folder / "videos").mkdir(exist_ok=True)
+    pq.write_table(pa.Table.from_pylist([film], TABLES["videos"]), folder / "videos/part-00000.parquet")
+    write_report(hearth.load(folder), folder.parent / "report")
+    return folder.parent / "report", programs
+
+
+def test_rows_name_a_late_picture_that_is_not_from_above(pictured):
+    report, (one, other) = pictured
+    rows = {row[0]: row[8:] for row in data(report / "data/programs.js")}
+    assert rows.pop(other) == ["", 2]
+    picture, kind = rows.pop(one)
+    assert kind == 1
+    assert (report / picture).read_bytes() == b"late.png"
+    assert set(map(tuple, rows.values())) == {("", 0)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_browser_lists_only_programs_with_pictures(pictured, browser, width):
+    report, programs = pictured
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    page.goto((report / "index.html").as_uri())
+    page.wait_for_selector(".row")
+    assert page.locator("#strip .look").count() == 1
+    page.check("#pictured")
+    page.wait_for_function("document.querySelectorAll('.row').length === 2")
+    shown = {row.get_attribute("href") for row in page.locator(".row").all()}
+    assert shown == {f"#/program/{quote(name, safe='')}" for name in programs}
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
 def test_it_does_not_write_over_something_else(ds, tmp_path):
     (tmp_path / "mine.txt").write_text("precious")
     with pytest.raises(HearthError, match="something else"):
@@ -155,9 +215,7 @@ def browser():
     if path is None:
         pytest.skip("no Chromium here: apt-get install chromium")
     with playwright.sync_playwright() as running:
-        started = running.chromium.launch(
-            executable_path=path, args=["--no-sandbox", DRAWN, "--enable-unsafe-swiftshader"]
-        )
+        started = running.chromium.launch(executable_path=path, args=["--no-sandbox", *DRAWN])
         yield started
         started.close()
 
@@ -239,7 +297,7 @@ def test_a_browser_plays_a_run_in_3d(ds, replayed, browser):
 @pytest.mark.slow
 def test_thirty_thousand_rows_and_markup_in_titles(written, browser, tmp_path):
     folder = shutil.copytree(written, tmp_path / "many")
-    rows = [[f"p{number}", NASTY, "crowd", "train", number % 30, 7, 0, ""] for number in range(30_000)]
+    rows = [[f"p{number}", NASTY, "crowd", "train", number % 30, 7, 0, "", "", 0] for number in range(30_000)]
     (folder / "data/programs.js").write_text(f"HEARTH.programs({json.dumps(rows)});")
     page = browser.new_page()
     alerts = []
