@@ -228,4 +228,4 @@ def _with_head(cameras: Sequence[Camera], who: Target) -> NDArray[np.bool_]:
     for camera in cameras:
         (x, y), depth = camera.project(around)[0].T, camera.project(around)[1]
         found.append((depth > 0.1) & (x > 0) & (x < camera.width) & (y > 0) & (y < camera.height))
-    return np.array(found, np.bool_).reshape(-1, len(around)).all(axis=1)
+    return np.asarray(np.array(found, np.bool_).reshape(-1, len(around)).all(axis=1))

@@ -1,5 +1,6 @@
 """Joints of a body pose: forward kinematics, and two-bone inverse kinematics."""
 
+from dataclasses import replace
 from math import acos, cos, hypot, radians, sin, sqrt
 
 import numpy as np
@@ -176,11 +177,16 @@ def _legs(body_pose: BodyPose, body: Proportions, drop: float) -> Joints:
     for side, sign, foot in zip("rl", (1.0, -1.0), feet_of(body_pose, body), strict=True):
         hip = found["pelvis"] + (sign * body.hip, 0, 0)
         ankle = ankle_of(foot, body)
-        ahead = yawed(foot.yaw * 0.6) @ np.array((sign * 0.06, 0.25, 1.0))
-        knee, end = two_bones(hip, ankle, body.thigh, body.shin, ahead)
+        knee, end = _leg(hip, foot, sign, body)
         found |= {f"hip_{side}": hip, f"knee_{side}": knee, f"ankle_{side}": end}
         found[f"toe_{side}"] = _toe(foot, ankle, body) + end - ankle
     return found
+
+
+def _leg(hip: Vector, foot: Foot, sign: float, body: Proportions) -> tuple[Vector, Vector]:
+    """Knee and ankle of a leg."""
+    ahead = yawed(foot.yaw * 0.6) @ np.array((sign * 0.06, 0.25, 1.0))
+    return two_bones(hip, ankle_of(foot, body), body.thigh, body.shin, ahead)
 
 
 def _torso(found: Joints, body: Proportions, lean: float) -> None:
@@ -219,9 +225,16 @@ def _relaxed_hand(found: Joints, side: str, sign: float, body: Proportions, body
     swing = -sign * body_pose.stride * 0.085 * h
     out = 0.022 * h
     hanging: Vector = shoulder + np.array((sign * out, -body.arm * 0.955, 0.03 * h + swing))
-    knee, hip = found[f"knee_{side}"], found[f"hip_{side}"]
     share = seated(body_pose, body)
-    on_thigh: Vector = hip + (knee - hip) * 0.62 + np.array((0, 0.05 * h, 0))
+    hip = found[f"hip_{side}"]
+    # Hands rest where the knees will be: those of who sits down follow the feet, which step.
+    foot = feet_of(replace(body_pose, feet=None), body)[side == "l"] if share else None
+    knee = _leg(hip, foot, sign, body)[0] if foot else hip
+    # Of who sits on the floor, with the knees up, hands are before the knees, not between them and the chest.
+    raised = min(max(float(knee[1] - hip[1]) / (0.25 * h), 0.0), 1.0)
+    on_thigh: Vector = (
+        hip + (knee - hip) * (0.62 + 0.36 * raised) + np.array((0, (0.05 - 0.07 * raised) * h, 0.13 * h * raised))
+    )
     rests = hanging * (1 - share) + on_thigh * share
     tuck = body_pose.tuck(side)
     return rests + (_before_belly(found, sign, body) - rests) * tuck if tuck else rests

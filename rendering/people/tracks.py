@@ -329,7 +329,9 @@ def _turned(one: Actor, other: Actor, side: str, share: float) -> Hand:
 
 def _held(a: Held, b: Held, share: float) -> Held:
     """How a thing is held between two poses; what is poured flows while it is nearly tilted."""
-    x, y, z = (p + (q - p) * share for p, q in zip(a.gap, b.gap, strict=True))
+    # What is out of reach comes quickly into the hand, and leaves it late.
+    early, late = (1 - share) ** 3, share**3
+    x, y, z = (p * early + q * late for p, q in zip(a.gap, b.gap, strict=True))
     turn, pitch, roll = (p + (q - p) * share for p, q in ((a.turn, b.turn), (a.pitch, b.pitch), (a.roll, b.roll)))
     stream = b.stream if share > 0.8 else (a.stream if share < 0.2 else None)
     return Held(turn, pitch, roll, (x, y, z), stream, b.opens if share > 0.5 else a.opens)

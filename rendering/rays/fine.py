@@ -8,6 +8,7 @@ import numpy as np
 from hearth.rendering.arrays import Bytes, Floats, Ints
 from hearth.rendering.rays import maps, shading
 from hearth.rendering.rays.casting import Hits
+from hearth.rendering.rays.mirrors import mirrored
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, prepare, setting_of
 from hearth.rendering.rays.threads import each
@@ -43,6 +44,7 @@ def fine(shot: Shot) -> Bytes:
         shading.paint(surface, near, visibility.seen[chunk], shot.rays, shot.hits, setting, out)
 
     each(paint, chunks)
+    mirrored(shot.rays, shot.hits, shot.geometry, setting_of(shot), out)
     rough = np.zeros(size, np.bool_)
     maps.edges(out, shot.hits.triangle, shot.geometry.owners, camera.width, camera.height, STEP, rough)
     again = np.flatnonzero(rough).astype(np.int32)
@@ -118,6 +120,7 @@ def _again(shot: Shot, pixels: Ints, visibility: LightVisibility, setting: Setti
         shading.paint(surface, setting.reaching(surface.bounds), seen, rays, hits, setting, out)
 
     each(work, shading.chunks(everywhere(len(pixels))))
+    mirrored(rays, hits, geometry, setting_of(shot, share=0.5), out)
     return out
 
 

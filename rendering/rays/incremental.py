@@ -18,6 +18,7 @@ from hearth.rendering.arrays import Bytes
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.modalities import pictures_of as others
 from hearth.rendering.rays import shading
+from hearth.rendering.rays.mirrors import mirrored
 from hearth.rendering.rays.shading import Exposure, Setting
 from hearth.rendering.rays.shot import Shot, camera_rays, everywhere, hits_on_static, overlay, prepare, setting_of
 from hearth.rendering.rays.threads import each
@@ -122,6 +123,8 @@ def _drawn(layer: StaticLayer, scene: Scene, geometry: Geometry, rest: tuple[Sta
 
     count = sum(each(shadowed, layer.exposures)) if len(geometry.moving.mesh) else 0
     shading.whole(shading.chunks(shown), base.rays, hits, geometry, layer.setting, rgb)
+    # What mirrors show can change wherever something moves: they are drawn anew.
+    count += mirrored(base.rays, hits, geometry, layer.setting, rgb)
     return IncrementalFrame(shot, rgb, count + len(shown), layer, rest)
 
 

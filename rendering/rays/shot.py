@@ -14,6 +14,7 @@ from hearth.rendering.rays import shading
 from hearth.rendering.rays.casting import Hits
 from hearth.rendering.rays.first_hits import drawable, moving_hits, static_hits
 from hearth.rendering.rays.kernels import taken
+from hearth.rendering.rays.mirrors import mirrored
 from hearth.rendering.rays.shading import Setting
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.lights import from_above
@@ -163,10 +164,9 @@ def camera_rays(camera: Camera, offset: tuple[float, float] = (0.5, 0.5)) -> tup
 
 def draft(shot: Shot) -> NDArray[np.uint8]:
     """(H*W, 3) colours with one ray per pixel and hard shadows."""
-    out = np.empty((len(shot.rays), 3), np.uint8)
-    shading.whole(
-        shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting_of(shot), out
-    )
+    out, setting = np.empty((len(shot.rays), 3), np.uint8), setting_of(shot)
+    shading.whole(shading.chunks(everywhere(len(shot.rays))), shot.rays, shot.hits, shot.geometry, setting, out)
+    mirrored(shot.rays, shot.hits, shot.geometry, setting, out)
     return out
 
 

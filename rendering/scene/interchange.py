@@ -185,7 +185,7 @@ def _material(kind: tuple[float, ...]) -> Any:
         baseColorTexture=picture,
         emissiveFactor=np.clip(np.array(color) * glow, 0, 1),
         metallicFactor=0.0,
-        roughnessFactor=ROUGH + (SMOOTH - ROUGH) * shine,
+        roughnessFactor=ROUGH + (SMOOTH - ROUGH) * min(shine, 1.0),
         doubleSided=True,
     )
 
