@@ -29,6 +29,19 @@ BODY_POSES = {
 PEOPLE = {"simple": BODIES["ben"], **{f"person {number}": person(number) for number in (1, 5, 9)}}
 
 
+@pytest.mark.parametrize("who", PEOPLE)
+def test_hands_of_who_sits_down_on_the_floor_do_not_follow_the_feet(who):
+    own = PEOPLE[who].proportions
+    trail = []
+    for share in np.linspace(0, 1, 31):
+        left = -0.2 if share < 0.6 else -0.2 + 1.3 * (share - 0.6)
+        feet = (Foot(0.13, 0.5 - 0.15 * share), Foot(-0.13, left))
+        pose = BodyPose("sitting", 0.5 * (1 - share), feet=feet, effort=0.4 * share)
+        trail.append([joints(pose, own)[f"hand_{side}"] for side in "rl"])
+    assert np.linalg.norm(np.diff(trail, axis=0), axis=2).max() < 0.08
+    assert (np.array(trail)[-1, :, 2] > 0.15).all(), "before the knees"
+
+
 @pytest.mark.parametrize("name", BODY_POSES)
 @pytest.mark.parametrize("who", PEOPLE)
 def test_bones_keep_their_lengths(who, name):

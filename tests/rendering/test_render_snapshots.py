@@ -1,12 +1,13 @@
 """Executions in pictures: who stands where, and where things are that were moved."""
 
+import numpy as np
 import pytest
 
 pytest.importorskip("open3d")
 
 from hearth.kb.loading.load import default
 from hearth.rendering.film.contact import caption, contact_sheet
-from hearth.rendering.film.snapshots import keyframes, snapshots
+from hearth.rendering.film.snapshots import _put_down_at, keyframes, snapshots
 from hearth.rendering.scene.places import Places, locations_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
@@ -99,6 +100,13 @@ def test_who_sits_sits_on_the_seat(filmed):
     assert abs(actor.spot[0] - 1.6) < 0.15
     assert abs(actor.spot[1] - 0.3) < 0.2
     assert 0.3 < actor.body_pose.seat < 0.6
+
+
+def test_who_sits_puts_things_down_beside_itself(filmed):
+    actor = filmed[6].actors[0]
+    beside = _put_down_at(actor)
+    assert np.hypot(beside[0] - actor.position[0], beside[2] - actor.position[2]) > 0.4
+    assert _put_down_at(filmed[4].actors[0]) == filmed[4].actors[0].position
 
 
 def test_people_do_not_stand_in_furniture(filmed):
