@@ -58,7 +58,7 @@ def film_page(dataset: Dataset, model: Path | str, films: int = 3) -> str:
         moves = found.moves(trained.order)
         read = followed(found.scores, found.instructions, shown[film].world, moves)
         title, text = texts.get(name, (name, ""))
-        home = f"in {escape(name.rpartition('@')[2].partition('/')[0])}, a {kinds[film]} home"
+        home = f"in {escape(name.rpartition('@')[2].partition('/')[0])} ({kinds[film]} home)"
         parts.append(f"<h2>{escape(title)}, {home}</h2><p>{escape(text)}</p>{''.join(_frames(coloured.films[film]))}")
         parts.append(_programs(shown[film].steps, read.steps))
     head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Programs from films</title><style>{STYLE}'
