@@ -32,9 +32,9 @@ ROOT = Path(__file__).resolve().parents[1]
 MOVES = ("[Turnleft]", "[Turnright]", None)
 
 
-def serve(out: Path) -> tuple[subprocess.Popen[str], str]:
+def serve(out: Path, *options: str) -> tuple[subprocess.Popen[str], str]:
     """A server of a folder, and its address."""
-    command = [sys.executable, str(ROOT / "cli.py"), "serve", "--port", "0", "--json", "--out", str(out)]
+    command = [sys.executable, str(ROOT / "cli.py"), "serve", "--port", "0", "--json", "--out", str(out), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     text = ""
     assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""Films of what is judged: small, quickened, by the camera that sees the step best."""
+"""Films of what is judged: small, quickened, by the camera that sees the step best; or what a browser plays in 3D."""
 
 from __future__ import annotations
 
@@ -12,12 +12,16 @@ from hearth.homes.library import load_graph
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.libraries import library
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
 from hearth.simulation.world.home import Home
+from hearth.storage.files import write_json
 from hearth.storage.names import inside
 from hearth.studies.judged_films import JudgedFilm
 from hearth.studies.judged_programs import execution_in, program_of
+from hearth.studies.study import FILM, REPLAY
 from hearth.studies.study_trials import record_of
 
 SIZE, RATE = (320, 240), 5.0
@@ -26,7 +30,8 @@ SIZE, RATE = (320, 240), 5.0
 QUICK = {True: 4.0, False: 2.0}
 """How much faster than life: episodes, and programs."""
 
-FOLDER, SUFFIX = "films", ".webm"
+FOLDERS = {FILM: ("films", ".webm"), REPLAY: ("replays", ".json")}
+"""The folder, and the ending of the files, of what is shown as a film or as a replay."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,7 @@ class Shoot:
         seed: of the study.
         folder: gets the film.
         known: gives the knowledge.
+        shown: as a film or as a replay.
     """
 
     film: JudgedFilm
@@ -46,37 +52,56 @@ class Shoot:
     seed: int
     folder: Path
     known: Known
+    shown: str = FILM
 
 
-def film_path(folder: Path, film: JudgedFilm) -> Path:
-    """Where a film of a study's folder is."""
-    return inside(folder, f"{FOLDER}/{film.name}{SUFFIX}")
+def film_path(folder: Path, film: JudgedFilm, shown: str = FILM) -> Path:
+    """Where a film, or a replay, of a study's folder is."""
+    place, ending = FOLDERS[shown]
+    return inside(folder, f"{place}/{film.name}{ending}")
 
 
 def shoot(job: Shoot) -> Path:
-    """Make a film, unless it is there.
+    """Make a film or a replay, unless it is there.
 
     Raises:
         HearthError: NOT_RENDERED: its program does not run; MISSING_FILE: libraries for pictures are not installed.
     """
-    from hearth.rendering.film.snapshots import AUTO, trajectory_of
-    from hearth.rendering.film.video import record
-    from hearth.rendering.scene.variation import PLAIN
     from hearth.rendering.scene.with_geometry import with_geometry
 
-    path = film_path(job.folder, job.film)
+    path = film_path(job.folder, job.film, job.shown)
     if path.exists():
         return path
     known = job.known()
     place = with_geometry(load_graph(job.film.home, known), job.film.home, known).graph
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if job.shown == REPLAY:
+        _write_replay(job, place, known, path)
+    else:
+        _record(job, place, known, path)
+    return path
+
+
+def _write_replay(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
+    """What the browser's player reads: `home`, the shapes of the home, and `run`, what differs from it tick by tick."""
+    from hearth.rendering.film.replay import home_shapes, run_shapes
+
+    library("trimesh")
+    write_json(path, {"home": home_shapes(place, known), "run": run_shapes(_execution(job, known), place, known)})
+
+
+def _record(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -> None:
+    from hearth.rendering.film.snapshots import AUTO, trajectory_of
+    from hearth.rendering.film.video import record
+    from hearth.rendering.scene.variation import PLAIN
+
     variation = replace(PLAIN, seed=job.seed, speed=QUICK[job.task is not None])
     trajectory = trajectory_of(_execution(job, known), place, known, variation=variation)
     made = path.parent / path.stem
     made.mkdir(parents=True, exist_ok=True)
-    done = record(trajectory, place, made, AUTO, size=SIZE, fps=RATE, suffixes=(SUFFIX,))
+    done = record(trajectory, place, made, AUTO, size=SIZE, fps=RATE, suffixes=(path.suffix,))
     done.files[0].replace(path)
     made.rmdir()
-    return path
 
 
 def _execution(job: Shoot, knowledge: Knowledge) -> Execution:

@@ -62,6 +62,8 @@ def prepared(
         if film.item >= study.items or isinstance(film.content, dict) != bool(tasks):
             message = f"film {film.name} is not of this study"
             raise HearthError.of(Code.BAD_JSON, message, file=str(folder / FILMS), suggestion="delete the file")
-    jobs = [Shoot(film, tasks[film.item] if tasks else None, study.seed, folder, known) for film in films]
+    jobs = [
+        Shoot(film, tasks[film.item] if tasks else None, study.seed, folder, known, study.films.shown) for film in films
+    ]
     made = list(spread(shoot, jobs, workers, seen))
     return {**facts, "films": len(made), "bytes": sum(path.stat().st_size for path in made)}

@@ -15,6 +15,10 @@ EPISODES, PROGRAMS = "episodes", "programs"
 SOURCES = (EPISODES, PROGRAMS)
 """What films show: people and agents at tasks, or programs that were written for descriptions."""
 
+FILM, REPLAY = "film", "replay"
+SHOWN = (FILM, REPLAY)
+"""How what is judged is shown: as a film that was made before, or in 3D in the browser, to be seen from anywhere."""
+
 AFTER = ("trial", "helped")
 """When a question is asked: after every trial, or after those with a helper."""
 
@@ -131,12 +135,14 @@ class Films:
         study: name of the study whose people are shown, where they show episodes.
         bands: of programs.
         each: programs of each band.
+        shown: one of `SHOWN`.
     """
 
     of: str
     study: str = ""
     bands: tuple[Band, ...] = ()
     each: int = 0
+    shown: str = FILM
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,9 +21,12 @@ from hearth.studies.assignment import assignment, imbalances
 from hearth.studies.study import (
     AFTER,
     EPISODES,
+    FILM,
     JUDGE,
     PLAY,
+    PROGRAMS,
     ROOMS,
+    SHOWN,
     SOURCES,
     Band,
     Condition,
@@ -72,7 +75,8 @@ NEEDED = ("name", "title", "room", "seed", "people", "consent", "conditions")
 
 PAGE_KEYS: dict[str, ReadValue] = {"title": text, "text": text}
 TASK_KEYS: dict[str, ReadValue] = {"challenge": one_of("wah", "owah"), "split": text, "number": whole(1, 10_000)}
-FILM_KEYS: dict[str, ReadValue] = {"of": one_of(*SOURCES), "study": name, "bands": list, "each": whole(1, 1000)}
+FILM_KEYS: dict[str, ReadValue] = {"of": one_of(*SOURCES), "study": name, "bands": list, "each": whole(1, 1000),
+                                  "shown": one_of(*SHOWN)}  # fmt: skip
 BAND_KEYS: dict[str, ReadValue] = {"name": name, "title": text, "from": share, "to": share}
 LIMIT_KEYS: dict[str, ReadValue] = {"minutes": hours, "idle_hours": hours}
 CONDITION_KEYS: dict[str, ReadValue] = {
@@ -158,7 +162,7 @@ def _films(entry: Any, faults: Faults) -> Films:
     if found.get("of") == EPISODES:
         if "study" not in found:
             faults.add(Code.SYNTAX, "`films` of episodes need `study`", entry.at("of"), "study: people-alone")
-        return Films(EPISODES, found.get("study", ""))
+        return Films(EPISODES, found.get("study", ""), shown=found.get("shown", FILM))
     bands = []
     for each in found.get("bands", ()):
         band = fields(each, BAND_KEYS, "a band", faults, ("name", "title", "from", "to"))
@@ -168,7 +172,7 @@ def _films(entry: Any, faults: Faults) -> Films:
             bands.append(Band(band["name"], band["title"], band["from"], band["to"]))
     if isinstance(entry, located.Mapping) and not (bands and "each" in found):
         faults.add(Code.SYNTAX, "`films` of programs need `bands` and `each`", entry.line, "each: 10")
-    return Films("programs", "", tuple(bands), found.get("each", 0))
+    return Films(PROGRAMS, "", tuple(bands), found.get("each", 0), found.get("shown", FILM))
 
 
 def _condition(entry: Any, room: str, faults: Faults) -> Condition:

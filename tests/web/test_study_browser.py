@@ -7,6 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from studies.small import SMALL
+from studies.test_replays_to_judge import REPLAYED, with_replays
 from web.people import accessibility, watched
 from web.test_study_room import JUDGE
 
@@ -91,6 +92,39 @@ def test_films_are_watched_and_judged_by_keyboard_alone(serving, page, tmp_path)
     assert "deleted" in page.locator("table").inner_text()
     session = page.context.request.get(f"{server.address}/study/")
     assert session.status == 401, "the session is gone"
+
+
+def test_a_replay_in_3d_is_judged_by_keyboard_alone(serving, page, tmp_path):
+    (tmp_path / "study.yaml").write_text(REPLAYED)
+    with_replays(tmp_path / "served" / "studies")
+    server = serving("--study", str(tmp_path / "study.yaml"))
+    agree(page, server)
+    for _ in range(2):
+        page.wait_for_selector(".replay[data-ready][data-tick='0']", timeout=120_000)
+        steps = int(page.inner_text("#tick").split(" of ")[1])
+        assert page.locator(".replay").evaluate("it => it.width / it.height") == pytest.approx(4 / 3, abs=0.02)
+        assert seen(page) == []
+        pictures = [page.locator(".replay").screenshot()]
+        page.locator("#on").focus()
+        for number in range(1, steps + 1):
+            page.keyboard.press("Enter")
+            page.wait_for_selector(f".replay[data-tick='{number}']")
+        page.wait_for_timeout(1_000)
+        pictures.append(page.locator(".replay").screenshot())
+        page.locator(".replay").focus()
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(200)
+        pictures.append(page.locator(".replay").screenshot())
+        assert len(set(pictures)) == 3, "the run goes on, and one looks from another side"
+        page.locator("#play").focus()
+        page.keyboard.press("Enter")
+        page.wait_for_selector(f".replay[data-tick='{steps}']")
+        page.locator("input[type=radio]").first.focus()
+        page.keyboard.press("ArrowRight")
+        with page.expect_navigation():
+            page.keyboard.press("Enter")
+    go(page, "Finish")
+    assert page.locator("h1").inner_text() == "Thank you"
 
 
 def test_a_person_practises_does_the_trials_and_rates_the_helper(serving, page, tmp_path):

@@ -26,7 +26,7 @@ from hearth.studies.conduct import (
 )  # fmt: skip
 from hearth.studies.filming import film_path
 from hearth.studies.judged_films import JudgedFilm, read_films
-from hearth.studies.study import JUDGE, MOST_TEXT, Question, Study
+from hearth.studies.study import FILM, JUDGE, MOST_TEXT, REPLAY, Question, Study
 from hearth.studies.study_file import named
 from hearth.studies.study_folder import FILMS
 from hearth.web import play
@@ -40,6 +40,10 @@ TEMPLATES = {
     QUESTIONS: "study/questions.html", EXIT: "study/questions.html", DONE: "study/done.html", LEFT: "study/left.html",
 }  # fmt: skip
 """The page of every stage; films have their own."""
+
+
+MEDIA = {FILM: "video/webm", REPLAY: "application/json"}
+"""The type of a film's file, by how it is shown."""
 
 
 def study_here(web: Web) -> Study | None:
@@ -172,15 +176,17 @@ def leave(visit: Visit) -> Response:
 
 
 def film(visit: Visit) -> Response:
-    """The film that is judged now. Its address does not say whose it is."""
+    """The film that is judged now, or its replay in 3D. Its address does not say whose it is."""
     conduct = conduct_here(visit.web)
     standing = conduct.standing(visit.person)
     if standing.stage not in (TRIAL, QUESTIONS) or visit.part("number") != str(standing.number):
         raise WebError(Code.UNKNOWN_ID, "film", "the film that is to be judged now", visit.part("number")[:20])
-    path = film_path(_folder(visit.web, conduct.study), film_at(visit.web, conduct, standing))
+    films = conduct.study.films
+    assert films is not None
+    path = film_path(_folder(visit.web, conduct.study), film_at(visit.web, conduct, standing), films.shown)
     if not path.is_file():
         raise WebError(Code.MISSING_FILE, "film", f"`study prepare {conduct.study.name}`", "no film")
-    return FileResponse(path, media_type="video/webm", headers={"Cache-Control": "private, no-store"})
+    return FileResponse(path, media_type=MEDIA[films.shown], headers={"Cache-Control": "private, no-store"})
 
 
 def film_at(web: Web, conduct: Conduct, standing: Standing) -> JudgedFilm:

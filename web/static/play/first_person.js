@@ -1,6 +1,6 @@
 // First person in 3D (figure C-8): the home is drawn here, the server says what is different after each tick.
 import * as THREE from "/fetched/three/build/three.module.js";
-import { NUMBERED, SHOWN, hide, load, merged, model, seenRooms } from "./home_meshes.js";
+import { NUMBERED, SHOWN, around, hide, inPicture, load, merged, model, seenFrom } from "./home_meshes.js";
 import { viewKeys } from "./view_keys.js";
 import { name } from "./words.js";
 
@@ -21,6 +21,7 @@ export class FirstPerson {
     this.world = new THREE.Group();
     this.world.scale.x = -1; // the home's axes are left-handed
     this.scene.add(this.world);
+    this.world.updateMatrixWorld();
     this.camera = new THREE.PerspectiveCamera(82, WIDTH / HEIGHT, 0.02, 60);
     this.pixel = new THREE.WebGLRenderTarget(1, 1);
     this.models = new Map();
@@ -94,8 +95,8 @@ export class FirstPerson {
   async draw(drawn) {
     if (!this.parts) {
       this.parts = [];
-      this.rooms = this.state.plan.filter(([kind]) => kind === "room").map(([, , box]) => box);
-      const { meshes, walls } = merged(await load(drawn.base), this.rooms);
+      const rooms = this.state.plan.filter(([kind]) => kind === "room").map(([, , box]) => box);
+      const { meshes, walls } = merged(await load(drawn.base), rooms);
       Object.assign(this, { parts: meshes, walls });
       for (const mesh of meshes) this.world.add(mesh);
       this.element.dataset.ready = "yes";
@@ -122,8 +123,10 @@ export class FirstPerson {
       const mesh = this.placed.get(key);
       mesh.position.set(x, y, z);
       mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
+      around(mesh);
       this.world.add(mesh);
     }
+    this.standing = "";
     this.names = new Map(on.map((each) => [each[0], each[1].replaceAll("_", " ")]));
     this.moved = true;
   }
@@ -165,18 +168,24 @@ export class FirstPerson {
     this.leaveOut(-eye.x, eye.z);
   }
 
-  // Draws only the rooms into which one can look from here.
+  // Draws only the parts of the home at which one looks: not what is behind walls, and not what is beside the picture.
   leaveOut(x, z) {
     const place = `${x.toFixed(2)} ${z.toFixed(2)}`;
-    if (place === this.standing) return;
+    if (place !== this.standing) this.stand(x, z);
     this.standing = place;
-    const seen = seenRooms(x, z, this.walls, this.rooms);
-    for (const mesh of this.parts) {
-      const { center } = mesh.geometry.boundingSphere;
-      mesh.visible = seen.has(mesh.userData.room);
+    const shown = this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse).multiply(this.world.matrixWorld);
+    for (const mesh of this.drawn) mesh.visible = mesh.userData.seen && inPicture(mesh.userData.box, shown);
+  }
+
+  stand(x, z) {
+    this.drawn = [...this.parts, ...this.placed.values()];
+    const seen = seenFrom(x, z, this.walls, this.drawn.map(({ userData: { box } }) => [box.min.x, box.min.z, box.max.x, box.max.z]));
+    this.drawn.forEach((mesh, number) => {
+      const { box, room } = mesh.userData;
+      mesh.userData.seen = seen[number];
       // What is near is drawn first, so that what it hides costs nothing; walls stand behind everything.
-      mesh.renderOrder = mesh.userData.room < 0 ? 1000 : Math.hypot(center.x - x, center.z - z);
-    }
+      mesh.renderOrder = room < 0 ? 1000 : Math.hypot((box.min.x + box.max.x) / 2 - x, (box.min.z + box.max.z) / 2 - z);
+    });
   }
 
   frame(time) {

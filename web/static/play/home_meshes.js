@@ -73,8 +73,9 @@ class Pile {
     made.setAttribute("thing", new THREE.BufferAttribute(this.things.all, 4, true));
     made.setIndex(new THREE.BufferAttribute(this.index.all, 1));
     made.computeBoundingSphere();
+    made.computeBoundingBox();
     const mesh = new THREE.Mesh(made, SHOWN);
-    mesh.userData = { ranges: this.ranges, whole: made.index.array.slice(), hidden: new Set() };
+    mesh.userData = { box: made.boundingBox, ranges: this.ranges, whole: made.index.array.slice(), hidden: new Set() };
     return mesh;
   }
 }
@@ -82,9 +83,9 @@ class Pile {
 const shader = (attribute, between) => new THREE.RawShaderMaterial({
   glslVersion: THREE.GLSL3,
   side: THREE.FrontSide,
-  vertexShader: `in vec3 position; in vec4 ${attribute}; uniform mat4 modelViewMatrix; uniform mat4 projectionMatrix; ${between} out lowp vec4 value;
-    void main() { value = ${attribute}; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-  fragmentShader: `precision lowp float; ${between} in lowp vec4 value; out vec4 colour; void main() { colour = value; }`,
+  vertexShader: `in vec3 position; in vec3 ${attribute}; uniform mat4 modelViewMatrix; uniform mat4 projectionMatrix; ${between} out lowp vec3 value;
+    void main() { value = ${attribute}; gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0)); }`,
+  fragmentShader: `precision lowp float; ${between} in lowp vec3 value; out vec4 colour; void main() { colour = vec4(value, 1.0); }`,
 });
 
 export const SHOWN = shader("shade", "smooth"); // what one sees
@@ -95,11 +96,12 @@ const own = (node) => {
   return null;
 };
 
-const CELL = 2.5; // metres of a part of a room
+const CELL = 1.5; // metres of a part of a room
 
 const within = ([x0, z0, x1, z1], x, z) => x0 <= x && x <= x1 && z0 <= z && z <= z1;
 
 // A loaded glTF as meshes, each of a part of a room; and the walls that nobody sees through, as rectangles.
+// `userData.box` holds all of a mesh; `userData.room` is its room, -1 between rooms.
 export function merged(scene, rooms) {
   scene.updateMatrixWorld(true);
   const [piles, walls, box] = [new Map(), [], new THREE.Box3()];
@@ -125,19 +127,17 @@ export function merged(scene, rooms) {
 
 const RAYS = 720;
 
-// The rooms into which one can look from a place: those that rays over the floor plan cross before a wall.
-export function seenRooms(x, z, walls, rooms) {
-  const seen = new Set([-1]);
+// Which of some rectangles of the floor plan one can look at from a place: those that rays meet before a wall.
+export function seenFrom(x, z, walls, rectangles) {
+  const seen = rectangles.map((each) => within(each, x, z));
+  const closing = walls.filter((each) => !within(each, x, z));
   for (let n = 0; n < RAYS; n += 1) {
     const angle = (n / RAYS) * 2 * Math.PI;
     const [dx, dz] = [Math.sin(angle), Math.cos(angle)];
     let far = 60;
-    for (const wall of walls) {
-      const hit = entry(wall, x, z, dx, dz);
-      if (hit < far && !within(wall, x, z)) far = hit;
-    }
-    rooms.forEach((room, number) => {
-      if (!seen.has(number) && entry(room, x, z, dx, dz) < far + 0.1) seen.add(number);
+    for (const wall of closing) far = Math.min(far, entry(wall, x, z, dx, dz));
+    rectangles.forEach((each, number) => {
+      if (!seen[number] && entry(each, x, z, dx, dz) < far + 0.1) seen[number] = true;
     });
   }
   return seen;
@@ -150,6 +150,25 @@ function entry([x0, z0, x1, z1], x, z, dx, dz) {
   const near = Math.max(Math.min(a, b), Math.min(c, d));
   const far = Math.min(Math.max(a, b), Math.max(c, d));
   return near <= far && far >= 0 ? Math.max(near, 0) : Infinity;
+}
+
+// The box in which a mesh is, where it stands and as it is turned now.
+export function around(mesh) {
+  const { center, radius } = mesh.geometry.boundingSphere;
+  const middle = center.clone().applyEuler(mesh.rotation).add(mesh.position);
+  const size = new THREE.Vector3(2 * radius, 2 * radius, 2 * radius);
+  mesh.userData.box = new THREE.Box3().setFromCenterAndSize(middle, size);
+}
+
+// Whether a box may be in the picture: it is not all beyond one edge of it, or behind. `shown` leads to clip space.
+export function inPicture({ min, max }, { elements: m }) {
+  const beyond = [0, 0, 0, 0, 0];
+  for (let n = 0; n < 8; n += 1) {
+    const [x, y, z] = [n & 1 ? min.x : max.x, n & 2 ? min.y : max.y, n & 4 ? min.z : max.z];
+    const [across, up, depth] = [0, 1, 3].map((row) => m[row] * x + m[row + 4] * y + m[row + 8] * z + m[row + 12]);
+    [across < -depth, across > depth, up < -depth, up > depth, depth < 0].forEach((is, side) => { beyond[side] += is; });
+  }
+  return !beyond.includes(8);
 }
 
 // Leaves out some things of a merged mesh: their triangles shrink to nothing.
