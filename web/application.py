@@ -70,11 +70,19 @@ def application(
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
             routes += [_route(web, address, prefix) for address in addresses]
     routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
-    routes.append(Mount("/fetched", StaticFiles(directory=FETCHED, check_dir=False)))
+    routes.append(Mount("/fetched", _Fetched(directory=FETCHED, check_dir=False)))
     handlers: dict[Any, Any] = {
         kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, Exception)
     }
     return Security(Starlette(routes=routes, exception_handlers=handlers), hosts)
+
+
+class _Fetched(StaticFiles):
+    """Scripts of others, which are not there until `make web` was run."""
+
+    async def check_config(self) -> None:
+        if not Path(str(self.directory)).is_dir():
+            raise HTTPException(404)
 
 
 def _templates(rooms: Sequence[Room]) -> jinja2.Environment:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import sqlalchemy as sql
-from web.people import DESK
+from web.people import DESK, Server
 
 from hearth.web import sessions
 from hearth.web.front import _own_address
@@ -40,6 +40,13 @@ def test_the_start_page_says_what_lacks(server, monkeypatch):
     assert "blockly" in page and "make web" in page
     monkeypatch.setattr("hearth.web.front.missing", list)
     assert "make web" not in server.client().get("/").text
+
+
+def test_scripts_that_were_not_fetched_are_not_found(tmp_path, knowledge, monkeypatch):
+    monkeypatch.setattr("hearth.web.application.FETCHED", tmp_path / "nowhere")
+    server = Server(tmp_path / "served", knowledge)
+    assert server.client().get("/fetched/three/build/three.module.js").status_code == 404
+    server.store.close()
 
 
 def test_nothing_of_a_person_is_reachable_without_a_token(server):

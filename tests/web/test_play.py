@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -46,6 +48,23 @@ def test_a_helper_that_asks_a_network_is_not_offered_without_it(monkeypatch):
         trial(TASK, default(), "hybrid")
     assert {"hybrid", "hrl", "hp_gpn", "nopa_gpn"}.isdisjoint(offered())
     assert {"none", "person", "program", "hp", "nopa"} <= set(offered())
+
+
+def test_without_libraries_for_pictures_there_are_buttons_alone(monkeypatch, person):
+    """A wheel that is installed with the extra `web` alone serves all that draws nothing."""
+    assert 'value="visual"' in person.get("/play/").text
+    monkeypatch.setattr("hearth.web.play.trials.lacking", lambda extra: ["numba"])
+    assert 'value="visual"' not in person.get("/play/").text
+    assert trial(TASK, default()).interface == "symbolic"
+    for interface in ("visual", "stream"):
+        with pytest.raises(HearthError, match="draws, and numba is not installed"):
+            trial(TASK, default(), interface=interface)
+
+
+def test_the_server_imports_nothing_that_draws():
+    command = "import sys, hearth.web.application; print(*{'numba', 'cv2', 'trimesh', 'matplotlib'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
 
 
 def test_a_random_goal_is_another_one():

@@ -23,9 +23,7 @@ from hearth.simulation.world.world import World
 from hearth.storage.files import write_bytes
 from hearth.storage.names import inside
 from hearth.web.play.games import Game
-
-SIZE = (640, 480)
-"""Pixels of a picture, width and height."""
+from hearth.web.play.trials import SIZE
 
 
 @lru_cache(maxsize=32)

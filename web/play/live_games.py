@@ -6,6 +6,7 @@ import contextlib
 import threading
 import time
 from collections import OrderedDict
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 from hearth.challenges.channels import Listener
@@ -15,12 +16,14 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web.play import game_store
-from hearth.web.play.drawn_games import DrawnGame
 from hearth.web.play.game_store import Decided, Stored, Turn
 from hearth.web.play.games import HELPER, Game
 from hearth.web.play.trials import PROGRAM
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
+
+if TYPE_CHECKING:
+    from hearth.web.play.drawn_games import DrawnGame
 
 MOST_GAMES = 300
 """Games that a process keeps; the one that was not asked for longest is forgotten first, and done again if needed."""
@@ -65,6 +68,8 @@ class LiveGame:
     def drawn(self, knowledge: Knowledge, number: int) -> DrawnGame:
         """The game's scene for the eyes of a character. Hold the lock."""
         if number not in self._drawn:
+            from hearth.web.play.drawn_games import DrawnGame
+
             self._drawn[number] = DrawnGame(self.game, knowledge, number)
         return self._drawn[number]
 

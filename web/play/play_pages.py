@@ -10,14 +10,14 @@ from starlette.responses import Response
 from hearth.challenges.definition import NAMES, challenge
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.schemas.failures import Code
+from hearth.schemas.libraries import library
 from hearth.web.play import game_store
-from hearth.web.play.drawn_games import base_file
 from hearth.web.play.game_messages import goal_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
-from hearth.web.play.trials import INTERFACES, Trial, offered, published, trial
+from hearth.web.play.trials import INTERFACES, Trial, drawable, offered, published, trial
 from hearth.web.third_party_scripts import missing
 from hearth.web.visit import Visit
 from hearth.web.web_errors import WebError
@@ -39,7 +39,7 @@ def start_page(visit: Visit) -> Response:
         "play/start.html",
         challenges=[(name, challenge(name).title, list(_offered(name))) for name in NAMES],
         helpers=offered(),
-        interfaces=SHOWN,
+        interfaces={name: SHOWN[name] for name in drawable()},
         lacking=missing(),
         games=[_line(each) for each in mine[:30] if not each.blind],
     )
@@ -136,6 +136,9 @@ def home_file(visit: Visit) -> Response:
     name, home = visit.part("challenge"), visit.part("home")
     if name not in NAMES:
         raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join(NAMES), name[:40])
+    library("trimesh")
+    from hearth.web.play.drawn_games import base_file
+
     return _model(base_file(name, home, visit.web.known, visit.web.out / "homes"))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from starlette.concurrency import run_in_threadpool as in_thread
 
@@ -14,11 +14,13 @@ from hearth.schemas.failures import Code
 from hearth.web import sessions
 from hearth.web.link import Link
 from hearth.web.messages import int_field, text_field
-from hearth.web.play.drawn_games import SIZE, DrawnGame
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.live_games import LiveGame, games
-from hearth.web.play.trials import PERSON, PROGRAM
+from hearth.web.play.trials import PERSON, PROGRAM, SIZE
 from hearth.web.web_errors import WebError
+
+if TYPE_CHECKING:
+    from hearth.web.play.drawn_games import DrawnGame
 
 LOOKS_EVERY = {PERSON: 0.3}
 """Seconds between looks at the store for what others decided, by helper; another server may have taken it."""

@@ -19,6 +19,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.libraries import lacking, remedy
 from hearth.schemas.rng import derive, rng
 
 PERSON, PROGRAM = "person", "program"
@@ -29,6 +30,9 @@ OTHERS = (NOBODY, PERSON, PROGRAM)
 
 INTERFACES = ("symbolic", "visual", "stream")
 """Buttons and a floor plan; first person in 3D by the browser; pictures of our renderer."""
+
+SIZE = (640, 480)
+"""Pixels of a picture in first person, width and height."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,11 @@ def offered() -> dict[str, str]:
     return {name: about for name, about in helpers().items() if _here(name)}
 
 
+def drawable() -> tuple[str, ...]:
+    """The interfaces that can be here: buttons alone where the extra `pictures` is not installed."""
+    return INTERFACES[:1] if lacking("pictures") else INTERFACES
+
+
 def _here(helper: str) -> bool:
     try:
         Lineup(helper=helper).installed()
@@ -144,10 +153,13 @@ def trial(
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such helper, goal or interface; MISSING_FILE: the helper asks a network,
-            and the extra `models` is not installed.
+            and the extra `models` is not installed; or the interface draws, and the extra `pictures` is not.
     """
     _check("helper", helper, helpers())
     _check("interface", interface, INTERFACES)
+    if interface not in drawable():
+        message = f"`{interface}` draws, and {lacking('pictures')[0]} is not installed"
+        raise HearthError.of(Code.MISSING_FILE, message, suggestion=remedy("pictures"))
     usual = {PERSON: "true", PROGRAM: "true"} | {name: each.goal for name, each in HELPERS.items()}
     kind = goal or usual.get(helper, "none")
     _check("goal", kind, GOALS)
