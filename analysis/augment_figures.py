@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets.format.datasheet import STRENGTH
+from hearth.datasets.graph_sizes import graph_sizes
 from hearth.pipelines.augment import ORIGINAL
 from hearth.repair.strengths import MILD
 from hearth.schemas.diagnostics import HearthError
@@ -62,7 +63,7 @@ GIVEN_UP = (
 LENGTHS = (5, 10, 15, 20, 25, 30, 40, 50)
 """Upper ends of the classes in which lengths are counted."""
 
-_GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NULL", "all": "true"}
+_GROUPS = {"executable": "parent_id IS NULL", "augmented": "parent_id IS NOT NULL"}
 
 
 def figures(dataset: Path) -> dict[str, Any]:
@@ -95,19 +96,11 @@ def figures(dataset: Path) -> dict[str, Any]:
 def _row(data: Any, group: str) -> dict[str, float | None]:
     """One column of table 5.1; nodes and edges are those of the executions' environments."""
     if group == "collected":
-        (found,) = data.rows("SELECT records_through FROM ledger WHERE stage = 'validate'")[1]
-        return {"programs": found[0], "average_length": None, "average_nodes": None, "average_edges": None}
-    where = _GROUPS[group]
-    query = f"""
-        SELECT count(DISTINCT p.program_id), avg(len(p.steps)),
-               avg(h.nodes + len(v.added_nodes) - len(v.removed_nodes)),
-               avg(h.edges + len(v.added) - len(v.removed))
-        FROM programs p JOIN executions e USING (program_id) JOIN environments v USING (environment_id)
-             JOIN homes h ON h.home = e.home
-        WHERE e.executable AND p.{where}""".replace("p.true", "true")
-    programs, length, nodes, edges = data.rows(query)[1][0]
-    rounded = {"average_length": length, "average_nodes": nodes, "average_edges": edges}
-    return {"programs": programs, **{name: round(value, 2) if value else None for name, value in rounded.items()}}
+        ((programs,),) = data.rows("SELECT records_through FROM ledger WHERE stage = 'validate'")[1]
+        return {"programs": programs, "average_length": None, "average_nodes": None, "average_edges": None}
+    found = graph_sizes(data, group)
+    means = {"average_length": found.length, "average_nodes": found.nodes, "average_edges": found.edges}
+    return {"programs": found.programs, **means}
 
 
 def _lengths(data: Any, group: str) -> dict[str, int]:

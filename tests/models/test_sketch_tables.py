@@ -8,6 +8,9 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth import cli
+from hearth.analysis.augment_figures import figures
+from hearth.datasets.graph_sizes import graph_sizes
+from hearth.models.data import requests
 from hearth.models.fit_model import fit
 from hearth.models.sketches.dataset_table import dataset_table
 from hearth.models.sketches.sketch_tables import COLUMNS, table
@@ -66,6 +69,18 @@ def test_5_1_counts_programs(parted):
     ((programs,),) = parted.rows("SELECT count(*) FROM programs WHERE parent_id IS NULL")[1]
     assert rows["Original"].number == programs and rows["VirtualHome"].number == 2807
     assert rows["Executable"].nodes > 100 and rows["Executable"].edges > rows["Executable"].nodes
+    same = figures(parted.folder)["table"]
+    for row, kind in (("Executable", "executable"), ("Augmented", "augmented"), ("All executable", "all")):
+        ours = same[kind]["ours"]
+        assert [ours["programs"], *list(ours.values())[1:]] == [*rows[row][2:]]
+
+
+def test_sizes_of_graphs_are_those_of_the_worlds(parted):
+    names = [name for (name,) in parted.rows("SELECT execution_id FROM executions WHERE executable ORDER BY 1")[1]]
+    graphs = [each.world.graph() for share in requests(parted, names, worlds=True) for each in share if each.world]
+    found = graph_sizes(parted, "all")
+    assert found.nodes == round(sum(len(graph.nodes) for graph in graphs) / len(names), 2)
+    assert found.edges == round(sum(len(graph.edges) for graph in graphs) / len(names), 2)
 
 
 def test_the_command(parted, models):
