@@ -103,10 +103,17 @@ TORCH := 2.13.0
 	   || $(PY) -m pip install -qq --no-compile 'torch>=2.9' 'safetensors>=0.5'; } \
 	  && touch $@ || echo "torch can't be installed: the tests of models are skipped" >&2
 
+# The longest first: two are trained at a time, each by one thread.
+TRAINED := chooser mle-composed retrieve-edit
+models/trained/chooser: HOW := --epochs 10
+models/trained/mle-composed: HOW := --epochs 15 --rate 0.003
+
+.PHONY: $(TRAINED:%=models/trained/%)
+$(TRAINED:%=models/trained/%):
+	@$(HEARTH) model train $(notdir $@) $(OUT) --seed $(SEED) --out $@ $(HOW)
+
 models: .venv/.models $(call manifest,publish)  ## train the models that come with Hearth, in models/trained
-	@$(HEARTH) model train retrieve-edit $(OUT) --seed $(SEED) --out models/trained/retrieve-edit
-	@$(HEARTH) model train mle-composed $(OUT) --seed $(SEED) --out models/trained/mle-composed --epochs 15 --rate 0.003
-	@$(HEARTH) model train chooser $(OUT) --seed $(SEED) --out models/trained/chooser --epochs 10
+	@$(MAKE) --no-print-directory -j 2 $(TRAINED:%=models/trained/%)
 
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
 	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002

@@ -122,26 +122,75 @@ def predict(
 
 
 @app.command("score")
-def score(predicted: Path, dataset: Path, *, seed: int = 0, as_json: bool = False) -> None:
+def score(
+    predicted: Path,
+    dataset: Path,
+    *,
+    unseen: Path | None = None,
+    split: str = "activities",
+    seed: int = 0,
+    as_json: bool = False,
+) -> None:
     """Score a file of predictions: the executions that it names, and no others.
 
     Intervals are of activities drawn with replacement. `score dataset` scores a whole part, where predictions lack too.
+    With --unseen only programs count whose title no training program of that dataset has: how a model that was trained
+    there does on other people's activities.
 
     \b
     Example:
       python cli.py model score predicted.jsonl data_out
+      python cli.py model predict planner release --part "" --out planned.jsonl
+      python cli.py model score planned.jsonl release --unseen data_out
     """
     from hearth.datasets.dataset import Dataset
+    from hearth.models.data import of_new_titles
     from hearth.models.evaluation import means
     from hearth.scoring.dataset_scores import score_given
 
-    found = score_given(Dataset.open(dataset), predicted)
+    asked = Dataset.open(dataset)
+    found = score_given(asked, predicted)
+    if unseen is not None:
+        new = of_new_titles(asked, Dataset.open(unseen), split)
+        found = [each for each in found if each.pair.id in new]
     summary = means(found, seed)
     if as_json:
         output.emit({"count": len(found), "activities": len({each.pair.more["activity"] for each in found}),
                      "mean": summary})  # fmt: skip
         return
     output.table(["score", "mean", "95% from", "to"], [[name, *interval] for name, interval in summary.items()])
+
+
+@app.command("bands")
+def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: bool = False) -> None:
+    """Figure 4-9 by automatic scores: what the programs of a file of predictions do, by band of LCS.
+
+    No person is asked: whether a program runs, how much of the goal it reaches and F1 stand for the ratings of films.
+    `study figure 4-9` is the figure with people.
+
+    \b
+    Example:
+      python cli.py model bands predicted.jsonl data_out --out figures
+    """
+    from hearth.analysis.scores_by_lcs import JUDGES, by_lcs, draw_by_lcs
+    from hearth.datasets.dataset import Dataset
+    from hearth.scoring.dataset_scores import score_given
+    from hearth.storage.names import inside
+
+    found = by_lcs(score_given(Dataset.open(dataset), predicted))
+    files: list[Path] = []
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        files = draw_by_lcs(found, predicted.stem, inside(out, "figure-4-9-scores"))
+    if as_json:
+        output.emit({**found._asdict(), "files": files})
+        return
+    rows = [[f"{row.low:.2f} to {row.high:.2f}", row.programs, *(row.scores[name] for name in JUDGES)]
+            for row in found.bands]  # fmt: skip
+    rows.append(["rank correlation", None, *(found.correlations[name] for name in JUDGES)])
+    output.table(["LCS", "programs", *JUDGES], rows)
+    for file in files:
+        print(f"Drawn: {file}")
 
 
 @app.command("table")

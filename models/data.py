@@ -178,6 +178,26 @@ def shared(train: Sequence[Example], test: Sequence[Example]) -> dict[str, int]:
     }
 
 
+def of_new_titles(dataset: Dataset, trained_on: Dataset, split: str) -> set[str]:
+    """The ids of a dataset's executions whose titles no training program of another dataset has, ignoring case.
+
+    Args:
+        dataset: with the executions.
+        trained_on: the other one; `dataset` may be a release of other people's programs.
+        split: of `trained_on`.
+
+    Raises:
+        HearthError: UNKNOWN_ID, if the other dataset has no training part; EMPTY, if it has every title.
+    """
+    known = {each.title.lower() for each in examples(trained_on, split, "train", originals=True)}
+    query = "SELECT e.execution_id, p.title FROM executions e JOIN programs p USING (program_id)"
+    new = {name for name, title in dataset.rows(query)[1] if (title or "").lower() not in known}
+    if not new:
+        message = "every title was in training"
+        raise HearthError.of(Code.EMPTY, message, file=str(dataset.folder))
+    return new
+
+
 _SEEN: dict[str, Callable[[Example], Any]] = {
     "titles": lambda each: each.title.lower(),
     "descriptions": lambda each: each.description.lower(),

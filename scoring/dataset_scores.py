@@ -102,7 +102,9 @@ def _in_shares(dataset: Dataset, pairs: list[Pair], options: Options | None, wor
 def _scored_share(job: Job) -> list[Scored]:
     folder, pairs, options = job
     dataset, homes = opened(folder)
-    cases = {case["execution_id"]: case for case in stored_cases(dataset, list({pair.id for pair in pairs}))}
+    cases = {
+        case["execution_id"]: case for case in stored_cases(dataset, list(dict.fromkeys(pair.id for pair in pairs)))
+    }
     filled = [_filled(pair, cases[pair.id]) for pair in pairs]
     every = zip(filled, lcs_of(filled, options.instances), strict=True)
     groups = groupby(every, key=lambda each: each[0].id)

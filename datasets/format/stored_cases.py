@@ -35,13 +35,14 @@ _PROGRAMS = """SELECT program_id, activity_id, title, description, steps FROM pr
 
 
 def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = ()) -> Iterator[Any]:
-    """Executions with the columns that running their programs needs, in the dataset's order.
+    """Executions with the columns that running their programs needs, in the order of their names.
 
-    Three queries, each within its range of ids: for a join, DuckDB would read whole tables.
+    Three queries, each within its range of ids: for a join, DuckDB would read whole tables. Its rows come in an order
+    that another run may not have: models that learn from them would have other weights.
 
     Args:
         dataset: the dataset.
-        names: ids of executions; neighbours in the dataset are read fastest.
+        names: ids of executions, each once; neighbours in the dataset are read fastest, unknown ones are left out.
         more: further columns of `executions`.
 
     Returns:
@@ -57,5 +58,6 @@ def stored_cases(dataset: Dataset, names: Sequence[str], more: Sequence[str] = (
         {row[key]: row for row in asked(query, sorted({run[key] for run in runs}))}
         for query, key in ((_ENVIRONMENTS, "environment_id"), (_PROGRAMS, "program_id"))
     )
-    for run in runs:
+    found = {run["execution_id"]: run for run in runs}
+    for run in (found[name] for name in names if name in found):
         yield {**run, **programs[run["program_id"]], "environment": environments[run["environment_id"]]}

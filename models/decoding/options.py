@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
@@ -52,17 +52,29 @@ class Affordances:
         mask = self._known.get(key)
         if mask is None:
             mask = 0
+            afforded = _afforded(self._home.knowledge, action, position)
             for name, nodes in self._home.by_class.items():
-                if _affords(self._home.knowledge, action, position, name):
+                if afforded[name]:
                     mask |= nodes
             self._known[key] = mask
         return mask
 
 
-@lru_cache(maxsize=1 << 16)
-def _affords(knowledge: Knowledge, action: str, position: int, name: str) -> bool:
+class _Afforded(dict[str, bool]):
+    """Whether an action affords the classes that were asked for so far."""
+
+    def __init__(self, knowledge: Knowledge, action: str, position: int) -> None:
+        self._affords = partial(knowledge.affords, action, position)
+
+    def __missing__(self, name: str) -> bool:
+        found = self[name] = self._affords(name)
+        return found
+
+
+@lru_cache(maxsize=1 << 10)
+def _afforded(knowledge: Knowledge, action: str, position: int) -> _Afforded:
     # Each environment is a home of its own; their classes are the same.
-    return knowledge.affords(action, position, name)
+    return _Afforded(knowledge, action, position)
 
 
 @dataclass(frozen=True)

@@ -61,16 +61,22 @@ class Habits(NamedTuple):
             kept = {*sketch}
             actions.update(step.action for step in steps if step not in kept)
             names = _named(sketch)
-            others = {r.name for step in steps for r in step.objects if not knowledge.is_room(r.name)} - {*names}
+            used = {ref.name for step in steps for ref in step.objects} - {*names}
+            others = sorted(name for name in used if not knowledge.is_room(name))  # a set's order is not the next run's
             named.update(names.keys())
             for name in names:
                 beside.setdefault(name, Counter()).update(others)
         tools = {
-            name: tuple(other for other, n in found.most_common(TOOLS) if n >= FEWEST and n >= named[name] * OFTEN)
+            name: tuple(other for other, n in _commonest(found) if n >= FEWEST and n >= named[name] * OFTEN)
             for name, found in sorted(beside.items())
         }
         common = sorted((name for name, n in actions.items() if n >= FEWEST), key=lambda name: (-actions[name], name))
         return cls(frozenset(common), tuple(common[:STYLE]), tools)
+
+
+def _commonest(found: Counter[str]) -> list[tuple[str, int]]:
+    """The first `TOOLS` classes and their counts; of those counted as often, the first by name."""
+    return sorted(found.items(), key=lambda each: (-each[1], each[0]))[:TOOLS]
 
 
 def _named(sketch: Sequence[Step]) -> dict[str, None]:
@@ -92,7 +98,7 @@ class NextSteps:
         self.world, self.home = progress.world, progress.world.home
         self.me = self.world.agents[0]
         self.coming, self.proposed = progress.coming, progress.proposed
-        self.steps: dict[Deed, Step] = {self.deed(step): step for step in self._found(habits.actions)}
+        self.steps: dict[Deed, Step] = dict(self._found(habits.actions))
 
     def nodes(self, step: Step) -> list[int]:
         """The indices of a step's nodes."""
@@ -103,24 +109,24 @@ class NextSteps:
         first, second = (*self.nodes(step), -1, -1)[:2]
         return step.action, first, second
 
-    def _found(self, optional: frozenset[str]) -> Iterator[Step]:
+    def _found(self, optional: frozenset[str]) -> Iterator[tuple[Deed, Step]]:
         """The next steps of plan and sketch, if they can be done, and optional ones about nodes that play a role."""
-        home = self.home
         for step in (self.coming, self.proposed):
             if step is not None and self.options.allows(step.action, self.nodes(step)):
-                yield step
+                yield self.deed(step), step
+        refs = {node: ObjectRef(self.home.classes[node], 1, self.home.ids[node]) for node in self.roles}
         for action in sorted(optional & self.options.masks.keys()):
             masks = self.options.masks[action]
             if not masks:
-                yield Step(action)
-            for node in self.roles if masks else ():
-                if masks[0] >> node & 1:
-                    first = ObjectRef(home.classes[node], 1, home.ids[node])
-                    if len(masks) == 1:
-                        yield Step(action, (first,))
-                    for other in self.roles if len(masks) > 1 else ():
-                        if masks[1] >> other & 1 and other != node:
-                            yield Step(action, (first, ObjectRef(home.classes[other], 1, home.ids[other])))
+                yield (action, -1, -1), Step(action)
+                continue
+            for node in [node for node in refs if masks[0] >> node & 1]:
+                if len(masks) == 1:
+                    yield (action, node, -1), Step(action, (refs[node],))
+                    continue
+                for other, ref in refs.items():
+                    if masks[1] >> other & 1 and other != node:
+                        yield (action, node, other), Step(action, (refs[node], ref))
 
     @cached_property
     def roles(self) -> Mapping[int, list[float]]:

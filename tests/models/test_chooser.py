@@ -20,7 +20,7 @@ from hearth.models.sketches.chooser import NO_HABITS, SIZES, Chooser, TrainedCho
 from hearth.models.sketches.chooser_examples import step_choices
 from hearth.models.sketches.grounded import grounded
 from hearth.models.sketches.name_numbers import Words
-from hearth.models.sketches.next_steps import Habits
+from hearth.models.sketches.next_steps import FEWEST, TOOLS, Habits
 from hearth.models.sketches.node_features import KINDS, NUMBERS, Places, node_choice
 from hearth.models.sketches.ranker import Ranker, best, log_probabilities, loss_of
 from hearth.models.sketches.sketch_progress import Progress, plain
@@ -203,6 +203,15 @@ def test_candidates_have_the_plan_and_the_sketch(environments, knowledge):
             assert progress.proposed in offer.candidates
             execution = run(progress.world, Program(steps=(progress.proposed,)))
             progress = progress.after(progress.proposed, execution.final)
+
+
+def test_habits_do_not_depend_on_the_order_of_sets(knowledge):
+    """Of classes that are used as often, the first by name: the order of a set is another one in each run."""
+    tools = ("pan", "bowl", "knife", "spoon", "cup", "plate", "glass", "fork")
+    lines = ["[SwitchOn] <stove> (1)", *(f"[Grab] <{name}> (1)" for name in tools)]
+    steps = sketch_of(lines)
+    habits = Habits.of([(steps[:1], steps)] * FEWEST, knowledge)
+    assert habits.tools["stove"] == tuple(sorted(tools)[:TOOLS])
 
 
 def test_a_candidates_numbers(environments, knowledge):

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import hearth
+from hearth import cli
 from hearth.datasets.format.sketch_choice import sketches_query
-from hearth.models.data import carved, corpus, examples, requests, shared
+from hearth.datasets.format.stored_cases import stored_cases
+from hearth.models.data import carved, corpus, examples, of_new_titles, requests, shared
 from hearth.models.interface import Request
+from hearth.models.predicting import write
 from hearth.schemas.diagnostics import HearthError
 from hearth.scoring.dataset_scores import chosen
 
@@ -48,6 +53,27 @@ def test_what_train_and_test_share_is_counted_and_recorded(dataset, eight):
     other = replace(eight[5], title="WASH hands", description="Go.")
     assert shared(eight, [other, eight[2]]) == {"titles": 2, "descriptions": 1, "step_lists": 2}
     assert corpus(dataset, "activities").facts["titles_of_test"] == 0
+
+
+def test_executions_of_new_titles_are_those_outside_the_training_part(parted, tmp_path):
+    """What a model that was trained on a dataset has not seen of another; here the other is the same one."""
+    new = of_new_titles(parted, parted, "activities")
+    trained = {name for each in examples(parted, "activities", "train") for name in each.executions}
+    assert not new & trained
+    assert {name for each in examples(parted, "activities", "test") for name in each.executions} <= new
+    name, seen = min(new), min(trained)
+    write(iter([(name, ()), (seen, ())]), tmp_path / "given.jsonl")
+    words = ["model", "score", str(tmp_path / "given.jsonl"), str(parted.folder), "--json"]
+    for more, count in (([], 2), (["--unseen", str(parted.folder)], 1)):
+        result = CliRunner().invoke(cli.app, [*words, *more])
+        assert result.exit_code == 0 and json.loads(result.stdout)["count"] == count, result.output
+
+
+def test_cases_come_in_the_order_of_their_names(parted):
+    """Else each training would see the executions in another order, and end with other weights."""
+    names = [name for (name,) in parted.rows("SELECT execution_id FROM executions ORDER BY md5(execution_id)")[1]]
+    assert [case["execution_id"] for case in stored_cases(parted, [*names, "unknown"])] == names
+    assert [each.id for share in requests(parted, names, worlds=False) for each in share] == names
 
 
 def test_validation_is_of_other_activities(dataset):
