@@ -89,8 +89,8 @@ def table(
         raise HearthError.of(Code.BAD_ARGUMENT, f"no table `{number}` of programs from sketches",
                              suggestion=f"there are {', '.join(TABLES)}")  # fmt: skip
     test = baselines.examples(dataset, split, "test", number == "5.4", sketches)
-    test = [each for each in test if each.sketch]
-    test = test[:: max(1, -(-len(test) // most))]
+    every = [each for each in test if each.sketch]
+    test = every[:: max(1, -(-len(every) // most))]
     train = baselines.examples(dataset, split, "train", True, sketches)
     if not test or not train:
         raise HearthError.of(Code.UNKNOWN_ID, f"no sketches in the parts of split `{split}`", file=str(dataset.folder))
@@ -104,7 +104,8 @@ def table(
     groups = _activities(dataset, names)
     rows = scored_rows(dataset, names, groups, _entrants(methods, answers), COLUMNS, seed)
     true = [each.sketch for each in test]
-    return [*_of_thesis(number), *(_with_sketches(row, methods, names, true, groups, seed) for row in rows)]
+    others = [_other_person(test, every, groups, seed)] if number == "5.4" else []
+    return [*_of_thesis(number), *others, *(_with_sketches(row, methods, names, true, groups, seed) for row in rows)]
 
 
 def _answers(
@@ -152,6 +153,17 @@ def _with_sketches(
     scores = [score_pairs((sketches[name], one) for name, one in zip(names, true, strict=True)) for sketches in own]
     values: list[float | None] = [sum(each.step for each in seeds) / len(own) for seeds in zip(*scores, strict=True)]
     return row._replace(scores={**row.scores, **by_group({"sketch": values}, groups, seed)})
+
+
+def _other_person(
+    test: Sequence[baselines.Example], every: Sequence[baselines.Example], groups: Sequence[str], seed: int
+) -> Row:
+    """How alike the sketches of two people are who had the same text: more than that no text says."""
+    others = [next((one for one in every if one.text == each.text and one is not each), None) for each in test]
+    pairs = [(other.sketch, each.sketch) for each, other in zip(test, others, strict=True) if other]
+    scores = iter(score_pairs(pairs))
+    values: list[float | None] = [next(scores).step if other else None for other in others]
+    return Row("Another person, same text", "yardstick", dict(by_group({"sketch": values}, groups, seed)))
 
 
 def _of_thesis(number: str) -> Iterator[Row]:

@@ -13,8 +13,10 @@ from hearth.datasets.graph_sizes import graph_sizes
 from hearth.models.data import requests
 from hearth.models.fit_model import fit
 from hearth.models.sketches.dataset_table import dataset_table
-from hearth.models.sketches.sketch_tables import COLUMNS, table
+from hearth.models.sketches.sketch_tables import COLUMNS, _other_person, table
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.syntax import parse_program
+from hearth.scoring.baselines import Example
 
 HOW = {"epochs": 1, "minutes": 0.0, "rate": 1e-3, "seed": 0}
 
@@ -60,8 +62,19 @@ def test_5_4_runs_after_a_model_of_texts(parted, models):
     written = by_name["retrieve-sketch, planner"]
     assert 0 <= written.scores["sketch"].mean <= 1 and written.scores["executable"].mean == 1
     assert "sketch" not in by_name["planner, given sketches"].scores
+    assert by_name["Another person, same text"].of == "yardstick"
     with pytest.raises(HearthError, match="writes sketches"):
         table("5.4", parted, SPLIT, ["planner"], most=4)
+
+
+def test_the_sketches_of_two_people_are_compared():
+    """Each with the first other one of the same text; a text of its own has none."""
+    sketches = ("[Sit] <sofa> (1)", "[Sit] <sofa> (1)", "[Sit] <sofa> (1)\n[Read] <book> (1)")
+    programs = [parse_program(f"Title\n\n\n{lines}")[0].steps for lines in sketches]
+    every = [Example(str(n), "Sit down", steps, steps) for n, steps in enumerate(programs)]
+    alone = Example("3", "Read", programs[0], programs[0])
+    row = _other_person([*every, alone], [*every, alone], ["a", "a", "a", "b"], 0)
+    assert row.scores["sketch"].mean == pytest.approx((1 + 1 + 0.5) / 3)
 
 
 def test_5_1_counts_programs(parted):
