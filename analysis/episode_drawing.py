@@ -14,6 +14,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.env import Tick
+from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world.world import World
 
 COLOURS = ("#d1495b", "#2a6fbb")
@@ -47,20 +48,22 @@ def ticks_of(task: Task, record: Record, knowledge: Knowledge) -> tuple[World, l
 
 
 def trails(start: World, ticks: Sequence[Tick]) -> list[Trail]:
-    """The way of each agent.
+    """The way of each agent; within a stride the shortest one on the floor, which does not cut corners of walls.
 
     Raises:
         HearthError: NOT_RENDERED: the agents have no places.
     """
     found = []
+    here = ground_of(start.home)
     for number, agent in enumerate(start.agents):
-        if agent.pose is None:
+        if agent.pose is None or here is None:
             raise HearthError.of(Code.NOT_RENDERED, f"{start.home.name} has no geometry, and agents no places")
         points, moments = [agent.pose.point], []
         for tick in ticks:
             pose = tick.world.agents[number].pose
             assert pose is not None
             if pose.point != points[-1]:
+                points += (here.ground.ways.path(points[-1], pose.point) or ())[1:-1]
                 points.append(pose.point)
             if _handles(tick, number):
                 moments.append(pose.point)
