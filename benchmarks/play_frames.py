@@ -1,8 +1,8 @@
 """Pictures a second of the first-person view in headless Chromium, in software: `python benchmarks/play_frames.py`.
 
-The view turns round for some seconds at 640x480, in two homes. Beside the pictures a second there is the least time of
-a picture out of 60, finished and read back, which other work on the machine disturbs less. Needs playwright, a Chromium
-and three.js (`make web`).
+The view turns round for some seconds at 640x480, in each of the seven homes. Beside the pictures a second there is the
+least time of a picture out of 60, finished and read back, which other work on the machine disturbs less. Needs
+playwright, a Chromium and three.js (`make web`).
 """
 
 from __future__ import annotations
@@ -16,10 +16,12 @@ from pathlib import Path
 from play_sessions import serve
 from playwright.sync_api import sync_playwright
 
+from hearth.challenges.published_tasks import tasks
+from hearth.challenges.tasks import Task
 from hearth.kb.loading.load import default
 from hearth.web import sessions
 from hearth.web.play import start_trial, trial_address
-from hearth.web.play.trials import published, trial
+from hearth.web.play.trials import trial
 from hearth.web.store import Store, default_url
 
 FLAGS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"]
@@ -39,6 +41,11 @@ LEAST = """() => {
 }"""
 
 
+def one_of_each_home() -> list[Task]:
+    """A task in every home that Watch-And-Help has."""
+    return list({each.home: each for split in ("train", "test-1") for each in tasks("wah", split)}.values())
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -52,8 +59,8 @@ def main() -> None:
         try:
             page = browser.new_context(viewport={"width": 640, "height": 480}).new_page()
             page.context.add_cookies([{"name": "hearth", "value": session.token, "url": address}])
-            for number in (0, 2):
-                chosen = trial(published("wah", "test-1", number), default(), interface="visual")
+            for task in one_of_each_home():
+                chosen = trial(task, default(), interface="visual")
                 game = store.write(lambda connection, one=chosen: start_trial(connection, session.id, one))
                 page.goto(address + trial_address(game))
                 page.wait_for_selector("#view[data-tick]", timeout=120_000)
