@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+Worths = NDArray[np.float64]
+States = NDArray[np.int64]
 
 
 class Acts(NamedTuple):
@@ -21,12 +21,12 @@ class Acts(NamedTuple):
         gains: value of seeing the act of each of these agents, once a tick.
     """
 
-    ticks: Numbers
-    shown: Numbers
+    ticks: States
+    shown: States
     gains: Sequence[float] = ()
 
 
-def best_cut(worth: Values, shortest: int, cost: float, acts: Acts | None = None) -> list[int]:
+def best_cut(worth: Worths, shortest: int, cost: float, acts: Acts | None = None) -> list[int]:
     """The row to show at each moment: the greatest sum of values and gains, less the cost of cuts.
 
     Dynamic programming over the row, the length of its run so far, and the acts of the tick seen so far.
@@ -46,7 +46,7 @@ def best_cut(worth: Values, shortest: int, cost: float, acts: Acts | None = None
     gained = np.array([sum(gain for k, gain in enumerate(acts.gains) if mask >> k & 1) for mask in range(masks)])
     best = np.full((masks, lengths, rows), -np.inf)
     best[0, 0] = 0.0
-    origins: list[Numbers] = []
+    origins: list[States] = []
     for t in range(moments):
         moved, origin = _moved(best, cost) if t else (best, np.zeros(best.shape, np.int64))
         if t and acts.ticks[t] != acts.ticks[t - 1]:
@@ -63,7 +63,7 @@ def best_cut(worth: Values, shortest: int, cost: float, acts: Acts | None = None
     return found[::-1]
 
 
-def _moved(best: Values, cost: float) -> tuple[Values, Numbers]:
+def _moved(best: Worths, cost: float) -> tuple[Worths, States]:
     """Values of states at the next moment before it is shown, and the states that they come from."""
     masks = len(best)
     every = np.arange(best.size).reshape(best.shape)
@@ -80,7 +80,7 @@ def _moved(best: Values, cost: float) -> tuple[Values, Numbers]:
     return moved, origin
 
 
-def _forgotten(moved: Values, origin: Numbers) -> tuple[Values, Numbers]:
+def _forgotten(moved: Worths, origin: States) -> tuple[Worths, States]:
     """States at the start of a tick, of which no act has been seen."""
     which = moved.argmax(axis=0)[None]
     fresh, of = np.full(moved.shape, -np.inf), origin.copy()
@@ -88,7 +88,7 @@ def _forgotten(moved: Values, origin: Numbers) -> tuple[Values, Numbers]:
     return fresh, of
 
 
-def _seen(moved: Values, origin: Numbers, shown: Numbers, gained: Values) -> tuple[Values, Numbers]:
+def _seen(moved: Worths, origin: States, shown: States, gained: Worths) -> tuple[Worths, States]:
     """States after a moment has been shown."""
     best, of = np.full(moved.shape, -np.inf), origin.copy()
     for mask in range(len(moved)):
