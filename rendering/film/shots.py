@@ -16,7 +16,7 @@ from hearth.rendering.cameras.candidates import around, free, preference
 from hearth.rendering.cameras.recognition import CLOSE, in_the_way, shows
 from hearth.rendering.cameras.sight import Obstacles, Target, Worth, person, thing, values
 from hearth.rendering.cameras.visibility import objects_of
-from hearth.rendering.film.cuts import Acts, Numbers, Values, best_cut
+from hearth.rendering.film.cuts import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
 from hearth.rendering.rays.shot import Shot, shoot
@@ -139,7 +139,7 @@ class Planner:
             near = tried[number] if tried else frozenset(range(span[0] - AROUND, span[-1] + AROUND + 1))
             self.tried.append(near)
 
-    def worth(self, rows: Sequence[int]) -> tuple[Values, Numbers]:
+    def worth(self, rows: Sequence[int]) -> tuple[Worths, States]:
         """(rows, moments) values of cameras, and the acts that they seem to show, bit by bit (see `cuts.Acts`)."""
         total = np.full((len(rows), len(self.moments)), ELSEWHERE)
         shown = np.zeros((len(rows), len(self.moments)), np.int64)
@@ -218,7 +218,7 @@ class Planner:
         worth = sum((self._exact(found, number, agent) for number in dict.fromkeys(moments)), np.zeros(len(found)))
         return _distinct([found[number] for number in np.argsort(-worth, kind="stable").tolist()], KEPT)
 
-    def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Values:
+    def _exact(self, cameras: Sequence[Camera], number: int, agent: int) -> Worths:
         """(cameras,) the values of showing an agent at a moment."""
         frame = self.moments[number].frame
         if not cameras:
@@ -236,7 +236,7 @@ class Planner:
         worth = self._exact(moved, number, agent)
         return _distinct([moved[k] for k in np.argsort(-worth, kind="stable").tolist()], LOOKED_AT)
 
-    def _values(self, cameras: Sequence[Camera], number: int) -> tuple[Values, Numbers]:
+    def _values(self, cameras: Sequence[Camera], number: int) -> tuple[Worths, States]:
         """(cameras,) the values at a moment, over who acts, and whose acts cameras seem to show."""
         frame = self.moments[number].frame
         total, shown = np.zeros(len(cameras)), np.zeros(len(cameras), np.int64)
