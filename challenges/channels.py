@@ -119,9 +119,9 @@ class Channel:
             self._flush(deadline)
 
     def _flush(self, deadline: float) -> None:
-        """Wait until nothing is unsent."""
+        """Wait until nothing is unsent. Who has answered and gone was sent it, even before that is counted."""
         done = self._changed.wait_for(lambda: self._ended or not self._unsent, _left(deadline))
-        if self._unsent:
+        if self._unsent and not self._received:
             self._need_open()
         if not done:
             raise HearthError.of(Code.TIMED_OUT, "the agent does not read what it is sent")

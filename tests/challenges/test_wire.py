@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.challenges.channels import LONGEST_LINE, Listener, ProcessChannel
+from hearth.challenges.channels import LONGEST_LINE, Channel, Listener, ProcessChannel
 from hearth.challenges.play import Player, play
 from hearth.challenges.wire import PROTOCOL, WireAgent
 from hearth.kb.loading.load import default
@@ -136,6 +136,30 @@ def test_an_agent_that_does_not_read_is_not_waited_for(start):
     played = episode(start, agent, limit=3)
     assert played.ticks == 3 and {str(fault.fault.code) for fault in agent.faults} == {"TIMED_OUT"}
     assert time.monotonic() - begun < 15
+
+
+def test_the_answer_of_an_agent_that_is_gone_before_its_question_counts_as_sent_is_read():
+    asked, gone = threading.Event(), threading.Event()
+    answers = [b"answer\n"]
+
+    def read(_):
+        asked.wait(10)
+        if answers:
+            return answers.pop()
+        gone.set()
+        return b""
+
+    def write(data):
+        asked.set()
+        gone.wait(10)
+        time.sleep(0.2)  # the end is known first
+        return len(data)
+
+    channel = Channel(read, write)
+    channel.send(b"question", time.monotonic() + 10)
+    assert channel.receive(time.monotonic() + 10) == b"answer"
+    with pytest.raises(HearthError, match="DISCONNECTED"):
+        channel.receive(time.monotonic() + 10)
 
 
 def test_an_agent_that_ends_is_missed_once_and_the_others_play_on(start):
