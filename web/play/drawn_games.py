@@ -19,6 +19,8 @@ from hearth.rendering.scene.prepared import prepared_scene
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.simulation.observation.reach import out_of_sight
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.world import World
 from hearth.storage.files import write_bytes
 from hearth.storage.names import inside
@@ -28,7 +30,7 @@ from hearth.web.play.trials import SIZE
 
 @lru_cache(maxsize=32)
 def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
-    """A home as all games of a challenge have it: without the things of goals and without characters.
+    """A home as all games of a challenge have it: what is in sight, without the things of goals and characters.
 
     Raises:
         HearthError: BAD_ARGUMENT: the challenge is not played there.
@@ -36,8 +38,14 @@ def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
     which = challenge(name)
     if home not in (*which.train, *which.test):
         raise HearthError.of(Code.BAD_ARGUMENT, f"{name} is not played in `{home[:40]}`")
-    graph = World.start(site_of(name, home, knowledge).home).graph()
-    return prepared_scene(graph, knowledge).scene()
+    world = World.start(site_of(name, home, knowledge).home)
+    return Scene(tuple(in_sight(prepared_scene(world.graph(), knowledge).scene(), world)))
+
+
+def in_sight(scene: Scene, world: World) -> Iterator[Thing]:
+    """The things of a scene without what closed furniture holds: it costs time to draw, and a page must not know it."""
+    shut = {world.home.ids[i] for i in indices(out_of_sight(world))}
+    return (thing for thing in scene.everything if thing.id not in shut)
 
 
 @lru_cache(maxsize=32)
@@ -98,7 +106,7 @@ class DrawnGame:
         Each of `on` is node id, class, key of its model, x, y, z in metres, and yaw in degrees. Axes are the scene's:
         x east, y up, z north.
         """
-        now = dict.fromkeys(self.scene.everything)
+        now = dict.fromkeys(self._in_sight())
         off = [name for thing, name in self._base.items() if thing not in now]
         on = [_on(thing) for thing in now if thing not in self._base]
         camera = self.camera
@@ -119,7 +127,10 @@ class DrawnGame:
 
     def others(self) -> Iterator[Thing]:
         """What is there now and is not of the home's fixed part."""
-        return (thing for thing in self.scene.everything if thing not in self._base)
+        return (thing for thing in self._in_sight() if thing not in self._base)
+
+    def _in_sight(self) -> Iterator[Thing]:
+        return in_sight(self.scene, self.game.playing.env.world)
 
     def jpeg(self) -> bytes:
         """What is seen, as our own renderer draws it."""

@@ -112,19 +112,20 @@ export class FirstPerson {
   async place(on) {
     const now = new Map(on.map((each) => [`${each[0]} ${each[2]} ${each[1]}`, each]));
     await Promise.all(on.map((each) => this.fetched(each[2], each[0])));
-    for (const [key, mesh] of this.placed) {
+    for (const [key, meshes] of this.placed) {
       if (!now.has(key)) {
-        this.world.remove(mesh);
+        this.world.remove(...meshes);
         this.placed.delete(key);
       }
     }
     for (const [key, [id, , kind, x, y, z, yaw]] of now) {
-      if (!this.placed.has(key)) this.placed.set(key, new THREE.Mesh(this.models.get(`${kind} ${id}`).geometry, SHOWN));
-      const mesh = this.placed.get(key);
-      mesh.position.set(x, y, z);
-      mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
-      around(mesh);
-      this.world.add(mesh);
+      if (!this.placed.has(key)) this.placed.set(key, this.models.get(`${kind} ${id}`).map((each) => new THREE.Mesh(each, SHOWN)));
+      for (const mesh of this.placed.get(key)) {
+        mesh.position.set(x, y, z);
+        mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
+        around(mesh);
+        this.world.add(mesh);
+      }
     }
     this.standing = "";
     this.names = new Map(on.map((each) => [each[0], each[1].replaceAll("_", " ")]));
@@ -178,7 +179,7 @@ export class FirstPerson {
   }
 
   stand(x, z) {
-    this.drawn = [...this.parts, ...this.placed.values()];
+    this.drawn = [...this.parts, ...[...this.placed.values()].flat()];
     const seen = seenFrom(x, z, this.walls, this.drawn.map(({ userData: { box } }) => [box.min.x, box.min.z, box.max.x, box.max.z]));
     this.drawn.forEach((mesh, number) => {
       const { box, room } = mesh.userData;
@@ -236,8 +237,12 @@ export class FirstPerson {
 
   turnHeld(degrees) {
     this.turned += degrees;
-    for (const [key, mesh] of this.placed) {
-      if (this.state.mine.holding.includes(Number(key.split(" ")[0]))) mesh.rotation.y += THREE.MathUtils.degToRad(degrees);
+    for (const [key, meshes] of this.placed) {
+      if (!this.state.mine.holding.includes(Number(key.split(" ")[0]))) continue;
+      for (const mesh of meshes) {
+        mesh.rotation.y += THREE.MathUtils.degToRad(degrees);
+        around(mesh);
+      }
     }
     this.moved = true;
   }

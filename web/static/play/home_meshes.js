@@ -154,10 +154,8 @@ function entry([x0, z0, x1, z1], x, z, dx, dz) {
 
 // The box in which a mesh is, where it stands and as it is turned now.
 export function around(mesh) {
-  const { center, radius } = mesh.geometry.boundingSphere;
-  const middle = center.clone().applyEuler(mesh.rotation).add(mesh.position);
-  const size = new THREE.Vector3(2 * radius, 2 * radius, 2 * radius);
-  mesh.userData.box = new THREE.Box3().setFromCenterAndSize(middle, size);
+  mesh.updateMatrix();
+  mesh.userData.box = mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix);
 }
 
 // Whether a box may be in the picture: it is not all beyond one edge of it, or behind. `shown` leads to clip space.
@@ -187,10 +185,34 @@ export function hide(mesh, names) {
   }
 }
 
-// One model, whose thing gets its id when it is placed.
+const FINE = 3000; // corners above which a model is drawn by pieces
+const PIECE = 0.25; // metres of a piece
+
+// One model as geometries, all with its thing's id; a large one, such as one's own body, in pieces to be left out.
 export function model(scene, id) {
   scene.updateMatrixWorld(true);
   const pile = new Pile();
   scene.traverse((node) => node.isMesh && pile.add(node, id, "model", node.matrixWorld));
-  return pile.mesh();
+  const { geometry } = pile.mesh();
+  return geometry.index.count > FINE ? pieces(geometry) : [geometry];
+}
+
+// The triangles of a geometry by where they are; the pieces share its corners.
+function pieces(geometry) {
+  const [{ array }, corners] = [geometry.attributes.position, geometry.index.array];
+  const found = new Map();
+  for (let n = 0; n < corners.length; n += 3) {
+    const place = [0, 1, 2].map((axis) => Math.floor(array[3 * corners[n] + axis] / PIECE)).join(" ");
+    if (!found.has(place)) found.set(place, []);
+    found.get(place).push(...corners.subarray(n, n + 3));
+  }
+  return [...found.values()].map((some) => {
+    const piece = new THREE.BufferGeometry();
+    for (const name of ["position", "shade", "thing"]) piece.setAttribute(name, geometry.attributes[name]);
+    piece.setIndex(some);
+    const points = some.map((corner) => new THREE.Vector3().fromArray(array, 3 * corner));
+    piece.boundingBox = new THREE.Box3().setFromPoints(points);
+    piece.boundingSphere = piece.boundingBox.getBoundingSphere(new THREE.Sphere());
+    return piece;
+  });
 }
