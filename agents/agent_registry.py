@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from hearth.agents.goal_space import GoalsIn
 from hearth.agents.hierarchical import HELPING, Hierarchical, Partner
 from hearth.agents.human_like import Habits, HumanLike
 from hearth.agents.learned import Hybrid, Learned
@@ -41,13 +42,13 @@ class Helper:
 
 SEES_ALL = replace(HELPING, sees_all=True)
 
-MAIN: dict[str, Callable[[], MainAgent]] = {
-    "human_like": HumanLike,
-    "oracle": lambda: HumanLike(Habits(sees_all=True)),
-    "answering": Answering,
+MAIN: dict[str, Callable[[GoalsIn], MainAgent]] = {
+    "human_like": lambda goals: HumanLike(),
+    "oracle": lambda goals: HumanLike(Habits(sees_all=True)),
+    "answering": lambda goals: Answering(),
     **PEOPLE,
 }
-"""Who is helped."""
+"""Who is helped; each is made from the goals that there may be."""
 
 HELPERS: dict[str, Helper] = {
     "random": Helper(lambda partner: RandomHelper(), "none", "anything that can be done"),

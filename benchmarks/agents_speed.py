@@ -52,7 +52,7 @@ def measure(number: int, helper: str) -> tuple[list[float], list[float]]:
         one = task("wah", "train", i)
         world = one.start(known)
         goal = one.goal_in(world.home)
-        alice = MAIN["human_like"]()
+        alice = MAIN["human_like"](WAH.goals_in)
         players = [Player(Timed(alice, main), goal), Player(Timed(HELPERS[helper].make(alice), other), goal)]
         play(world, goal, players, i, actions=WAH.allowed(known), limit=WAH.ticks)
     return main, other

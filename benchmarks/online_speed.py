@@ -44,7 +44,10 @@ def measure(number: int, helper: str) -> list[float]:
         one = task("owah", "train", i)
         world = one.start(known)
         goal = one.goal_in(world.home)
-        players = [Player(MAIN["human_like"](), goal), Player(Timed(ONLINE[helper].make(OWAH.goals_in), seconds), None)]
+        players = [
+            Player(MAIN["human_like"](OWAH.goals_in), goal),
+            Player(Timed(ONLINE[helper].make(OWAH.goals_in), seconds), None),
+        ]
         play(world, goal, players, i, actions=OWAH.allowed(known), partial=OWAH.partial, limit=OWAH.ticks)
     return seconds
 

@@ -40,7 +40,7 @@ def episode(wish: Wish) -> Episode:
     start = wish.task.start(knowledge, 1)
     goal = wish.task.goal_in(start.home)
     seed = derive(wish.task.seed, "alone")
-    players = [Player(MAIN["human_like"](), goal)]
+    players = [Player(MAIN["human_like"](which.goals_in), goal)]
     done = play(
         start,
         goal,

@@ -95,7 +95,8 @@ class Lineup:
         """New agents for one episode; without a helper where `helped` is False. `make` makes another main agent."""
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
-        main = (make or MAIN[known.main if helped and known and known.main else self.main])()
+        name = known.main if helped and known and known.main else self.main
+        main = make() if make else MAIN[name](which.goals_in)
         found = [Player(Guarded(main, 0, allowed, self.seconds, which.messages), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
             agent: Agent = known.make(main) if known else self._own(which)

@@ -11,6 +11,7 @@ from small_tasks import play, start, wanted
 from hearth.agents.belief import usual_containers
 from hearth.agents.faults import Faults, Faulty
 from hearth.agents.human_like import HumanLike
+from hearth.agents.population import TURNS, ChangesGoal
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.world.states import OPEN
 
@@ -91,3 +92,23 @@ def test_a_detour_opens_what_nothing_wanted_is_in(kitchen, goal):
 def test_rates_are_probabilities(wrong):
     with pytest.raises(HearthError, match="not from 0 to"):
         Faults(**wrong)
+
+
+def test_who_changes_their_goal_begins_with_another_and_reaches_their_own(kitchen):
+    own, other = wanted(kitchen, "ON", "dining_table", fork=2), wanted(kitchen, "ON", "dining_table", plate=3)
+    unreachable, near = wanted(kitchen, "ON", "dining_table", plate=4), wanted(kitchen, "ON", "dining_table", fork=1)
+    plates, ticks = kitchen.home.instances("plate"), []
+    for seed in range(4):
+        agent = ChangesGoal(lambda home: {own: 9.0, unreachable: 9.0, near: 9.0, other: 1.0})
+        played = play(kitchen, own, [agent, None], seed)
+        steps = [(tick, each.instructions[0]) for tick, each in enumerate(played.ticks) if 0 in each.instructions]
+        grabs = [(tick, kitchen.home.index[step.objects[0].node]) for tick, step in steps if step.action == "Grab"]
+        of_other = [bool(plates >> thing & 1) for _, thing in grabs]
+        assert played.progress.satisfied and of_other == sorted(of_other, reverse=True)
+        ticks += [tick for tick, thing in grabs if plates >> thing & 1]
+    assert ticks and max(ticks) <= TURNS[1]
+
+
+def test_who_has_no_other_goal_does_not_change_it(kitchen, goal):
+    plain = play(kitchen, goal, [HumanLike(), None], 1)
+    assert play(kitchen, goal, [ChangesGoal(lambda home: {goal: 1.0}), None], 1).choices == plain.choices

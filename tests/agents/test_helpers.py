@@ -26,7 +26,7 @@ def kitchen(maple):
 
 def ticks(kitchen, goal, helper: str, seed: int, told=None) -> int:
     chosen = HELPERS[helper]
-    main = MAIN[chosen.main or "human_like"]()
+    main = MAIN[chosen.main or "human_like"](lambda home: {})
     played = play(kitchen, goal, [main, chosen.make(main)], seed, goals=[goal, told or goal])
     assert played.progress.satisfied
     return len(played.ticks)
@@ -96,7 +96,7 @@ def test_every_helper_repeats_itself(kitchen, name):
     goal = wanted(kitchen, "ON", "dining_table", plate=2, fork=1)
     runs = []
     for _ in range(2):
-        main = MAIN[HELPERS[name].main or "human_like"]()
+        main = MAIN[HELPERS[name].main or "human_like"](lambda home: {})
         runs.append(play(kitchen, goal, [main, HELPERS[name].make(main)], 4, limit=60).choices)
     assert runs[0] == runs[1]
 
