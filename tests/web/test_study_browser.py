@@ -27,11 +27,15 @@ def page(browser):
 
 
 def seen(page):
-    """What must hold of every page: nothing wider than a telephone, nothing that readers of screens stumble over."""
+    """What must hold of every page, in light and dark: nothing wider than a telephone, nothing hard to read."""
     page.set_viewport_size({"width": 360, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
     page.set_viewport_size({"width": 1400, "height": 1000})
-    return accessibility(page)
+    found = []
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        found += accessibility(page)
+    return found
 
 
 def go(page, name, role="button", **how):
@@ -102,6 +106,7 @@ def test_a_replay_in_3d_is_judged_by_keyboard_alone(serving, page, tmp_path):
     for _ in range(2):
         page.wait_for_selector(".replay[data-ready][data-tick='0']", timeout=120_000)
         steps = int(page.inner_text("#tick").split(" of ")[1])
+        assert page.locator("h1").inner_text().startswith("Replay ") and page.get_by_text("Replays done").count() == 1
         assert page.locator(".replay").evaluate("it => it.width / it.height") == pytest.approx(4 / 3, abs=0.02)
         assert seen(page) == []
         pictures = [page.locator(".replay").screenshot()]
