@@ -111,7 +111,7 @@ def _pictured(
         if best is not None and best.shown and _rank(ticks[chosen][0], done) >= _rank(best.step, done):
             continue
         trajectory = trajectory_of(trial.execution, graph, knowledge, seed=derive(seed, number), hour=hour)
-        picture, shown = _picture(trajectory, trajectory.keyframes[chosen + 1], graph, size, quality)
+        picture, shown = picture_of(trajectory, trajectory.keyframes[chosen + 1], graph, size, quality)
         if shown or best is None or not best.shown:
             best = Pictured(name, hour, program.title, ticks[chosen][0], picture, shown)
         if shown and not done[best.step.action]:
@@ -125,9 +125,10 @@ def _rank(step: Step, done: Counter[str]) -> tuple[int, bool]:
     return done[step.action], not (gesture.hand or gesture.rests)
 
 
-def _picture(
-    trajectory: Trajectory, keyframe: Keyframe, graph: EnvironmentGraph, size: tuple[int, int], quality: str
+def picture_of(
+    trajectory: Trajectory, keyframe: Keyframe, graph: EnvironmentGraph, size: tuple[int, int], quality: str = "draft"
 ) -> tuple[Image, bool]:
+    """A picture of what is done, from where it is seen best; and whether person and object can be recognised in it."""
     rooms = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY}
     named = tuple(dict.fromkeys(seen_as(node, keyframe.places) for node in named_nodes(keyframe.steps, rooms)))
     actor = keyframe.acting

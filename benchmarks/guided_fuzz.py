@@ -21,13 +21,17 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 try:
     from benchmarks.fuzzed_rooms import ROOMS
 except ImportError:
     from fuzzed_rooms import ROOMS
+
+if TYPE_CHECKING:
+    from hearth.simulation.world.home import Home
 
 ROOT = Path(__file__).resolve().parents[1]
 LIMITS = ("-timeout=20", "-rss_limit_mb=2048", "-max_len=20000")
@@ -204,9 +208,18 @@ def _text(parse: Callable[[str], object]) -> Callable[[bytes], None]:
 
 
 def _goal(text: str) -> object:
-    from hearth.commands.sampled_environment import read
+    from hearth.simulation.goal_text import read_goal
 
-    return read([text])
+    return read_goal(text, _maple())
+
+
+@cache
+def _maple() -> Home:
+    from hearth.homes import library
+    from hearth.kb.loading.load import default
+    from hearth.simulation.world.home import Home
+
+    return Home.from_graph(library.load_graph("maple", default()), "maple", default())
 
 
 def _formula(text: str) -> object:

@@ -193,6 +193,43 @@ def bands(predicted: Path, dataset: Path, *, out: Path | None = None, as_json: b
         print(f"Drawn: {file}")
 
 
+@app.command("examples")
+def examples(
+    predicted: Path,
+    dataset: Path,
+    *,
+    out: Path,
+    count: int = 9,
+    pictures: int = 4,
+    sketches: str = "annotated",
+    as_json: bool = False,
+) -> None:
+    """Write a page of predictions beside what people wrote: text, sketch, programs, scores, and pictures of the run.
+
+    They are taken at equal steps of LCS from the best to the worst, each of another activity.
+
+    \b
+    Example:
+      python cli.py model examples predicted.jsonl data_out --out examples.html
+    """
+    from hearth.analysis.prediction_examples import examples_page, prediction_examples
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.dataset import Dataset
+    from hearth.scoring.dataset_scores import score_given
+    from hearth.storage.files import write_bytes
+
+    data = Dataset.open(dataset)
+    found = score_given(data, predicted)
+    shown = []
+    with bar("examples") as seen:
+        for each in prediction_examples(data, found, count, pictures, sketches):
+            shown.append(each)
+            seen(len(shown), count)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(out, examples_page(shown, f"Predictions of {predicted.stem}", len(found)).encode())
+    output.say(f"{len(shown)} examples in {out}", {"out": out, "examples": len(shown), "of": len(found)}, as_json)
+
+
 @app.command("table")
 def table(
     number: str,

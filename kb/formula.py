@@ -192,7 +192,7 @@ class _Parser(Tokens):
             condition = self.alternatives()
             self.take("->")
             if self.peek() == "for":
-                inner = self.effect()
+                inner = self.deeper(self.effect)
                 return Effect(inner.literal, _both(condition, inner.condition), (*variables, *inner.variables))
         negated = self.peek() == "not"
         if negated:
@@ -211,11 +211,11 @@ class _Parser(Tokens):
         token = self.peek()
         if token == "not":
             self.take()
-            part = self.unit()
+            part = self.deeper(self.unit)
             return part._replace(negated=True) if isinstance(part, Literal) and not part.negated else Not(part)
         if token == "(":
             self.take()
-            inner = self.alternatives()
+            inner = self.deeper(self.alternatives)
             self.take(")")
             return inner
         if token in ("some", "count") and self.peek(1) != "(":
@@ -225,7 +225,7 @@ class _Parser(Tokens):
     def quantified(self) -> Formula:
         kind, variable = self.take(), self.name()
         self.take(":")
-        part = self.alternatives()
+        part = self.deeper(self.alternatives)
         if kind == "some":
             return Some(variable, part)
         self.take("<")

@@ -11,6 +11,9 @@ from hearth.schemas.failures import Code
 
 _PART = re.compile(r"\S+")
 
+DEEPEST = 40
+"""How deep parts of a text may stand within one another; Python's own limit would end in a traceback."""
+
 T = TypeVar("T")
 Self = TypeVar("Self", bound="Tokens")
 
@@ -29,7 +32,7 @@ class Tokens:
     PATTERN: ClassVar[re.Pattern[str]]
 
     def __init__(self, text: str, file: str = "") -> None:
-        self.text, self.file, self.next = text, file, 0
+        self.text, self.file, self.next, self.depth = text, file, 0, 0
         self.tokens: list[str] = []
         self.places: list[int] = []
         for part in _PART.finditer(text):
@@ -72,6 +75,15 @@ class Tokens:
             raise self.fault(f"expected {wanted or 'a name'} but found `{token or 'the end'}`")
         self.next += 1
         return token
+
+    def deeper(self, rule: Callable[[], T]) -> T:
+        """What a rule makes of a part that stands within another."""
+        if self.depth >= DEEPEST:
+            raise self.fault(f"more than {DEEPEST} parts within one another")
+        self.depth += 1
+        found = rule()
+        self.depth -= 1
+        return found
 
     def name(self) -> str:
         """The next token, which must be a name."""

@@ -33,9 +33,6 @@ from hearth.simulation.world.home import Home
 OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
 """Relations of the Embodied Agent Interface, by its names."""
 
-DEEPEST = 40
-"""Brackets within one another."""
-
 VARIABLES = 2
 """Variables within one another: each multiplies the cost by the number of things."""
 
@@ -89,7 +86,7 @@ class _Parser(Tokens):
 
     def __init__(self, text: str, file: str, home: Home) -> None:
         super().__init__(text, file)
-        self.home, self.depth = home, 0
+        self.home = home
         self.variables: tuple[str, ...] = ()
 
     def ordered(self) -> Goal:
@@ -108,21 +105,16 @@ class _Parser(Tokens):
         return goals[0] if len(goals) == 1 else Goal(parts=(Joined(join, goals),))
 
     def one(self) -> Goal:
+        return self.deeper(self._one)
+
+    def _one(self) -> Goal:
         word = self.peek().lower()
-        if self.depth > DEEPEST:
-            raise self.fault(f"more than {DEEPEST} brackets within one another")
-        self.depth += 1
         if word == "not":
             self.take()
-            found = self._negated()
-        elif word in ("exists", "forall"):
-            found = self._quantified(self.take().lower())
-        elif word == "(":
-            found = self._bracketed()
-        else:
-            found = self._counted()
-        self.depth -= 1
-        return found
+            return self._negated()
+        if word in ("exists", "forall"):
+            return self._quantified(self.take().lower())
+        return self._bracketed() if word == "(" else self._counted()
 
     def _negated(self) -> Goal:
         """`not NAME(term, ...)` of a state or relation is a literal, counted like others; else a goal is negated."""
