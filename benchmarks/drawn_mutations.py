@@ -26,6 +26,7 @@ import tempfile
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from math import ceil
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
@@ -43,8 +44,18 @@ sys.path.insert(0, {place!r})
 import pytest
 sys.exit(pytest.main(sys.argv[1:]))
 """
+UNSHRUNK = """
+from hypothesis import Phase
+settings.register_profile("unshrunk", settings.get_profile("hearth"), phases=(Phase.explicit, Phase.generate))
+settings.load_profile("unshrunk")
+"""
+"""Added to the tests of a copy: that an example fails is enough, a small one takes long to find."""
+
 BUDGET = 60
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
+
+STARTING = 30
+"""Seconds of the processor that pytest may need before its first test."""
 
 Reached = Mapping[str, Mapping[str, Sequence[str]]]
 """File -> line -> tests that run it."""
@@ -140,20 +151,25 @@ def copied(folder: Path, root: Path = ROOT) -> Path:
     """A copy of the checkout with compiled modules, in a folder of the package's name."""
     copy = folder / "site/hearth"
     shutil.copytree(root, copy, ignore=shutil.ignore_patterns(*APART))
+    with (copy / "tests/conftest.py").open("a", encoding="utf-8") as conftest:
+        conftest.write(UNSHRUNK)
     compileall.compile_dir(copy, quiet=2)
     return copy
 
 
-def pytest_run(copy: Path, words: Sequence[str], limit: int) -> int | None:
+def pytest_run(copy: Path, words: Sequence[str], limit: int, plugins: bool = False) -> int | None:
     """The status of pytest with the package taken from the copy; None where it did not end.
 
     A process ends after `limit` seconds of the processor, so that a busy machine does not end one that works. What
-    waits for ever uses none: ten times as long by the clock is the end for all.
+    waits for ever uses none: ten times as long by the clock is the end for all. Only with `plugins` are those of pytest
+    loaded that are installed.
     """
     place = str(copy.parent)
     code = PYTEST.format(place=place, limit=limit)
     data = os.environ.get("HEARTH_REAL_DATA", str(ROOT.parent / "shared/real"))
     environment = {**os.environ, "PYTHONPATH": place, "PYTHONDONTWRITEBYTECODE": "1", "HEARTH_REAL_DATA": data}
+    if not plugins:
+        environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # they take as long to load as most tests run
     command = [sys.executable, "-c", code, "-q", "-p", "no:cacheprovider", "-m", NOT_SLOW, *words]
     with tempfile.TemporaryDirectory() as scratch:
         environment["TMPDIR"] = scratch  # whatever a stopped test leaves behind goes, too
@@ -185,7 +201,7 @@ def measured(rooms: Sequence[str], jobs: int) -> tuple[Reached, dict[str, float]
         rules.write_text(f"[run]\ndata_file = {data}\nsource = {copy}\nparallel = true\nomit = */tests/*\n")
         words = ["-n", str(jobs), "--dist", "loadfile", "--cov", f"--cov-config={rules}", "--cov-context=test",
                  "--cov-report=", f"--junitxml={times}", "-o", "junit_family=xunit1"]  # fmt: skip
-        status = pytest_run(copy, words, 5_400)
+        status = pytest_run(copy, words, 5_400, plugins=True)
         if status not in (0, 1):
             raise SystemExit(f"the tests did not end (pytest's status {status})")
         kept = coverage.CoverageData(str(data))
@@ -228,8 +244,8 @@ def chosen(mutation: Mutation, reached: Reached, seconds: Mapping[str, float]) -
     return found
 
 
-def tried(copy: Path, mutation: Mutation, tests: Sequence[str]) -> Result:
-    """Make the mutation in a copy, run the tests, take it back."""
+def tried(copy: Path, mutation: Mutation, tests: Sequence[str], seconds: Mapping[str, float]) -> Result:
+    """Make the mutation in a copy, run the tests, take it back; tests that take three times as long have noticed."""
     file = copy / mutation.file
     before, times = file.read_text("utf-8"), file.stat()
     after = mutated(before, mutation)
@@ -240,7 +256,8 @@ def tried(copy: Path, mutation: Mutation, tests: Sequence[str]) -> Result:
         file.write_text(after, "utf-8")
         os.utime(file, (times.st_atime, times.st_mtime + 10))  # so that the compiled module is not taken
         for part in (tests[:20], tests[20:]):
-            status = pytest_run(copy, ["-x", *part], 3 * BUDGET) if part else 0
+            limit = STARTING + 3 * ceil(sum(seconds[test] for test in part))
+            status = pytest_run(copy, ["-x", *part], limit) if part else 0
             if status != 0:
                 return Result(mutation, "noticed", line, len(tests))
         return Result(mutation, "passed", line, len(tests))
@@ -260,7 +277,7 @@ def run(mutations: Sequence[Mutation], reached: Reached, seconds: Mapping[str, f
         def one(mutation: Mutation) -> Result:
             copy = copies.get()
             try:
-                result = tried(copy, mutation, chosen(mutation, reached, seconds))
+                result = tried(copy, mutation, chosen(mutation, reached, seconds), seconds)
             finally:
                 copies.put(copy)
             show(result)
