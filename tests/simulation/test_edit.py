@@ -240,6 +240,7 @@ def test_placing_takes_a_thing_out_of_hands_and_away_from_where_it_was():
         ("NO_PLACE", {"place": {5: ("ON", 7)}}),
         ("NO_PLACE", {"link": [Edge(4, "INSIDE", 5)]}),
         ("NO_PLACE", {"place": {5: ("ON", 3)}}),
+        ("NO_PLACE", {"place": {3: ("ON", 4)}}),
         ("NOT_AFFORDED", {"set": [(4, "ON")]}),
         ("NOT_AFFORDED", {"set": [(4, "SITTING")]}),
         ("NOT_AFFORDED", {"set": [(3, "ON")]}),
@@ -260,6 +261,7 @@ def test_a_seat_bears_no_more_than_its_limit():
     assert edit(one, place={11: ("ON", 2)}).code == "OCCUPIED"
     assert edit(one, place={3: ("ON", 2)}).code == "OCCUPIED"
     assert isinstance(edit(one, place={10: ("ON", 2)}), World)
+    assert isinstance(edit(World.start(home), place={3: ("ON", 2)}), World)
 
 
 def test_free_ids_are_above_all_others():

@@ -9,7 +9,7 @@ from small_worlds import random_graph, random_step
 
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.literals import Literal
@@ -85,18 +85,20 @@ def test_two_books_in_two_hands_are_two():
 
 
 @pytest.mark.parametrize(
-    "predicate",
+    ("predicate", "code", "suggestion"),
     [
-        Literal.of("ON", "plato", "table"),
-        Literal.of("UNDER", "plate", "table"),
-        Literal.of("SHINY", "plate"),
-        Literal.of("HOLDS", "agent:3", "plate"),
-        Literal.of("ON", 99, "table"),
+        (Literal.of("ON", "plato", "table"), Code.UNKNOWN_OBJECT, "plant"),
+        (Literal.of("UNDER", "plate", "table"), Code.SYNTAX, ""),
+        (Literal.of("SHINY", "plate"), Code.SYNTAX, ""),
+        (Literal.of("HOLDS", "agent:3", "plate"), Code.UNKNOWN_AGENT, ""),
+        (Literal.of("ON", 99, "table"), Code.UNKNOWN_OBJECT, ""),
     ],
 )
-def test_a_goal_about_nothing_is_refused(predicate):
-    with pytest.raises(HearthError):
+def test_a_goal_about_nothing_is_refused(predicate, code, suggestion):
+    with pytest.raises(HearthError) as refused:
         Progress.start(Goal.of(predicate), start())
+    (fault,) = refused.value.diagnostics
+    assert fault.code is code and suggestion in fault.suggestion
 
 
 ACTIONS = ["Walk", "Find", "Grab", "PutBack", "PutIn", "Open", "Close", "Wash", "Drop", "Sit", "TurnTo"]

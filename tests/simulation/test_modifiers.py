@@ -1,9 +1,12 @@
 """Modifiers do what they say, or are refused; wrong ones are faults with their place."""
 
+import random
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from hearth.homes.plans.floor import REACH, gaps
 from hearth.kb.grammar import check
 from hearth.kb.loading.load import default
 from hearth.kb.modifiers import MODIFIERS, faults
@@ -17,6 +20,7 @@ from hearth.simulation.episode import Episode, read, write
 from hearth.simulation.instructions import instruction_of
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.world import World
 
@@ -64,6 +68,24 @@ def test_one_stands_and_looks_where_it_is_said(maple):
     for where in ("100,100", "0,0"):
         refused = act(world, step(maple, f"[Walk] <fridge> (1) {{at={where}}}"))
         assert isinstance(refused, Failure) and refused.code is Code.NO_PLACE
+
+
+def test_one_does_not_stand_behind_a_wall(maple):
+    world = placed(World.start(maple))
+    ground = ground_of(maple).ground
+    behind = [
+        (node, cell)
+        for node in indices(maple.furniture)
+        if ground.box(node) is not None
+        for cell in np.flatnonzero(ground.ways.main & (gaps(ground.ways.points, ground.box(node)) < REACH)).tolist()
+        if ground.rooms[cell] >= 0 and not maple.inside[node] >> ground.rooms[cell] & 1
+    ]
+    assert behind
+    for node, cell in random.Random(0).sample(behind, 20):
+        (x, z), name = ground.ways.points[cell].tolist(), maple.classes[node]
+        there = Step("Walk", (ObjectRef(name, 1, maple.ids[node]),), modifiers=(("at", f"{x:.2f},{z:.2f}"),))
+        refused = act(world, there)
+        assert isinstance(refused, Failure) and refused.code is Code.NO_PLACE, (name, x, z)
 
 
 def test_a_thing_is_put_on_a_point_of_its_place(beside, maple):

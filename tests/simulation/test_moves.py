@@ -3,9 +3,12 @@
 import itertools
 import math
 import random
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hearth.homes import library
 from hearth.homes.plans.floor import REACH, gaps
@@ -15,12 +18,13 @@ from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import legal
+from hearth.simulation.actions.metres import _in_the_way
 from hearth.simulation.actions.registry import EVERY
 from hearth.simulation.engine import act, tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
-from hearth.simulation.motion.positions import placed
+from hearth.simulation.motion.positions import placed, spot
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
@@ -270,6 +274,19 @@ def test_who_sits_can_not_walk_and_gets_up_beside_the_seat(here, maple):
     assert isinstance(act(up, step("Walktowards", id_of(maple, "bed"))), World)
 
 
+def test_a_thing_is_where_it_was_put(here, maple):
+    table, milk = maple.classes.index("table"), maple.classes.index("milk")
+    boxes = {i: maple.node(i).box for i in (table, milk)}
+    middle = {i: (box.center[0], box.center[2]) for i, box in boxes.items()}
+    assert spot(here, milk) == middle[milk] != middle[table]
+    there = edit(here, place={maple.ids[milk]: ("ON", maple.ids[table])})
+    assert spot(there, milk) == middle[table]
+    back = edit(there, place={maple.ids[milk]: ("INSIDE", maple.ids[maple.classes.index("fridge")])})
+    assert spot(back, milk) == middle[milk], "where the home has it"
+    held = World(here.home, here.states, (here.agents[0]._replace(right=1 << milk),), here.moved)
+    assert spot(held, milk) == here.agents[0].pose.point == spot(here, here.agents[0].index)
+
+
 def test_without_geometry_nobody_has_a_place(here, maple):
     graph = maple_without_boxes(maple)
     world = World.start(Home.from_graph(graph, "", default()))
@@ -301,6 +318,18 @@ def test_bodies_are_in_the_way_by_a_rule(maple):
         for name, now in (("through", through), ("around", around)):
             nearest[name] = min(nearest[name], math.dist(now.agents[0].pose.point, middle.point))
     assert nearest["through"] < 2 * BODY_RADIUS <= nearest["around"] + 0.02
+
+
+@given(st.tuples(*[st.integers(-30, 30)] * 6))
+def test_who_is_in_the_way_of_a_stride(numbers):
+    x0, z0, x1, z1, x, z = (number / 10 for number in numbers)
+    other = SimpleNamespace(pose=Pose(x, z, 0.0))
+    world = SimpleNamespace(agents=(SimpleNamespace(pose=Pose(x0, z0, 0.0)), other))
+    leg = Pose(x0, z0, 0.0), Pose(x1, z1, 0.0)
+    away = [math.dist((x0 + (x1 - x0) * n / 500, z0 + (z1 - z0) * n / 500), (x, z)) for n in range(501)]
+    comes_nearer = min(away) < away[0]
+    if abs(min(away) - 2 * BODY_RADIUS) > 1e-3:
+        assert _in_the_way(world, 0, leg) == (comes_nearer and min(away) < 2 * BODY_RADIUS)
 
 
 def test_of_two_that_walk_the_lower_number_goes_first(maple):
