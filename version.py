@@ -2,6 +2,9 @@
 
 VERSION = "0.2.0"
 
+DISTRIBUTION = "hearth-home-programs"
+"""The name on the Python index, where `hearth` is another package."""
+
 RELEASED = "2026-11-21"
 """The date of this version, stored in its datasets instead of the date of the build, so that bytes do not change."""
 

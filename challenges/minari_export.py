@@ -10,7 +10,7 @@ from hearth.challenges.episode_arrays import EpisodeArrays, episodes_of
 from hearth.challenges.result_files import Results
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.libraries import library
-from hearth.version import VERSION
+from hearth.version import DISTRIBUTION, VERSION
 
 
 def minari(results: Results, out: Path, agent: int, knowledge: Knowledge, limit: int | None = None) -> int:
@@ -43,7 +43,7 @@ def minari(results: Results, out: Path, agent: int, knowledge: Knowledge, limit:
                 "minari_version": library("minari").__version__,
                 "algorithm_name": header.lineup.helper if agent else header.lineup.main,
                 "description": about,
-                "requirements": [f"hearth-home-programs=={VERSION}"],
+                "requirements": [f"{DISTRIBUTION}=={VERSION}"],
             }
         )
     return count

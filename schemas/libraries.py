@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+from pathlib import Path
 from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.version import DISTRIBUTION
+
+CHECKOUT = Path(__file__).parents[1] / "pyproject.toml"
+"""Where it is there, Hearth runs from its folder; a wheel does not have it."""
 
 EXTRAS = {
     "agents": ("gymnasium", "pettingzoo"),
@@ -43,7 +48,9 @@ def library(module: str) -> Any:
 
 
 def remedy(extra: str) -> str:
-    """How to install an extra."""
+    """How to install an extra where Hearth is."""
+    if not CHECKOUT.is_file():
+        return f"run `pip install '{DISTRIBUTION}[{extra}]'`"
     command = f"`pip install '.[{extra}]'` in Hearth's folder, as `.venv/bin/python -m pip` after `make setup`"
     return f"run `make setup`, or {command}" if extra in SET_UP else f"run {command}"
 

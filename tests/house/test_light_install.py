@@ -13,10 +13,10 @@ import pytest
 
 from hearth.commands import doctor
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.libraries import EXTRAS, library
+from hearth.schemas.libraries import EXTRAS, library, remedy
+from hearth.version import DISTRIBUTION
 
 ROOT = Path(__file__).resolve().parents[2]
-NAME = "hearth-home-programs"
 
 PROGRAM = "Watch TV\nSit down.\n\n\n[Walk] <sofa> (1)\n[Sit] <sofa> (1)\n[Watch] <television> (1)\n"
 
@@ -127,6 +127,12 @@ def test_a_missing_library_of_an_extra_is_named(monkeypatch):
         library("fsspec.core")
 
 
+def test_a_wheel_says_its_own_name(monkeypatch, tmp_path):
+    assert "'.[pictures]'" in remedy("pictures")
+    monkeypatch.setattr("hearth.schemas.libraries.CHECKOUT", tmp_path / "pyproject.toml")
+    assert remedy("pictures") == "run `pip install 'hearth-home-programs[pictures]'`"
+
+
 @pytest.mark.parametrize("module", ["parallel", "single"])
 def test_without_their_libraries_the_environments_say_what_to_install(module):
     names = ("gymnasium", "pettingzoo")
@@ -152,13 +158,13 @@ def test_the_setup_installs_what_pictures_and_environments_need():
 
 def test_no_text_installs_the_package_of_somebody_else():
     """`hearth` on the Python index is not ours."""
-    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["name"] == NAME
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["name"] == DISTRIBUTION
     files = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
     wrong = re.compile(r"(pip3?|uv|pipx|poetry|conda)\s+(install|add)\b[^`\n]*?(?<![\w./-])hearth(?!-home-programs)\b")
     texts = {path: path.read_text("utf-8", "replace") for name in files if (path := ROOT / name).is_file()}
     found = [path for path, text in texts.items() if path != Path(__file__).resolve() and wrong.search(text)]
     assert wrong.search("pip install 'hearth[dask]'") and wrong.search("pip install hearth")
-    assert not wrong.search(f"pip install {NAME}") and not wrong.search("cd hearth; pip install .")
+    assert not wrong.search(f"pip install {DISTRIBUTION}") and not wrong.search("cd hearth; pip install .")
     assert not found
 
 
