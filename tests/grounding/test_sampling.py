@@ -147,17 +147,17 @@ def test_what_is_sampled_is_a_sound_graph(breakfast, maple):
 
 
 @pytest.mark.parametrize(
-    ("edges", "states", "code"),
+    ("edges", "states", "code", "named"),
     [
-        ([("cup", "INSIDE", "bathroom")], {}, Code.BAD_GRAPH),
-        ([("cup", "INSIDE", "fridge"), ("cup", "INSIDE", "dishwasher")], {}, Code.BAD_GRAPH),
-        ([("fridge", "INSIDE", "fridge")], {}, Code.LOOP),
-        ([("character", "HOLDS_RH", "cup"), ("character", "HOLDS_RH", "fridge")], {}, Code.CONFLICT),
-        ([], {"fridge": ()}, Code.CONDITION_UNMET),
-        ([("cup", "INSIDE", "fridge")], {"fridge": ("OPEN", "OFF")}, None),
+        ([("cup", "INSIDE", "bathroom")], {}, Code.BAD_GRAPH, ["cup"]),
+        ([("cup", "INSIDE", "fridge"), ("cup", "INSIDE", "dishwasher")], {}, Code.BAD_GRAPH, ["cup"]),
+        ([("fridge", "INSIDE", "fridge")], {}, Code.LOOP, ["fridge"]),
+        ([("character", "HOLDS_RH", "cup"), ("character", "HOLDS_RH", "fridge")], {}, Code.CONFLICT, ["cup", "fridge"]),
+        ([], {"fridge": ()}, Code.CONDITION_UNMET, ["fridge"]),
+        ([("cup", "INSIDE", "fridge")], {"fridge": ("OPEN", "OFF")}, None, []),
     ],
 )
-def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, code):
+def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, code, named):
     home = prepared(maple).home
     node = {
         name: home.ids[home.classes.index(name)] for name in ("cup", "fridge", "dishwasher", "bathroom", "character")
@@ -166,6 +166,7 @@ def test_what_lint_would_say_of_a_changed_home_is_found(maple, edges, states, co
     changed = extended(home, (), added, (), {node[name]: now for name, now in states.items()})
     fault = unsound(World.start(changed))
     assert (fault and fault.code) == code
+    assert set(fault.objects if fault else ()) == {node[name] for name in named}
     assert bool(lint(World.start(changed).graph(), default())) == (code is not None)
 
 
