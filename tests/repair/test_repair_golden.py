@@ -1,0 +1,83 @@
+"""How programs are perturbed, repaired and sketched stays as it is until somebody means to change it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from pathlib import Path
+
+from hearth.homes import library
+from hearth.kb.grammar import check
+from hearth.kb.loading.load import default
+from hearth.repair.completion import complete
+from hearth.repair.sketch import sketch
+from hearth.repair.variants import Augmented, Options, augment
+from hearth.schemas.failures import Failure
+from hearth.schemas.program import Program
+from hearth.schemas.syntax import parse_program, print_step
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
+
+ROOT = Path(__file__).resolve().parents[2]
+GOLDEN = ROOT / "tests/golden/repair/written.json"
+REFRESH = "if the new ones are right: HEARTH_REFRESH=1 python -m pytest tests/repair/test_repair_golden.py"
+HOMES, STRENGTHS, EVERY = ("maple", "juniper", "rowan"), ("mild", "thesis"), 101
+
+
+def _programs() -> list[tuple[str, Program]]:
+    with (ROOT / "data_raw/written/programs.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))[::EVERY]
+    texts = [
+        (
+            each["HITId"],
+            f"{each['Input.title']}\n{each['Input.description']}\n\n\n{each['Answer.program']}\n".replace("\r", ""),
+        )
+        for each in rows
+    ]
+    return [(name, check(parse_program(text)[0], default())[0]) for name, text in texts]
+
+
+def _lines(program: Program) -> list[str]:
+    return [print_step(step) for step in program.steps]
+
+
+def _repaired(found: Augmented | Failure) -> object:
+    if isinstance(found, Failure):
+        return found.message()
+    return [
+        {
+            "perturbed": [str(each) for each in pair.perturbations],
+            "attempts": [f"{each.handler}: {each.failure.message() if each.failure else ''}" for each in pair.attempts],
+            "became": pair.failure.message() if pair.failure else _lines(pair.program),
+            "sources": list(pair.sources),
+        }
+        for pair in found.pairs
+    ]
+
+
+def _completed(program: Program, keep: tuple[bool, ...], home: Home) -> object:
+    """The sketch, completed in another home."""
+    kept = tuple(step for step, keeps in zip(program.steps, keep, strict=True) if keeps)
+    found = complete(kept, World.start(home), default())
+    return {"steps": _lines(found.execution.program), "left out": [each.message() for _, each in found.left_out]}
+
+
+def test_what_becomes_of_written_programs():
+    homes = [Home.from_graph(library.load_graph(name, default()), name, default()) for name in HOMES]
+    found = {}
+    for number, (name, program) in enumerate(_programs()):
+        home, other = homes[number % len(homes)], homes[(number + 1) % len(homes)]
+        keep = sketch(program, [home], default(), record_id=name)
+        options = Options(count=2, strength=STRENGTHS[number % len(STRENGTHS)])
+        found[f"{name} in {home.name}"] = {
+            "repaired": _repaired(augment(program, home, number, name, options)),
+            "sketch": "".join("x" if keeps else "." for keeps in keep),
+            "completed": _completed(program, keep, other),
+        }
+    if os.environ.get("HEARTH_REFRESH"):
+        GOLDEN.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    expected = json.loads(GOLDEN.read_text("utf-8"))
+    assert list(found) == list(expected), REFRESH
+    for name, each in json.loads(json.dumps(found)).items():
+        assert each == expected[name], f"{name}: {REFRESH}"
