@@ -83,7 +83,7 @@ def spread_over(found: Sequence[Scored], count: int) -> list[Scored]:
 
     Args:
         found: with the field `activity`.
-        count: how many; fewer if there are not so many activities.
+        count: how many; one of each activity at most.
     """
     order = sorted((each for each in found if not each.missing), key=lambda each: (-each.lcs.step, each.pair.id))
     waiting, chosen = list(order), list[Scored]()
