@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import os
 from pathlib import Path
@@ -12,6 +13,8 @@ from hearth.kb.grammar import check
 from hearth.kb.loading.load import default
 from hearth.repair.completion import complete
 from hearth.repair.sketch import sketch
+from hearth.repair.sketch_features import StepFeatures, features
+from hearth.repair.sketch_model import shipped
 from hearth.repair.variants import Augmented, Options, augment
 from hearth.schemas.failures import Failure
 from hearth.schemas.program import Program
@@ -56,6 +59,11 @@ def _repaired(found: Augmented | Failure) -> object:
     ]
 
 
+def _digest(steps: list[StepFeatures]) -> str:
+    values = [(each.names, sorted((name, round(value, 6)) for name, value in each.numbers.items())) for each in steps]
+    return hashlib.sha256(repr(values).encode()).hexdigest()[:12]
+
+
 def _completed(program: Program, keep: tuple[bool, ...], home: Home) -> object:
     """The sketch, completed in another home."""
     kept = tuple(step for step, keeps in zip(program.steps, keep, strict=True) if keeps)
@@ -73,6 +81,8 @@ def test_what_becomes_of_written_programs():
         found[f"{name} in {home.name}"] = {
             "repaired": _repaired(augment(program, home, number, name, options)),
             "sketch": "".join("x" if keeps else "." for keeps in keep),
+            "learned": " ".join(f"{shipped().probability(each):.4f}" for each in features(program, keep, default())),
+            "features": _digest(features(program, keep, default())),
             "completed": _completed(program, keep, other),
         }
     if os.environ.get("HEARTH_REFRESH"):
