@@ -134,8 +134,8 @@ def test_a_record_of_the_embodied_agent_interface(maple):
         ("WATCH(tv, tv)", "WRONG_ARITY", (1, 1), "has 2 objects and takes 1"),
         ("exists x. (WATCH(x)) then READ(x)", "UNKNOWN_OBJECT", (1, 32), "`x` is not a known class"),
         ("exists x. (exists y. (exists z. (READ(z))))", "SYNTAX", (1, 30), "more than 2 variables"),
-        ("(" * 10_000, "SYNTAX", (1, 42), "more than 40 brackets"),
-        ("not " * 10_000, "SYNTAX", (1, 165), "more than 40 brackets"),
+        ("(" * 10_000, "SYNTAX", (1, 41), "more than 40 parts within one another"),
+        ("not " * 10_000, "SYNTAX", (1, 161), "more than 40 parts within one another"),
     ],
 )
 def test_faults_have_their_place(maple, text, code, place, message):
