@@ -11,8 +11,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
+from hearth.agents.protocol import Choice
 from hearth.challenges.observations import instruction_text, seen_instances
 from hearth.kb.grammar import check
+from hearth.schemas.agent_messages import ASK, TELL, Message
+from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
@@ -25,6 +28,9 @@ from hearth.simulation.world.bits import indices
 
 WAIT = "wait"
 """The answer of who does nothing in this tick."""
+
+SAYING = f"{TELL} ON(plate, 55) 2"
+"""An example of a message, for remedies and prompts."""
 
 LONGEST = 500
 """Characters of an answer in text."""
@@ -58,13 +64,14 @@ def keep_nothing(row: Mapping[str, Any]) -> None:
     """No transcript."""
 
 
-def row(view: View, answer: int | str | None, step: Step | None, fault: Fault | None) -> dict[str, Any]:
-    """A tick of a transcript: what was answered, what that meant, and why it meant nothing."""
+def row(view: View, answer: int | str | None, choice: Choice, fault: Fault | None) -> dict[str, Any]:
+    """A tick of a transcript: what was answered, what that did or said, and why it meant nothing."""
     return {
         "tick": view.tick,
         "agent": view.agent,
         "answer": answer,
-        "instruction": None if step is None else instruction_text(step),
+        "instruction": instruction_text(choice) if isinstance(choice, Step) else None,
+        "said": str(choice) if isinstance(choice, Message) else None,
         "fault": None if fault is None else fault.as_json(),
     }
 
@@ -79,6 +86,21 @@ def by_number(number: int, options: Sequence[Step]) -> Step:
         remedy = f"0 to {len(options) - 1}" if options else "nothing can be done now but to wait"
         raise HearthError.of(Code.BAD_ARGUMENT, f"no legal instruction has the number {number}", suggestion=remedy)
     return options[number]
+
+
+def by_words(text: str, view: View, legal: Legal, messages: bool) -> Choice:
+    """What a text says, where agents may say something; otherwise the instruction that it means (see `by_text`).
+
+    Raises:
+        HearthError: SYNTAX: it begins as a message and is none; and the faults of `by_text`.
+    """
+    line = text.strip()
+    if not messages or line.partition(" ")[0] not in (ASK, TELL):
+        return by_text(text, view, legal)
+    found = read_message(line)
+    if found is None:
+        raise HearthError.of(Code.SYNTAX, f"`{line[:60]}` is not a message", suggestion=f"`{ASK}`, or `{SAYING}`")
+    return found
 
 
 def by_text(text: str, view: View, legal: Legal) -> Step | None:

@@ -63,7 +63,7 @@ def seen_instances(name: str, home: Home, mask: int) -> int:
 
 
 def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
-    """What an agent sees: `tick`, `me`, `others`, `goal` and `graph`, the last in the form of the release.
+    """What an agent sees: `tick`, `me`, `others`, `messages`, `goal` and `graph`, the last in the form of the release.
 
     A box is where a thing stood at the start, so things that were carried elsewhere have none.
     """
@@ -71,6 +71,7 @@ def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:
         "tick": view.tick,
         "me": _pose(view.me, view),
         "others": [_pose(other, view) for other in view.others],
+        "messages": [{"agent": number, "says": str(said)} for number, said in view.messages],
         "goal": None if goal is None else goal_json(goal, view),
         "graph": _graph(view),
     }

@@ -9,9 +9,10 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 
-from hearth.agents.protocol import Resigned
-from hearth.challenges.answers import WAIT, Fault, Keep, by_number, by_text, keep_nothing, row
+from hearth.agents.protocol import Choice, Resigned
+from hearth.challenges.answers import SAYING, WAIT, Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.challenges.observations import seen_failure, seen_goal
+from hearth.schemas.agent_messages import ASK
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -30,6 +31,9 @@ MOST_LISTED = 40
 USUAL = frozenset({"CLEAN", "PLUGGED_IN"})
 """States that texts leave out."""
 
+TALKING = f"Instead you may say something, which takes the tick: `{ASK}` what is wanted, or `{SAYING}`.\n"
+"""Added to a prompt where messages are allowed."""
+
 Ask = Callable[[str], str]
 """Gives the answer to a prompt: a language model, a person. EOFError ends the episode."""
 
@@ -44,11 +48,13 @@ class TextAgent:
 
     Args:
         ask: answers a prompt.
-        keep: gets a row for each tick: `tick`, `agent`, `prompt`, `answer`, `instruction`, `fault`.
+        keep: gets a row for each tick: `tick`, `agent`, `prompt`, `answer`, `instruction`, `said`,
+            `fault`.
+        messages: whether it may say something instead of doing something.
     """
 
-    def __init__(self, ask: Ask, keep: Keep = keep_nothing) -> None:
-        self.ask, self.keep = ask, keep
+    def __init__(self, ask: Ask, keep: Keep = keep_nothing, messages: bool = False) -> None:
+        self.ask, self.keep, self.messages = ask, keep, messages
         self.faults: list[Fault] = []
         self._goal: Goal | None = None
 
@@ -56,7 +62,7 @@ class TextAgent:
         """Begin an episode; the seed is for whoever answers."""
         self.faults, self._goal = [], goal
 
-    def act(self, observation: View, legal: Legal) -> Step | None:
+    def act(self, observation: View, legal: Legal) -> Choice:
         """Ask once; an answer that can't be used is a fault, which the next prompt names."""
         options = list(legal)
         asked = self._prompt(observation, options)
@@ -64,18 +70,20 @@ class TextAgent:
             answer = self.ask(asked)
         except EOFError:
             raise Resigned from None
-        step, fault = None, None
+        choice: Choice = None
+        fault = None
         try:
-            step = understood(answer, observation, legal, options)
+            choice = understood(answer, observation, legal, options, self.messages)
         except HearthError as error:
             fault = Fault(observation.tick, error.diagnostics[0])
             self.faults.append(fault)
-        self.keep({**row(observation, answer, step, fault), "prompt": asked})
-        return step
+        self.keep({**row(observation, answer, choice, fault), "prompt": asked})
+        return choice
 
     def _prompt(self, view: View, options: Sequence[Step]) -> str:
         said = "" if not self.faults or self.faults[-1].tick != view.tick - 1 else _refused(self.faults[-1])
-        return said + description(view, self._goal) + "\n" + menu(options, view)
+        talk = TALKING if self.messages else ""
+        return said + description(view, self._goal) + "\n" + menu(options, view) + talk
 
 
 def _refused(fault: Fault) -> str:
@@ -83,11 +91,11 @@ def _refused(fault: Fault) -> str:
     return f"Your last answer was not used, and you waited. {fault.fault.code}: {fault.fault.message}{remedy}\n"
 
 
-def understood(answer: str, view: View, legal: Legal, options: Sequence[Step]) -> Step | None:
-    """The instruction that the last line of an answer means; None for `wait`.
+def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], messages: bool = False) -> Choice:
+    """The instruction that the last line of an answer means, or what it says; None for `wait`.
 
     Raises:
-        HearthError: EMPTY, NOT_TEXT, and those of `by_number` and `by_text`.
+        HearthError: EMPTY, NOT_TEXT, and those of `by_number` and `by_words`.
     """
     if not isinstance(answer, str):
         raise HearthError.of(Code.NOT_TEXT, f"an answer is {type(answer).__name__}, not text")
@@ -95,7 +103,7 @@ def understood(answer: str, view: View, legal: Legal, options: Sequence[Step]) -
     if not lines:
         raise HearthError.of(Code.EMPTY, "an empty answer", suggestion=f"a number, or `{WAIT}`")
     number = _NUMBER.fullmatch(lines[-1])
-    return by_number(int(number[1]), options) if number else by_text(lines[-1], view, legal)
+    return by_number(int(number[1]), options) if number else by_words(lines[-1], view, legal, messages)
 
 
 def description(view: View, goal: Goal | None = None) -> str:
@@ -107,6 +115,7 @@ def description(view: View, goal: Goal | None = None) -> str:
         lines.append(f"You last tried: {_tried(me.last, view)}")
     lines += _goal(goal, view) if goal is not None else ()
     lines += (_other(other, view) for other in view.others)
+    lines += (f"Agent {number} said: {said}." for number, said in view.messages)
     return "\n".join((*lines, *_seen(view)))
 
 

@@ -13,7 +13,8 @@ from typing import Any
 
 import orjson
 
-from hearth.challenges.answers import Fault, Keep, by_number, by_text, keep_nothing, row
+from hearth.agents.protocol import Choice
+from hearth.challenges.answers import Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.challenges.channels import Channel
 from hearth.challenges.observations import instruction_text, observation
 from hearth.challenges.text_protocol import description
@@ -48,7 +49,8 @@ class WireAgent:
         within: seconds that it may think about a tick.
         forms: of the observations that it is sent, some of `FORMS`.
         limit: ticks of the episode, for its information; 0 if there is none.
-        keep: gets a row for each tick: `tick`, `agent`, `answer`, `instruction`, `fault`.
+        keep: gets a row for each tick: `tick`, `agent`, `answer`, `instruction`, `said`, `fault`.
+        messages: whether it may say something instead of doing something.
     """
 
     def __init__(
@@ -58,7 +60,9 @@ class WireAgent:
         forms: tuple[str, ...] = FORMS[:1],
         limit: int = 0,
         keep: Keep = keep_nothing,
+        messages: bool = False,
     ) -> None:
+        self.messages = messages
         self.channel, self.within, self.forms, self.limit, self.keep = channel, within, forms, limit, keep
         self.faults: list[Fault] = []
         self._goal: Goal | None = None
@@ -73,29 +77,31 @@ class WireAgent:
             "goal": None if goal is None else str(goal),
             "seed": seed,
             "ticks": self.limit or None,
+            "messages": self.messages,
         }
         try:
             self.channel.send(orjson.dumps(begin), time.monotonic() + self.within)
         except HearthError as error:
             self._fault(observation, error)
 
-    def act(self, observation: View, legal: Legal) -> Step | None:
+    def act(self, observation: View, legal: Legal) -> Choice:
         """Send `observe`, wait for the answer; None where there is none that can be used."""
         if not self.channel.open:
             return None
         options = list(legal)
         deadline = time.monotonic() + self.within
         answer: int | str | None = None
-        step, fault = None, None
+        choice: Choice = None
+        fault = None
         try:
             self.channel.send(orjson.dumps(self._observe(observation, options)), deadline)
             answer = self._answer(observation, deadline)
-            step = _chosen(answer, observation, legal, options)
+            choice = self._chosen(answer, observation, legal, options)
         except HearthError as error:
             fault = self._fault(observation, error)
             self._notify({"type": "fault", **fault.as_json()})
-        self.keep(row(observation, answer, step, fault))
-        return step
+        self.keep(row(observation, answer, choice, fault))
+        return choice
 
     def end(self, success: bool, ticks: int) -> None:
         """Send `end`: whether the goal was reached, and how many ticks it took."""
@@ -119,6 +125,11 @@ class WireAgent:
             message["text"] = description(view, self._goal)
         message["legal"] = [instruction_text(step) for step in options]
         return message
+
+    def _chosen(self, act: int | str | None, view: View, legal: Legal, options: list[Step]) -> Choice:
+        if act is None:
+            return None
+        return by_number(act, options) if isinstance(act, int) else by_words(act, view, legal, self.messages)
 
     def _answer(self, view: View, deadline: float) -> int | str | None:
         """The answer to this tick; late ones to earlier ticks are passed over."""
@@ -157,9 +168,3 @@ def read_answer(line: bytes, agent: int) -> tuple[int, int | str | None]:
 
 
 _EXAMPLE = 'answer {"tick": 3, "act": 17}'
-
-
-def _chosen(act: int | str | None, view: View, legal: Legal, options: list[Step]) -> Step | None:
-    if act is None:
-        return None
-    return by_number(act, options) if isinstance(act, int) else by_text(act, view, legal)

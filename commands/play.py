@@ -29,6 +29,7 @@ def play(
     text: bool = False,
     actions: str = "",
     full: bool = False,
+    messages: bool = False,
     ticks: int = 250,
     within: float = 30.0,
     form: str = "graph",
@@ -63,7 +64,7 @@ def play(
     place = read_home(home, graph, homes, known)
     wanted = read_goals(goal, place)
     with ExitStack() as stack:
-        how = _How(ticks, within, form, as_json, _transcript(transcript, stack))
+        how = _How(ticks, within, form, messages, as_json, _transcript(transcript, stack))
         playing = [_agent(seat, how, stack) for seat in seats]
         played = _play(place, wanted, playing, seed, how, _actions(actions, known), not full)
         for each in playing:
@@ -89,6 +90,7 @@ class _How(NamedTuple):
     ticks: int
     within: float
     form: str
+    messages: bool
     as_json: bool
     keep: Callable[[Mapping[str, Any]], None]
 
@@ -123,10 +125,10 @@ def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
     from hearth.challenges.wire import WireAgent
 
     if seat.spec == TEXT:
-        return TextAgent(_asked_at_terminal(how.as_json), how.keep)
+        return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)
     if seat.spec == WAIT:
         return Waiting()
-    return WireAgent(_channel(seat, how, stack), how.within, FORMS[how.form], how.ticks, how.keep)
+    return WireAgent(_channel(seat, how, stack), how.within, FORMS[how.form], how.ticks, how.keep, how.messages)
 
 
 class Waiting:
@@ -214,13 +216,13 @@ def _play(
     env = Env()
     env.reset(place, len(agents), seed)
     players = [Player(agent, goal) for agent in agents]
-    return run(env.world, goal, players, seed, actions=actions, partial=partial, limit=how.ticks)
+    return run(env.world, goal, players, seed, actions=actions, partial=partial, limit=how.ticks, messages=how.messages)
 
 
 def _write(out: Path, played: Played) -> None:
     from hearth.simulation.episode import Episode, write
 
-    write(out, [Episode.of(played.env)])
+    write(out, [Episode.of(played.env, [{n: str(m) for n, m in each.items()} for each in played.said])])
 
 
 def _result(home: str, played: Played, seats: list[_Seat], agents: list[Agent], out: Path | None) -> dict[str, Any]:

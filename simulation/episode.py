@@ -36,6 +36,10 @@ Instructions = Mapping[int, Step]
 """What each agent tries in a tick, by number."""
 
 
+Said = Mapping[int, str]
+"""What each agent says in a tick, by number."""
+
+
 @dataclass(frozen=True, eq=False)
 class Episode:
     """What happened in an episode. Two are equal if their digests are.
@@ -44,13 +48,16 @@ class Episode:
         start: the world at its start.
         rules: how actions were read.
         ticks: what each agent tried.
-        digests: of the start, then of each tick: of the digest before, what was tried, what failed, the world after.
+        digests: of the start, then of each tick: of the digest before, what was tried, what failed, what was said, the
+            world after.
+        said: what agents said in each tick, by number.
     """
 
     start: World
     rules: Rules
     ticks: tuple[Instructions, ...]
     digests: tuple[str, ...]
+    said: tuple[Said, ...]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Episode) and self.digests == other.digests
@@ -59,25 +66,26 @@ class Episode:
         return hash(self.digests)
 
     @classmethod
-    def of(cls, env: Env) -> Episode:
-        """The episode of an environment up to now.
+    def of(cls, env: Env, said: Sequence[Said] = ()) -> Episode:
+        """The episode of an environment up to now, with what agents said in each tick.
 
         Raises:
             HearthError: UNKNOWN_HOME before the first `reset`.
         """
         start = env.ticks[0].before if env.ticks else env.world
         digests = [digest(start)]
-        for each in env.ticks:
-            digests.append(_following(digests[-1], each.instructions, each.failures, each.world))
-        return cls(start, env.rules, tuple(each.instructions for each in env.ticks), tuple(digests))
+        spoken: tuple[Said, ...] = tuple(said) or ({},) * len(env.ticks)
+        for each, words in zip(env.ticks, spoken, strict=True):
+            digests.append(_following(digests[-1], each.instructions, each.failures, words, each.world))
+        return cls(start, env.rules, tuple(each.instructions for each in env.ticks), tuple(digests), spoken)
 
     def again(self) -> Iterator[tuple[World, str]]:
         """Do it again: the world and the digest at the start and after each tick."""
         world, last = self.start, digest(self.start)
         yield world, last
-        for instructions in self.ticks:
+        for instructions, words in zip(self.ticks, self.said, strict=True):
             world, failures = tick(world, instructions, self.rules)
-            last = _following(last, instructions, failures, world)
+            last = _following(last, instructions, failures, words, world)
             yield world, last
 
     def verify(self) -> Diagnostic | None:
@@ -89,10 +97,10 @@ class Episode:
         return None
 
 
-def _following(last: str, instructions: Instructions, failures: Mapping[int, Failure], world: World) -> str:
+def _following(last: str, instructions: Instructions, failures: Mapping[int, Failure], said: Said, world: World) -> str:
     tried = ((number, print_step(step), str(failures[number].code) if number in failures else "")
              for number, step in sorted(instructions.items()))  # fmt: skip
-    return blake2b(repr((last, *tried, digest(world))).encode(), digest_size=16).hexdigest()
+    return blake2b(repr((last, *tried, *sorted(said.items()), digest(world))).encode(), digest_size=16).hexdigest()
 
 
 def write(path: Path, episodes: Iterable[Episode]) -> int:
@@ -123,6 +131,7 @@ def _opened(temporary: Path, path: Path) -> Any:
 
 def _line(episode: Episode, key: str, base: EnvironmentGraph) -> dict[str, Any]:
     change = changes.encode(base, episode.start.graph())
+    said = {"said": [{str(n): text for n, text in sorted(each.items())} for each in episode.said]}
     return {
         "home": key,
         "start": {
@@ -136,6 +145,7 @@ def _line(episode: Episode, key: str, base: EnvironmentGraph) -> dict[str, Any]:
         },
         "rules": episode.rules._asdict(),
         "ticks": [{str(n): print_step(step) for n, step in sorted(each.items())} for each in episode.ticks],
+        **(said if any(episode.said) else {}),
         "digests": episode.digests,
     }
 
@@ -172,10 +182,11 @@ def _episode(row: Mapping[str, Any], home: Home) -> Episode:
     assert isinstance(found, World)
     found = with_private(apply(found, Change(edges[0], edges[1], states[0], states[1])), start)
     ticks = [{int(n): _read(text, int(n)) for n, text in each.items()} for each in row["ticks"]]
+    said = [{int(n): str(text) for n, text in each.items()} for each in row.get("said", [{}] * len(ticks))]
     digests: Sequence[str] = row["digests"]
-    if len(digests) != len(ticks) + 1:
-        raise ValueError(f"{len(digests)} digests of {len(ticks)} ticks")
-    return Episode(found, Rules(**row["rules"]), tuple(ticks), tuple(map(str, digests)))
+    if len(digests) != len(ticks) + 1 or len(said) != len(ticks):
+        raise ValueError(f"{len(digests)} digests and {len(said)} rows of what was said, of {len(ticks)} ticks")
+    return Episode(found, Rules(**row["rules"]), tuple(ticks), tuple(map(str, digests)), tuple(said))
 
 
 def _read(text: str, agent: int) -> Step:
