@@ -3,11 +3,11 @@
     python benchmarks/drawn_mutations.py [--number 600] [--seed 0] [--jobs 2] [--rooms simulation,...] [--json FILE]
 
 Cosmic Ray proposes the mutations (`pip install cosmic-ray pytest-cov`); equally many are drawn in each room. Each is
-made in a copy of the checkout, and the quick tests that run its line are run there, the fastest first, until one fails.
-A test that is stopped by its time limit has noticed, too. A mutation lives where all of them pass; it is printed with
-its reason: `unreached` (no quick test runs the line) or `passed` (the tests do not depend on it).
-The status is 1 if fewer than --share of the mutations are noticed. `--coverage FILE` keeps which test runs which line,
-and uses it if the file is there.
+made in a copy of the checkout, and the quick tests that run its line are run there, the fastest first and then those
+that run most of its room, until one fails. A test that is stopped by its time limit has noticed, too. A mutation lives
+where all of them pass; it is printed with its reason: `unreached` (no quick test runs the line) or `passed` (the tests
+do not depend on it). The status is 1 if fewer than --share of the mutations are noticed. `--coverage FILE` keeps which
+test runs which line, and uses it if the file is there.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from math import ceil
@@ -51,8 +51,11 @@ settings.load_profile("unshrunk")
 """
 """Added to the tests of a copy: that an example fails is enough, a small one takes long to find."""
 
-BUDGET = 60
+BUDGET = 40
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
+
+FIRST = 12
+"""Tests that are run before the rest is collected: they notice most mutations."""
 
 STARTING = 30
 """Seconds of the processor that pytest may need before its first test."""
@@ -231,16 +234,37 @@ def durations(times: Path) -> dict[str, float]:
     return {test: spent for test, spent in seconds.items() if test not in failed}
 
 
-def chosen(mutation: Mutation, reached: Reached, seconds: Mapping[str, float]) -> list[str]:
-    """The tests of a mutation within the budget, the fastest first; of a line that an import runs, all of its file."""
+def breadths(reached: Reached) -> dict[str, Counter[str]]:
+    """How many lines of each room a test runs."""
+    found: dict[str, Counter[str]] = defaultdict(Counter)
+    for file, lines in reached.items():
+        for tests in lines.values():
+            found[file.partition("/")[0]].update(tests)
+    return found
+
+
+def chosen(
+    mutation: Mutation, reached: Reached, breadth: Mapping[str, Counter[str]], seconds: Mapping[str, float]
+) -> list[str]:
+    """The tests of a mutation within the budget; of a line that an import runs, all of its file.
+
+    First the fastest, each of another file. Then by turns the one that runs most lines of the room, and the fastest
+    that is left: hundreds of short tests of one table would use up the budget of those that look at everything.
+    """
     lines = reached.get(mutation.file, {})
-    tests: set[str] = set(lines.get(str(mutation.line), ())) or {test for tests in lines.values() for test in tests}
+    room = breadth.get(mutation.file.partition("/")[0], {})
+    tests = set(lines.get(str(mutation.line), ())) or {test for each in lines.values() for test in each}
+    fastest = sorted(tests & seconds.keys(), key=lambda test: (seconds[test], test))
+    broadest = sorted(fastest, key=lambda test: -room[test])
+    of_files: dict[str, str] = {}
+    for test in fastest:
+        of_files.setdefault(test.partition("::")[0], test)
+    turns = (test for pair in zip(broadest, fastest, strict=True) for test in pair)
     found, spent = [], 0.0
-    for test in sorted(tests & seconds.keys(), key=lambda test: (seconds[test], test)):
-        spent += seconds[test]
-        if found and spent > BUDGET:
-            break
-        found.append(test)
+    for test in dict.fromkeys([*list(of_files.values())[:FIRST], *turns]):
+        if not found or spent + seconds[test] <= BUDGET:
+            spent += seconds[test]
+            found.append(test)
     return found
 
 
@@ -255,7 +279,7 @@ def tried(copy: Path, mutation: Mutation, tests: Sequence[str], seconds: Mapping
     try:
         file.write_text(after, "utf-8")
         os.utime(file, (times.st_atime, times.st_mtime + 10))  # so that the compiled module is not taken
-        for part in (tests[:20], tests[20:]):
+        for part in (tests[:FIRST], tests[FIRST:]):
             limit = STARTING + 3 * ceil(sum(seconds[test] for test in part))
             status = pytest_run(copy, ["-x", *part], limit) if part else 0
             if status != 0:
@@ -269,6 +293,7 @@ def tried(copy: Path, mutation: Mutation, tests: Sequence[str], seconds: Mapping
 def run(mutations: Sequence[Mutation], reached: Reached, seconds: Mapping[str, float], jobs: int,
         show: Callable[[Result], None]) -> list[Result]:  # fmt: skip
     """All of them, `jobs` at a time, each in a copy of its own."""
+    breadth = breadths(reached)
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(jobs) as pool:
         copies: queue.Queue[Path] = queue.Queue()
         for n in range(jobs):
@@ -277,7 +302,7 @@ def run(mutations: Sequence[Mutation], reached: Reached, seconds: Mapping[str, f
         def one(mutation: Mutation) -> Result:
             copy = copies.get()
             try:
-                result = tried(copy, mutation, chosen(mutation, reached, seconds), seconds)
+                result = tried(copy, mutation, chosen(mutation, reached, breadth, seconds), seconds)
             finally:
                 copies.put(copy)
             show(result)
