@@ -126,13 +126,6 @@ def _figures(results: Results) -> dict[str, Any]:
     return {**row, **tested, "by_set": by_set(results)}
 
 
-def versus(one: Results, other: Results) -> dict[str, Any]:
-    """A paired test of two methods' speedups on the same tasks."""
-    pair = [speedups(each.outcomes(False), each.outcomes(each.header.helped[-1])) for each in (one, other)]
-    test = paired(*pair)
-    return {"t": test.t, "p": test.p, "freedom": test.freedom, "effect": test.effect}
-
-
 def figure(found: Sequence[dict[str, Any]]) -> str:
     """Figure 6-5, or 7-3, as SVG: a) success against speedup with 95 % intervals; b) cumulative reward."""
     there = [row for row in found if "speedup" in row]

@@ -6,7 +6,6 @@ import math
 from array import array
 from collections.abc import Iterable, Sequence
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -259,13 +258,3 @@ class Ways:
         while (number := field.following[numbers[-1]]) >= 0:
             numbers.append(number)
         return tuple(self._middles[number] for number in reversed(numbers))
-
-
-def heading(start: Spot, end: Spot) -> float:
-    """Degrees about y, from +z towards +x, of the look from one point to another, in [0, 360)."""
-    return math.degrees(math.atan2(end[0] - start[0], end[1] - start[1])) % 360
-
-
-def length(path: Sequence[Spot]) -> float:
-    """Metres of a path."""
-    return sum(math.dist(here, there) for here, there in pairwise(path))

@@ -398,3 +398,22 @@ def test_the_remembered_place_is_never_the_character_except_in_replay():
     for rules, places in ((DEFAULT, []), (REPLAY, [IDS["character"]])):
         world = act(after("Walk sponge"), step("Grab sponge"), rules)
         assert [world.home.ids[p] for _, p, _ in world.agents[0].origins] == places
+
+
+def test_who_sits_faces_all_that_the_seat_faces():
+    """Things and people, of whom some are characters."""
+    edges = (Edge(2, "INSIDE", 1), Edge(3, "INSIDE", 1), Edge(4, "INSIDE", 1), Edge(4, "FACING", 3))
+    nodes = [node(n, name) for n, name in enumerate(("kitchen", "character", "character", "chair", "chair"), 1)]
+    world = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), (*edges, Edge(5, "INSIDE", 1))), "", default()))
+    faced = {}
+    for chair in (nodes[3], nodes[4]):
+        sat = act(act(world, bound_step("Walk", [chair])), bound_step("Sit", [chair]))
+        faced[chair.id] = [edge.target for edge in sat.edges() if edge.source == 2 and edge.relation == "FACING"]
+    assert faced == {4: [3], 5: []}
+
+
+def test_who_walks_to_a_table_is_close_to_what_was_put_on_it():
+    """As it was at the start, and after things were moved."""
+    near = after("Walk apple", "Grab apple", "Walk table", "PutBack apple table", "Walk chair", "Walk table")
+    close = {edge.target for edge in near.edges() if edge.source == IDS["character"] and edge.relation == "CLOSE"}
+    assert {IDS["apple"], IDS["cup"], IDS["knife"], IDS["plate"]} <= close and IDS["bread"] not in close

@@ -248,3 +248,17 @@ def test_what_was_done_was_done_in_its_order(seed):
     for first, second in pairwise(goals):
         if goals.count(first) == goals.count(second) == 1:
             assert not Progress.of(Goal(parts=(Joined("then", (second, first)),)), execution).satisfied
+
+
+@pytest.mark.parametrize(
+    ("goal", "reached"),
+    [
+        ("ON(television) then (CLOSED(fridge) or SITTING(agent)) then WATCH", True),
+        ("ON(television) then (CLOSED(fridge) or LYING(agent)) then WATCH", False),
+        ("ON(television) then (OPEN(fridge) and (SITTING(agent) or LYING(agent))) then WATCH", False),
+        ("ON(television) then (ON(television) and (SITTING(agent) or LYING(agent))) then WATCH", True),
+    ],
+)
+def test_of_alternatives_one_must_begin_to_hold(maple, goal, reached):
+    """The fridge is closed all the time, which is no reason why the alternative should never be reached."""
+    assert Progress.of(read_goal(goal, maple), ran(maple, WATCH_TV)).satisfied == reached

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from oracles.holds import Plain
-from small_worlds import random_graph
+from small_worlds import node, random_graph
 
 from hearth.grounding.preconditions.checking import unmet
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
@@ -132,3 +132,28 @@ def test_a_name_means_the_same_to_all_who_ask(maple, literal, found):
     if literal == Literal.of("CLEAN", "sofa"):
         clean = Preconditions((Condition(Literal.of("clean", ("sofa", 1))),))
         assert unmet(clean, world, nodes) == () and holds(Literal.of("CLEAN", ("sofa", 1)), world, nodes)
+
+
+def small(*edges: tuple[int, str, int], closed: tuple[int, ...] = ()) -> World:
+    """Kitchen, bedroom, bathroom; a door between each two; a character in the kitchen; a man, a cup and a knife."""
+    names = ("kitchen", "bedroom", "bathroom", "door", "door", "character", "man", "cup", "knife")
+    can = {"door": ("CAN_OPEN",)}
+    nodes = [
+        node(n, name, "", can.get(name, ()), ("CLOSED",) if n in closed else ()) for n, name in enumerate(names, 1)
+    ]
+    between = [(4, "BETWEEN", 1), (4, "BETWEEN", 2), (5, "BETWEEN", 2), (5, "BETWEEN", 3)]
+    inside = [(n, "INSIDE", 1) for n in (6, 7, 8, 9)]
+    every = tuple(Edge(*edge) for edge in (*between, *inside, *edges))
+    return World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), every), "", KNOWLEDGE))
+
+
+@pytest.mark.parametrize(("closed", "found"), [((), False), ((4,), True), ((5,), False), ((4, 5), True)])
+def test_only_a_closed_door_of_ones_own_room_closes_it(closed, found):
+    assert holds(Literal.of("doors_closed", 6), small(closed=closed)) is found
+
+
+def test_what_somebody_holds_is_that_and_nothing_else():
+    """A man is no character: what he holds stands in the graph only."""
+    world = small((7, "HOLDS_RH", 8))
+    held = [holds(Literal.of(name, 7, thing), world) for name in ("HOLDS_RH", "HOLDS_LH") for thing in (8, 9)]
+    assert held == [True, False, False, False]

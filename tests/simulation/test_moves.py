@@ -24,7 +24,7 @@ from hearth.simulation.engine import act, tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
-from hearth.simulation.motion.positions import placed, spot
+from hearth.simulation.motion.positions import around, placed, spot
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit
@@ -364,3 +364,33 @@ def test_legal_is_exactly_what_can_be_done_at_a_place(seed):
             ways = ground_of(world.home).ground.ways
             pose = world.agents[number].pose
             assert world.agents[number].on or ways.main[ways.at(*pose.point)]
+
+
+@pytest.mark.parametrize("name", OWN[:2])
+def test_diagonal_ways_need_both_their_sides_free(name):
+    """Of all cells that touch at a corner, those are joined that one can pass between."""
+    ways = ground_of(own_home(name)).ground.ways
+    joined = set(zip(*map(np.ndarray.tolist, ways.graph.nonzero()), strict=True))
+    free = {(x, z): number for (x, z), number in np.ndenumerate(ways.number) if number >= 0}
+    expected = set()
+    for (x, z), number in free.items():
+        for dx, dz in ((1, 0), (0, 1), (1, 1), (1, -1)):
+            sides = [(x + dx, z), (x, z + dz), (x + dx, z + dz)]
+            if all(side in free for side in sides):
+                expected.add((number, free[sides[2]]))
+    assert joined == expected
+
+
+@pytest.mark.parametrize("name", OWN[:2])
+def test_every_free_cell_is_in_a_room_and_one_walks_to_the_middle_of_rooms(name):
+    home = own_home(name)
+    world, here = placed(World.start(home)), ground_of(home)
+    ground, ways = here.ground, here.ground.ways
+    for cell in (0, 1, len(ways.points) // 2, len(ways.points) - 1):
+        _, room = around(world, 0, here, Pose(*map(float, ways.points[cell]), 0.0))
+        assert room == ground.rooms[cell] >= 0
+    for room in indices(home.rooms):
+        x, z = home.node(room).box.center[::2]
+        main = np.flatnonzero(ways.main & (np.asarray(ground.rooms) == room))
+        far = {cell: math.dist((x, z), ways.points[cell]) for cell in main.tolist()}
+        assert [far[cell] for cell in ground.stands(room)] == [min(far.values())]
