@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import threading
@@ -203,15 +204,22 @@ def _against(sent: bytes) -> Any:
         while not stop.is_set():
             if not os.read(there[0], 1 << 16):
                 return
-            os.write(here[1], sent + b"\n")
+            with contextlib.suppress(OSError):  # the episode is over
+                os.write(here[1], sent + b"\n")
 
     threading.Thread(target=babble, daemon=True).start()
-    agent = WireAgent(Channel(here[0], there[1]), within=1.0)
+    ends = (lambda: os.close(here[0]), lambda: os.close(there[1]))
+    channel = Channel(lambda size: os.read(here[0], size), lambda data: os.write(there[1], data), ends)
+    agent = WireAgent(channel, within=3.0)
     try:
         done = play(start_of(task, default(), 1), task.goal, [Player(agent, task.goal)], 0, limit=5)
         assert done.ticks == 5, f"the episode ended after {done.ticks} ticks"
-        return [fault.as_json() for fault in agent.faults]
+        faults = [fault.as_json() for fault in agent.faults]
+        arrived = any(fault["code"] != "TIMED_OUT" for fault in faults)
+        assert arrived or len(sent) > 1 << 16, "nothing that was sent arrived"  # who only writes does not read, either
+        return faults
     finally:
         stop.set()
-        for end in (*there, *here):
+        channel.close()
+        for end in (there[0], here[1]):
             os.close(end)
