@@ -51,7 +51,7 @@ settings.load_profile("unshrunk")
 """
 """Added to the tests of a copy: that an example fails is enough, a small one takes long to find."""
 
-BUDGET = 40
+BUDGET = 60
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
 
 FIRST = 12
@@ -246,21 +246,28 @@ def breadths(reached: Reached) -> dict[str, Counter[str]]:
 def chosen(
     mutation: Mutation, reached: Reached, breadth: Mapping[str, Counter[str]], seconds: Mapping[str, float]
 ) -> list[str]:
-    """The tests of a mutation within the budget; of a line that an import runs, all of its file.
+    """The tests of a mutation within the budget: those that run its line, and those of its room that run its file.
 
-    First the fastest, each of another file. Then by turns the one that runs most lines of the room, and the fastest
-    that is left: hundreds of short tests of one table would use up the budget of those that look at everything.
+    The latter because what one test computes may be kept for the next, whose line it then is no more.
+    First the fastest, each of another file. Then by turns the one that runs most lines of the room, the room's own
+    before others, and the fastest that is left: hundreds of short tests of one table would use up the budget of those
+    that look at everything.
     """
     lines = reached.get(mutation.file, {})
-    room = breadth.get(mutation.file.partition("/")[0], {})
-    tests = set(lines.get(str(mutation.line), ())) or {test for each in lines.values() for test in each}
+    room = mutation.file.partition("/")[0]
+    of_file = {test for each in lines.values() for test in each}
+    of_line = set(lines.get(str(mutation.line), ()))
+    own = {test for test in of_file if test.startswith(f"tests/{room}/")}
+    tests = of_line | own if of_line else of_file
     fastest = sorted(tests & seconds.keys(), key=lambda test: (seconds[test], test))
-    broadest = sorted(fastest, key=lambda test: -room[test])
+    lines_run = breadth.get(room, Counter())
+    broadest = sorted(fastest, key=lambda test: (test not in own, -lines_run[test]))
     of_files: dict[str, str] = {}
     for test in fastest:
         of_files.setdefault(test.partition("::")[0], test)
     turns = (test for pair in zip(broadest, fastest, strict=True) for test in pair)
-    found, spent = [], 0.0
+    found: list[str] = []
+    spent = 0.0
     for test in dict.fromkeys([*list(of_files.values())[:FIRST], *turns]):
         if not found or spent + seconds[test] <= BUDGET:
             spent += seconds[test]
