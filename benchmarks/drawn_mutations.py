@@ -51,6 +51,9 @@ settings.load_profile("unshrunk")
 """
 """Added to the tests of a copy: that an example fails is enough, a small one takes long to find."""
 
+UNNOTICED = ("NoOp", "_Eq_Is", "_Is_Eq", "_NotEq_IsNot", "_IsNot_NotEq")
+"""Operators that change nothing: names, small numbers and members of enumerations that are equal are the same."""
+
 BUDGET = 60
 """Seconds that the tests of one mutation take at most, as they took in the run that measured the coverage."""
 
@@ -88,10 +91,14 @@ class Result(NamedTuple):
 
 
 def _without_behaviour(tree: ast.AST) -> set[tuple[int, int]]:
-    """Where types stand: annotations are not evaluated, so a mutation of them cannot be noticed."""
+    """Where types stand, the slots of classes and the sizes of caches: what is mutated there cannot be noticed."""
     found: set[tuple[int, int]] = set()
     for node in ast.walk(tree):
         fields = [getattr(node, name, None) for name in ("annotation", "returns")]
+        for decorator in getattr(node, "decorator_list", ()):
+            if isinstance(decorator, ast.Call):
+                cached = ast.unparse(decorator.func).endswith("cache")
+                fields += [word.value for word in decorator.keywords if cached or word.arg == "slots"]
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
             fields += node.body
         for field in filter(None, fields):
@@ -115,7 +122,7 @@ def proposed(file: str, root: Path = ROOT) -> Iterator[Mutation]:
         raise SystemExit("Cosmic Ray lacks its own operators; install it with what it needs: pip install cosmic-ray")
     for name in names:
         kind = get_operator(name)
-        if kind.arguments() or name.endswith("NoOp"):
+        if kind.arguments() or name.endswith(UNNOTICED):
             continue
         operator, number = kind(), 0
         for node in ast_nodes(tree):
