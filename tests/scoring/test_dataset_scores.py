@@ -20,6 +20,7 @@ from hearth.scoring.baselines import (
     BASELINES,
     BY_SKETCH,
     BY_START,
+    THESIS,
     Example,
     baselines,
     nearest_description,
@@ -202,3 +203,16 @@ def test_baselines_of_a_dataset(ds):
         assert {each.baseline for each in found} <= {*BASELINES, *BY_SKETCH, *BY_START}
         assert all(value is None or 0 <= value <= 1 for each in found for value in each[1:])
     assert baselines(ds, "nothing") == []
+
+
+def test_starts_are_near_by_the_share_of_what_they_have_in_common():
+    starts = (frozenset({ON_TABLE, OPEN, LAMP}), frozenset({ON_TABLE}), frozenset())
+    train = [Example(f"t{n}", "", walk(name), walk("sofa"), start)
+             for n, (name, start) in enumerate(zip(("cup", "book", "bed"), starts, strict=True))]  # fmt: skip
+    test = [Example("a", "", (), walk("sofa"), starts[1]), Example("b", "", (), walk("sofa"), frozenset())]
+    assert nearest_sketch(train, test, 0, default()) == [walk("book"), walk("bed")]
+
+
+def test_the_thesis_s_figures_are_shares():
+    figures = [value for row in THESIS for value in row[1:] if value is not None]
+    assert len(figures) > 100 and all(0 <= value <= 1 for value in figures)

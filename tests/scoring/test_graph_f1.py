@@ -12,11 +12,14 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
 from hearth.scoring.metrics.alignment import Problem
 from hearth.scoring.metrics.counts import Match, Matches, Prf
-from hearth.scoring.metrics.final_graph import views_of
+from hearth.scoring.metrics.final_graph import Nodes, nodes_of, views_of
 from hearth.scoring.metrics.graph_f1 import FAILED, MATCHES, SCOPES, f1_signature, named, score
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act, run
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import edit
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.world import World
 
 CLASSES = {9: "character", 1: "kitchen", 10: "table", 11: "table", 20: "cup", 21: "cup", 22: "cup", 30: "plate"}
 CATEGORIES = {1: "Rooms", 9: "Characters"}
@@ -315,3 +318,21 @@ def wandered(world, chance):
         now = act(world, chance.choice(list(legal(world))))
         world = world if isinstance(now, Failure) else now
     return world
+
+
+def test_relations_of_things_that_hold_things_have_their_direction(flat, knowledge):
+    """A chair holds nothing, and a graph may say so."""
+    odd = EnvironmentGraph(flat.nodes, (*flat.edges, Edge(12, "HOLDS_RH", 20)))
+    world = World.start(Home.from_graph(odd, "", knowledge))
+    (view, _), node = views_of(world, world), Edge(12, "HOLDS_RH", 20)
+    assert node in edges_of(view, 12) and node in edges_of(view, 20)
+    assert not {Edge(20, "HOLDS_RH", 12), Edge(20, "HOLDS_RH", 20)} & (edges_of(view, 12) | edges_of(view, 20))
+
+
+def test_the_nodes_of_a_changed_home_are_those_that_are_there(world):
+    fork = Node(50, "fork", "Props", ("GRABBABLE",))
+    for gone, added in ((), ()), ((), (fork,)), ((20,), ()), ((20,), (fork,)):
+        home = edit(world, remove=gone, add=added, check=False).home
+        expected = Nodes.of(home.node(i) for i in indices(home.everything))
+        found = nodes_of(home)
+        assert found == expected

@@ -6,7 +6,9 @@ from pyarrow import parquet
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.program import ObjectRef, Step
 from hearth.scoring.lines import read
+from hearth.scoring.prediction_rows import rows_of, source_of
 from hearth.scoring.predictions import SHOWN, Pair, read_pairs
 
 WALK = read(["[Walk] <sofa> (1)"])
@@ -139,3 +141,19 @@ def test_a_huge_line_is_one_line_that_does_not_parse(write):
     ((_, predicted, *_),) = [(p.id, p.predicted) for p in read_pairs(write(row("a", "[Walk] " + "x" * 10_000_000)))]
     assert len(predicted) == 1
     assert isinstance(predicted[0], str)
+
+
+def test_a_step_of_a_table_may_be_another_agents():
+    step = {"action": "Walk", "agent": 1, "objects": [{"name": "sofa", "instance": 2, "node": 7}], "joins": True}
+    assert source_of([step]) == [Step("Walk", (ObjectRef("sofa", 2, 7),), 1, True)]
+    assert source_of([{"action": "Walk", "objects": None}]) == [Step("Walk", ())]
+    assert source_of([{"objects": []}]) is None
+
+
+def test_a_table_may_name_its_rows_otherwise(tmp_path):
+    path = tmp_path / "p.parquet"
+    parquet.write_table(pa.table({"program": ["p1"], "predicted": ["x"]}), path)
+    found = rows_of(path, ("id", "predicted"), [], lambda row: [f"{row['program']}@{n}" for n in (1, 2)])
+    assert sorted(each.id for each in found) == ["p1@1", "p1@2"]
+    with pytest.raises(HearthError, match="no column `id`"):
+        list(rows_of(path, ("id", "predicted"), []))

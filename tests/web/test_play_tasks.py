@@ -28,6 +28,8 @@ def test_all_tasks_are_played_by_the_socket(server, person, tmp_path):
         found = read(file)
         assert verify(found, task.id, default) == []
         reached.append(found.records[0].metrics["success"])
+        start, ticks = ticks_of(task, found.records[0], default())
+        assert len(execution_of(start, ticks, task.id).worlds) == len(ticks) + 1, "a film has a picture of each tick"
     assert len(reached) == 100
     assert sum(reached) >= 95, "people see what the agent sees, and the agent reaches nearly all"
 
