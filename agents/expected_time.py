@@ -40,7 +40,7 @@ class Settings:
         sure: how probable a thing must be under a goal to be what the partner goes for.
     """
 
-    goals: int = 30
+    goals: int = 10
     patience: float = 6.0
     take: float = 0.3
     keep: float = 0.15

@@ -287,7 +287,7 @@ def tried(copy: Path, mutation: Mutation, tests: Sequence[str], seconds: Mapping
     file = copy / mutation.file
     before, times = file.read_text("utf-8"), file.stat()
     after = mutated(before, mutation)
-    line = after.splitlines()[mutation.line - 1].strip()
+    line = "".join(after.splitlines()[mutation.line - 1 : mutation.line]).strip()  # the last line may be gone
     if not tests:
         return Result(mutation, "unreached", line, 0)
     try:
