@@ -260,5 +260,5 @@ def test_what_was_done_was_done_in_its_order(seed):
     ],
 )
 def test_of_alternatives_one_must_begin_to_hold(maple, goal, reached):
-    """The fridge is closed all the time, which is no reason why the alternative should never be reached."""
+    """One of them held before: the fridge is closed all the time."""
     assert Progress.of(read_goal(goal, maple), ran(maple, WATCH_TV)).satisfied == reached

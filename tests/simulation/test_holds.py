@@ -153,7 +153,7 @@ def test_only_a_closed_door_of_ones_own_room_closes_it(closed, found):
 
 
 def test_what_somebody_holds_is_that_and_nothing_else():
-    """A man is no character: what he holds stands in the graph only."""
+    """A man is not a character: what he holds stands in the graph only."""
     world = small((7, "HOLDS_RH", 8))
     held = [holds(Literal.of(name, 7, thing), world) for name in ("HOLDS_RH", "HOLDS_LH") for thing in (8, 9)]
     assert held == [True, False, False, False]
