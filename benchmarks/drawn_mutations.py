@@ -142,8 +142,17 @@ def drawn(rooms: Sequence[str], number: int, seed: int, root: Path = ROOT) -> li
             for mutation in proposed(path.relative_to(root).as_posix(), root):
                 places[mutation[:3]].append(mutation)
         rng = Random(f"{seed}/{room}")
-        found += [rng.choice(places[place]) for place in rng.sample(sorted(places), min(share, len(places)))]
+        for place in rng.sample(sorted(places), min(share, len(places))):
+            found += next(([m] for m in rng.sample(places[place], len(places[place])) if _is_made(m, root)), [])
     return found
+
+
+def _is_made(mutation: Mutation, root: Path) -> bool:
+    """Cosmic Ray fails at some that it proposes, such as another exception for `except module.Error`."""
+    try:
+        return bool(mutated((root / mutation.file).read_text("utf-8"), mutation))
+    except (AttributeError, ValueError):
+        return False
 
 
 def mutated(source: str, mutation: Mutation) -> str:
