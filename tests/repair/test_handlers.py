@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
 from repair_worlds import ROOMS, small_world, steps_of
@@ -10,7 +11,7 @@ from repair_worlds import ROOMS, small_world, steps_of
 from hearth.kb.loading.load import default
 from hearth.repair.handlers import registry
 from hearth.repair.handlers.common import Edit, Splice
-from hearth.repair.loop import repair
+from hearth.repair.loop import repair, successes
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
 from hearth.simulation.engine import run
@@ -384,3 +385,14 @@ def test_a_container_that_is_not_close_is_walked_to_and_opened_in_one_repair(rep
     assert result.failure is None
     assert steps[1:] == ["[Walk] <fridge> (1.20)", "[Open] <fridge> (1.20)", "[Grab] <milk> (1.21)"]
     assert handlers == ["inside_closed"]
+
+
+def test_an_attempt_succeeded_if_its_failure_did_not_come_back(repaired):
+    world, program, _ = CASES["inside_closed"]
+    (first,) = repaired(ROOMS + world, program)[0].attempts
+    second = replace(first, number=1, step=3, failure=replace(first.failure, code=Code.NOT_CLOSE))
+    assert successes((first, second), None) == (True, True)
+    assert successes((first, second), second.failure) == (True, False)
+    assert successes((first, first), None) == (False, True)
+    assert successes((replace(first, after=()),), None) == (False,)
+    assert successes((), first.failure) == ()

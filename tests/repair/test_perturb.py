@@ -11,12 +11,12 @@ from repair_worlds import steps_of
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.sampling import Size, draw
 from hearth.grounding.preconditions.checking import unmet
-from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.grounding.preconditions.infer import infer
 from hearth.repair.perturb import PERTURBATIONS, Case, Chances, applied, candidates, distinct
 from hearth.repair.strengths import STRENGTHS_FILE, load_strengths, strength
 from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.literals import CHARACTER
+from hearth.schemas.literals import CHARACTER, Literal
 from hearth.schemas.rng import rng
 
 TELEVISION = """[Walk] <living_room> (1)
@@ -181,6 +181,9 @@ def test_an_unknown_strength_is_reported_with_the_known_ones():
         ("each: 6", "eech: 6", "`eech` is none of the draws"),
         ("draws:", "drawn:", "`kinds` or `draws` is missing"),
         ("most: 6", "most: none", "`most` is not a count"),
+        ("most: 6", "most: 0", "`most` is not a count"),
+        ("each: 6", "each: -1", "-1 is not a weight of `each`"),
+        ("each: 6", "each: none", "'none' is not a weight of `each`"),
         ("clears: all", "clears: some", "`clears` is not one of enough, all, in `thesis`"),
         ("says:", "said:", "`said` does not belong to a strength, in `mild`"),
     ],
@@ -192,3 +195,20 @@ def test_a_fault_in_the_probabilities_is_named(old, new, fault, tmp_path):
     path.write_text(text.replace(old, new))
     with pytest.raises(HearthError, match=fault):
         load_strengths(path)
+
+
+def test_the_least_values_of_probabilities_weights_and_counts_are_allowed(tmp_path):
+    path = tmp_path / "perturbations.yaml"
+    text = STRENGTHS_FILE.read_text()
+    path.write_text(text.replace("open: 0.7", "open: 0").replace("most: 6", "most: 1"))
+    found = load_strengths(path).values()
+    assert 0 in {each.chances.kinds["open"] for each in found} and 1 in {each.chances.most for each in found}
+
+
+@pytest.mark.parametrize(("dirty", "expected"), [("clean", 1), ("dirty", 0)])
+def test_what_is_dirty_already_is_not_made_dirty(dirty, expected, maple):
+    program = steps_of(DISHES)
+    key = program.steps[-1].objects[0].key
+    known = Preconditions((Condition(Literal(dirty, (key,)), 7),))
+    case = Case(program, known, prepared(maple))
+    assert len(list(PERTURBATIONS["dirty"](case))) == expected

@@ -6,7 +6,7 @@ import pytest
 
 from hearth.homes import library
 from hearth.kb.loading.load import default
-from hearth.repair.gist import asked
+from hearth.repair.gist import _is_tool, _used_after, asked
 from hearth.repair.sketch import inherited, sketch
 from hearth.schemas.syntax import parse_program, print_step
 from hearth.simulation.world.home import Home
@@ -89,3 +89,26 @@ def test_people_agree_more_than_with_the_baselines(real_data):
     summary = evaluate_sketches(sketches, places, known).summary()
     assert summary["programs"] >= 111
     assert summary["inferred"]["f1"] > max(0.86, summary["keeping_what_people_usually_keep"]["f1"])
+
+
+@pytest.mark.parametrize(
+    ("steps", "expected"),
+    [
+        (("[Grab] <knife> (1)", "[Cut] <bread> (1)"), True),
+        (("[Grab] <knife> (1)", "[Grab] <cup> (1)", "[Cut] <bread> (1)"), False),
+        (("[Grab] <knife> (1)", "[Walk] <bread> (1)", "[Cut] <bread> (1)"), True),
+        (("[Cut] <bread> (1)", "[Grab] <knife> (1)"), False),
+        (("[Grab] <knife> (1)", "[Cut] <knife> (1)"), False),
+    ],
+)
+def test_a_tool_is_what_was_taken_last_before_it_is_of_use(steps, expected):
+    program = program_of("Cut", "", *steps)
+    assert _is_tool(program, ("knife", 1), default()) == expected
+
+
+def test_a_thing_is_of_use_after_the_last_time_it_was_acted_on():
+    program = program_of("", "", "[Open] <book> (1)", "[Read] <book> (1)", "[Open] <book> (1)", "[Walk] <book> (1)")
+    ways = default().group("preparation")
+    assert not _used_after(program, "Open", ("book", 1), ways)
+    assert _used_after(program.with_steps(program.steps[:2]), "Open", ("book", 1), ways)
+    assert _used_after(program, "Close", ("book", 1), ways)

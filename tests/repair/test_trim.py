@@ -72,3 +72,12 @@ def test_running_on_gives_what_running_all_gives():
     assert again == run(world, longer)
     assert again.failure.tick == 3
     assert again.worlds[1] is first.worlds[1]
+
+
+def test_running_on_from_behind_the_end_runs_all():
+    world = small_world(ROOMS + "20 fridge CLOSED inside 1")
+    program = steps_of("[Grab] <fridge> (1.20)\n[Walk] <fridge> (1.20)\n[Open] <fridge> (1.20)")
+    first = run(world, program)
+    assert len(first.worlds) == 1
+    for number in (1, 2, 3):
+        assert resume(first, program, number, DEFAULT) == first
