@@ -22,6 +22,7 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.engine import act
 from hearth.simulation.goals import Progress
 from hearth.simulation.holds import BINARY, UNARY, candidates, holds
+from hearth.simulation.observation.reach import in_room, out_of_sight
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -135,9 +136,9 @@ def test_a_name_means_the_same_to_all_who_ask(maple, literal, found):
 
 
 def small(*edges: tuple[int, str, int], closed: tuple[int, ...] = ()) -> World:
-    """Kitchen, bedroom, bathroom; a door between each two; a character in the kitchen; a man, a cup and a knife."""
-    names = ("kitchen", "bedroom", "bathroom", "door", "door", "character", "man", "cup", "knife")
-    can = {"door": ("CAN_OPEN",)}
+    """Kitchen, bedroom, bathroom; a door between each two; in the kitchen a character, a man, a cup, a knife."""
+    names = ("kitchen", "bedroom", "bathroom", "door", "door", "character", "man", "cup", "knife", "table", "box")
+    can = {"door": ("CAN_OPEN",), "box": ("CAN_OPEN",)}
     nodes = [
         node(n, name, "", can.get(name, ()), ("CLOSED",) if n in closed else ()) for n, name in enumerate(names, 1)
     ]
@@ -157,3 +158,12 @@ def test_what_somebody_holds_is_that_and_nothing_else():
     world = small((7, "HOLDS_RH", 8))
     held = [holds(Literal.of(name, 7, thing), world) for name in ("HOLDS_RH", "HOLDS_LH") for thing in (8, 9)]
     assert held == [True, False, False, False]
+
+
+def test_what_is_in_a_room_counts_once_however_it_is_there():
+    """A cup is on a table and in a box, both in the kitchen; a knife is on the cup; the box is closed."""
+    world = small((10, "INSIDE", 1), (11, "INSIDE", 1), (8, "ON", 10), (8, "INSIDE", 11), (9, "ON", 8), closed=(11,))
+    seen = [world.home.ids[i] for i in indices(in_room(world, world.home.index[1]))]
+    assert seen == [1, 4, 6, 7, 8, 9, 10, 11]
+    assert [world.home.ids[i] for i in indices(out_of_sight(world))] == [8, 9]
+    assert [world.home.ids[i] for i in indices(in_room(world, world.home.index[2]))] == [2, 4, 5]

@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +17,7 @@ from hearth.homes.procedural.generate import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
+from hearth.schemas.graph import Box
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.metres import _in_the_way
@@ -394,3 +396,13 @@ def test_every_free_cell_is_in_a_room_and_one_walks_to_the_middle_of_rooms(name)
         main = np.flatnonzero(ways.main & (np.asarray(ground.rooms) == room))
         far = {cell: math.dist((x, z), ways.points[cell]) for cell in main.tolist()}
         assert [far[cell] for cell in ground.stands(room)] == [min(far.values())]
+
+
+def test_who_has_a_place_in_the_graph_stands_there_and_looks_where_it_says(maple):
+    graph = World.start(maple).graph()
+    me = next(node for node in graph.nodes if node.class_name == "character")
+    here = placed(World.start(maple)).agents[0].pose
+    box = Box((here.x, 0.9, here.z), (0.5, 1.8, 0.4))
+    nodes = tuple(replace(node, box=box, yaw=210.0) if node == me else node for node in graph.nodes)
+    found = placed(World.start(Home.from_graph(replace(graph, nodes=nodes), "maple", default()))).agents[0].pose
+    assert found == Pose(here.x, here.z, 210.0)
