@@ -23,8 +23,9 @@ import pyarrow.parquet as pq
 from measuring import Figure, Passes, as_line, finish, parser, passes, rate, seconds
 
 from hearth.pipelines.build import stage
+from hearth.pipelines.engine.runner import input_partitions
 from hearth.pipelines.engine.settings import Settings
-from hearth.pipelines.engine.stage import Job
+from hearth.pipelines.engine.stage import Job, records_of
 from hearth.pipelines.engine.tiers import TIERS
 from hearth.storage.partitions import READ_BATCH, read_rows, write_table
 
@@ -151,10 +152,8 @@ def _stored(found: list[Any], schema: pa.Schema, path: Path) -> Iterator[Callabl
 
 def records(job: Job) -> Iterator[Any]:
     """All records of a stage."""
-    for name in job.stage.reads:
-        for row in rows(job.settings.folder(name)):
-            if job.stage.select(row, job.plan):
-                yield row
+    for partition in (job.stage.partitions or input_partitions)(job):
+        yield from records_of(job, partition)
 
 
 def rows(folder: Path) -> Iterator[Any]:

@@ -174,7 +174,7 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     deadline = Deadline(job.settings.time_limit * stage.time_factor)
     try:
         sink = _Sink(job, partition, writer)
-        for record in _records(job, partition):
+        for record in records_of(job, partition):
             before = sink.counts.rejected
             sink.take(_name(stage, record), _attempt(stage, record, job.context, deadline))
             seen(1, sink.counts.rejected - before)
@@ -189,7 +189,8 @@ def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     return sink.counts
 
 
-def _records(job: Job, partition: Partition) -> Iterable[Any]:
+def records_of(job: Job, partition: Partition) -> Iterable[Any]:
+    """The records of a partition, as the stage has them."""
     stage = job.stage
     if stage.records is not None:
         return stage.records(job, partition)
