@@ -1,12 +1,10 @@
 """What programs need, and what is drawn for them, stay as they are until somebody means to change them."""
 
 import csv
-import hashlib
-import json
-import os
 from pathlib import Path
 
 import pytest
+from golden_files import compare, short
 
 from hearth.grounding.binding import bind
 from hearth.grounding.environments.sampling import Size, sample
@@ -19,14 +17,8 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
-GOLDEN = ROOT / "tests/golden/grounding/drawn.json"
-REFRESH = "if the new ones are right: HEARTH_REFRESH=1 python -m pytest tests/grounding/test_sampling_golden.py"
 HOMES, EVERY = ("maple", "birch", "willow"), 37
 SIZES = (Size(), Size.about(290))
-
-
-def _digest(value) -> str:
-    return hashlib.sha256(repr(value).encode()).hexdigest()[:12]
 
 
 def _described(found, inferred) -> object:
@@ -38,14 +30,14 @@ def _described(found, inferred) -> object:
         "abduced": [text for each in environment.conditions if (text := str(each)) not in inferred],
         "bound": " ".join(print_step(step) for step in environment.program.steps),
         "counts": " ".join(str(len(each)) for each in (*differs, environment.movable)),
-        "digest": _digest((differs, environment.movable)),
+        "digest": short((differs, environment.movable)),
         "runs": execution.executable,
     }
 
 
 def _nearest(program, home) -> str:
     found = bind(program, World.start(home))
-    return found.message() if isinstance(found, Failure) else _digest(sorted(found.nodes.items()))
+    return found.message() if isinstance(found, Failure) else short(sorted(found.nodes.items()))
 
 
 @pytest.fixture(scope="module")
@@ -71,14 +63,7 @@ def drawn(knowledge) -> dict[str, object]:
 
 
 def test_what_is_drawn_for_written_programs(drawn):
-    text = json.dumps(drawn, indent=1, ensure_ascii=False) + "\n"
-    if os.environ.get("HEARTH_REFRESH"):
-        GOLDEN.parent.mkdir(parents=True, exist_ok=True)
-        GOLDEN.write_text(text, "utf-8")
-    expected = json.loads(GOLDEN.read_text("utf-8"))
-    assert list(drawn) == list(expected), REFRESH
-    for name, found in json.loads(text).items():
-        assert found == expected[name], f"{name}: {REFRESH}"
+    compare("grounding/drawn.json", drawn)
 
 
 def test_most_of_them_run(drawn):

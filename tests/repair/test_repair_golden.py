@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import csv
-import hashlib
-import json
-import os
 from pathlib import Path
+
+from golden_files import compare, short
 
 from hearth.homes import library
 from hearth.kb.grammar import check
@@ -23,8 +22,6 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
-GOLDEN = ROOT / "tests/golden/repair/written.json"
-REFRESH = "if the new ones are right: HEARTH_REFRESH=1 python -m pytest tests/repair/test_repair_golden.py"
 HOMES, STRENGTHS, EVERY = ("maple", "juniper", "rowan"), ("mild", "thesis"), 101
 
 
@@ -61,7 +58,7 @@ def _repaired(found: Augmented | Failure) -> object:
 
 def _digest(steps: list[StepFeatures]) -> str:
     values = [(each.names, sorted((name, round(value, 6)) for name, value in each.numbers.items())) for each in steps]
-    return hashlib.sha256(repr(values).encode()).hexdigest()[:12]
+    return short(values)
 
 
 def _completed(program: Program, keep: tuple[bool, ...], home: Home) -> object:
@@ -85,9 +82,4 @@ def test_what_becomes_of_written_programs():
             "features": _digest(features(program, keep, default())),
             "completed": _completed(program, keep, other),
         }
-    if os.environ.get("HEARTH_REFRESH"):
-        GOLDEN.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", "utf-8")
-    expected = json.loads(GOLDEN.read_text("utf-8"))
-    assert list(found) == list(expected), REFRESH
-    for name, each in json.loads(json.dumps(found)).items():
-        assert each == expected[name], f"{name}: {REFRESH}"
+    compare("repair/written.json", found)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
 import random
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
+from golden_files import compare, known, short
 from small_worlds import random_graph, random_step
 
 from hearth.homes import library
@@ -26,23 +22,14 @@ from hearth.simulation.world.digest import digest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
-GOLDEN = Path(__file__).resolve().parents[1] / "golden/simulation.json"
-REFRESH = "if the new ones are right: HEARTH_REFRESH=1 python -m pytest tests/simulation/test_simulation_golden.py"
+GOLDEN = "simulation.json"
 BODIES = DEFAULT._replace(bodies=True)
 MOVES = ("Walktowards", "Walktowards", "Walkforward", "Turnleft", "Grab", "PutBack", "PutIn", "Open", "Close", "Sit")
 
 
-def _known() -> dict[str, Any]:
-    return json.loads(GOLDEN.read_text("utf-8")) if GOLDEN.is_file() else {}
-
-
 def _actions() -> list[str]:
     """The actions that there were when the file was written: one more changes nothing here."""
-    return _known().get("actions") or sorted(EVERY)
-
-
-def _short(value: object) -> str:
-    return hashlib.sha256(repr(value).encode()).hexdigest()[:12]
+    return known(GOLDEN)["actions"]
 
 
 def _small(seed: int) -> Iterator[str]:
@@ -81,24 +68,16 @@ def _large(name: str, seed: int) -> Iterator[tuple[str, str]]:
             ]
             options = sorted(map(repr, legal(world, number // 4 % 2, actions=_actions())))
             facts = (digest(world), poses, spots, seen.ids, repr(seen.me), repr(seen.others), options)
-            yield f"{number}", " ".join(map(_short, (*facts, sorted(failures.items(), key=str))))
+            yield f"{number}", " ".join(map(short, (*facts, sorted(failures.items(), key=str))))
 
 
 def test_what_random_steps_do_in_small_homes():
     found = {str(seed): list(_small(seed)) for seed in range(40)}
     words = sorted({line for lines in found.values() for line in lines if ": " in line and not line[-16:].isalnum()})
-    _compare("small", {"digests": {seed: _short(lines) for seed, lines in found.items()}, "refused": words[::7]})
+    digests = {seed: short(lines) for seed, lines in found.items()}
+    compare(GOLDEN, {"digests": digests, "refused": words[::7]}, "small")
 
 
 def test_what_two_do_by_metres():
-    _compare(
-        "large", {f"{name} {seed}": dict(_large(name, seed)) for seed, name in enumerate(("maple", "larch", "cedar"))}
-    )
-
-
-def _compare(part: str, found: object) -> None:
-    known = _known()
-    if os.environ.get("HEARTH_REFRESH"):
-        known |= {"actions": _actions(), part: found}
-        GOLDEN.write_text(json.dumps(known, indent=1, ensure_ascii=False, sort_keys=True) + "\n", "utf-8")
-    assert json.loads(json.dumps(found)) == known[part], REFRESH
+    found = {f"{name} {seed}": dict(_large(name, seed)) for seed, name in enumerate(("maple", "larch", "cedar"))}
+    compare(GOLDEN, found, "large")

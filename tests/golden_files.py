@@ -1,0 +1,46 @@
+"""Golden files of tests/golden: what something gives, kept until somebody means to change it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).resolve().parent / "golden"
+
+
+def short(value: object) -> str:
+    """Twelve digits that stand for some bytes, or for how a value is printed."""
+    data = value if isinstance(value, bytes) else repr(value).encode()
+    return hashlib.sha256(data).hexdigest()[:12]
+
+
+def known(name: str) -> dict[str, Any]:
+    """What a golden file has; nothing where it is not there yet."""
+    file = FOLDER / name
+    found: dict[str, Any] = json.loads(file.read_text("utf-8")) if file.is_file() else {}
+    return found
+
+
+def compare(name: str, found: Mapping[str, object], part: str = "", others: bool = False) -> None:
+    """Whether a golden file, or a part of it, has just this; with HEARTH_REFRESH=1 it is written there.
+
+    Args:
+        name: of the file.
+        found: what there is now.
+        part: the field of the file that it is compared with; the whole file by default.
+        others: whether there may be entries now that the file does not have.
+    """
+    now: dict[str, Any] = json.loads(json.dumps(found))
+    if os.environ.get("HEARTH_REFRESH"):
+        text = json.dumps(known(name) | {part: now} if part else now, indent=1, ensure_ascii=False, sort_keys=True)
+        (FOLDER / name).write_text(text + "\n", "utf-8")
+    expected = known(name)[part] if part else known(name)
+    test = os.environ["PYTEST_CURRENT_TEST"].partition("::")[0]
+    remedy = f"if it is right now: HEARTH_REFRESH=1 python -m pytest {test}"
+    for entry, was in expected.items():
+        assert now.get(entry) == was, f"{entry}: {remedy}"
+    assert others or now.keys() == expected.keys(), remedy
