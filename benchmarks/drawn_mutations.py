@@ -19,6 +19,7 @@ import contextlib
 import json
 import os
 import queue
+import re
 import shutil
 import subprocess
 import sys
@@ -50,6 +51,20 @@ settings.register_profile("unshrunk", settings.get_profile("hearth"), phases=(Ph
 settings.load_profile("unshrunk")
 """
 """Added to the tests of a copy: that an example fails is enough, a small one takes long to find."""
+
+RULES = """
+[run]
+data_file = {data}
+source = {source}
+parallel = true
+omit = */tests/*
+patch = subprocess
+context = ${{PYTEST_CURRENT_TEST-}}
+"""
+"""How coverage is measured: a program that a test starts runs its lines for that test."""
+
+CONTEXT = re.compile(r"\|(setup|run|teardown)$| \((setup|call|teardown)\)$")
+"""What a coverage context has besides the test: the phase, of the test itself or of a program that it started."""
 
 UNNOTICED = ("NoOp", "_Eq_Is", "_Is_Eq", "_NotEq_IsNot", "_IsNot_NotEq")
 """Operators that change nothing: names, small numbers and members of enumerations that are equal are the same."""
@@ -176,19 +191,17 @@ def copied(folder: Path, root: Path = ROOT) -> Path:
     return copy
 
 
-def pytest_run(copy: Path, words: Sequence[str], limit: int, plugins: bool = False) -> int | None:
+def pytest_run(copy: Path, words: Sequence[str], limit: int) -> int | None:
     """The status of pytest with the package taken from the copy; None where it did not end.
 
     A process ends after `limit` seconds of the processor, so that a busy machine does not end one that works. What
-    waits for ever uses none: ten times as long by the clock is the end for all. Only with `plugins` are those of pytest
-    loaded that are installed.
+    waits for ever uses none: ten times as long by the clock is the end for all.
     """
     place = str(copy.parent)
     code = PYTEST.format(place=place, limit=limit)
     data = os.environ.get("HEARTH_REAL_DATA", str(ROOT.parent / "shared/real"))
-    environment = {**os.environ, "PYTHONPATH": place, "PYTHONDONTWRITEBYTECODE": "1", "HEARTH_REAL_DATA": data}
-    if not plugins:
-        environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # they take as long to load as most tests run
+    environment = {**os.environ, "PYTHONPATH": place, "PYTHONDONTWRITEBYTECODE": "1", "HEARTH_REAL_DATA": data,
+                   "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # plugins take as long to load as most tests run  # fmt: skip
     command = [sys.executable, "-c", code, "-q", "-p", "no:cacheprovider", "-m", NOT_SLOW, *words]
     with tempfile.TemporaryDirectory() as scratch:
         environment["TMPDIR"] = scratch  # whatever a stopped test leaves behind goes, too
@@ -217,17 +230,18 @@ def measured(rooms: Sequence[str], jobs: int) -> tuple[Reached, dict[str, float]
         copy = copied(Path(folder))
         data, times = Path(folder, "coverage"), Path(folder, "times.xml")
         rules = Path(folder, "rules")
-        rules.write_text(f"[run]\ndata_file = {data}\nsource = {copy}\nparallel = true\nomit = */tests/*\n")
-        words = ["-n", str(jobs), "--dist", "loadfile", "--cov", f"--cov-config={rules}", "--cov-context=test",
-                 "--cov-report=", f"--junitxml={times}", "-o", "junit_family=xunit1"]  # fmt: skip
-        status = pytest_run(copy, words, 5_400, plugins=True)
+        rules.write_text(RULES.format(data=data, source=copy))
+        words = ["-p", "xdist", "-p", "pytest_cov", "-n", str(jobs), "--dist", "loadfile", "--cov",
+                 f"--cov-config={rules}", "--cov-context=test", "--cov-report=", f"--junitxml={times}",
+                 "-o", "junit_family=xunit1"]  # fmt: skip
+        status = pytest_run(copy, words, 5_400)
         if status not in (0, 1):
             raise SystemExit(f"the tests did not end (pytest's status {status})")
         kept = coverage.CoverageData(str(data))
         kept.read()
         reached = {
             path.relative_to(copy).as_posix(): {
-                str(line): sorted({test.split("|")[0] for test in tests if test})
+                str(line): sorted({CONTEXT.sub("", test) for test in tests if test})
                 for line, tests in kept.contexts_by_lineno(str(path)).items()
             }
             for path in map(Path, kept.measured_files())
@@ -264,7 +278,7 @@ def chosen(
 ) -> list[str]:
     """The tests of a mutation within the budget: those that run its line, and those of its room that run its file.
 
-    The latter because what one test computes may be kept for the next, whose line it then is no more.
+    The latter because a cache may keep what one test computes, so that a later test does not run the line itself.
     First the fastest, each of another file. Then by turns the one that runs most lines of the room, the room's own
     before others, and the fastest that is left: hundreds of short tests of one table would use up the budget of those
     that look at everything.
