@@ -22,6 +22,7 @@ sys.path[:] = [entry for entry in sys.path if Path(entry or ".").resolve() != Pa
 
 from attack import Attack, Ground  # noqa: E402
 from attacks_on_challenges import clients, results, task_files  # noqa: E402
+from attacks_on_episodes import episodes  # noqa: E402
 from attacks_on_models import checkpoints  # noqa: E402
 from attacks_on_studies import studies  # noqa: E402
 from attacks_on_web import web  # noqa: E402
@@ -330,7 +331,7 @@ def terminals() -> Iterator[Attack]:
 
 GROUPS = (
     queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, task_files, results,
-    clients, studies, web,
+    clients, episodes, studies, web,
 )  # fmt: skip
 
 

@@ -28,7 +28,8 @@ from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import tick
 from hearth.simulation.env import Env, Tick
-from hearth.simulation.episode import Episode, read, write
+from hearth.simulation.episode import Episode
+from hearth.simulation.episode_files import read, write
 from hearth.simulation.goals import Progress
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation.views import view
@@ -42,7 +43,7 @@ GOAL = Goal.of(
 )
 AGAIN = (
     "import sys; from pathlib import Path; from hearth.kb.loading.load import default;"
-    "from hearth.simulation.episode import read;"
+    "from hearth.simulation.episode_files import read;"
     "print(sum(each.verify() is None for each in read(Path(sys.argv[1]), default())))"
 )
 

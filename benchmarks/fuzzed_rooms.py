@@ -92,6 +92,18 @@ def _read_results(path: Path) -> Any:
     return len(found.header.keys) < 10 and verify(found, str(path), default)
 
 
+def _episodes() -> bytes:
+    from attacks_on_episodes import recorded
+
+    return "".join(f"{json.dumps(each)}\n" for each in recorded()).encode()
+
+
+def _read_episodes(path: Path) -> Any:
+    from attacks_on_episodes import done_again
+
+    return done_again(path)
+
+
 def _read_study(path: Path) -> Any:
     from hearth.studies.study_file import read_study
 
@@ -206,6 +218,7 @@ _STEPS = b'{"type": "check", "n": 1, "steps": [{"action": "Grab", "things": [["c
 
 ROOMS: dict[str, Room] = {
     "tasks": Room(_tasks, _by_file("tasks.json", _read_tasks)),
+    "episodes": Room(_episodes, _by_file("episodes.jsonl", _read_episodes)),
     "results": Room(_results, _by_file("results.jsonl", _read_results)),
     "study": Room(_study, _by_file("study.yaml", _read_study)),
     "films-list": Room(lambda: _FILM, _by_file("films.json", _read_films)),

@@ -48,8 +48,7 @@ class TextAgent:
 
     Args:
         ask: answers a prompt.
-        keep: gets a row for each tick: `tick`, `agent`, `prompt`, `answer`, `instruction`, `said`,
-            `fault`.
+        keep: gets a row for each tick: `tick`, `agent`, `prompt`, `answer`, `instruction`, `said`, `fault`.
         messages: whether it may say something instead of doing something.
     """
 

@@ -220,9 +220,10 @@ def _play(
 
 
 def _write(out: Path, played: Played) -> None:
-    from hearth.simulation.episode import Episode, write
+    from hearth.simulation.episode import Episode
+    from hearth.simulation.episode_files import write
 
-    write(out, [Episode.of(played.env, [{n: str(m) for n, m in each.items()} for each in played.said])])
+    write(out, [Episode.of(played.env, played.said)])
 
 
 def _result(home: str, played: Played, seats: list[_Seat], agents: list[Agent], out: Path | None) -> dict[str, Any]:

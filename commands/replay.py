@@ -63,7 +63,7 @@ def _episodes(path: Path, limit: int | None, as_json: bool) -> None:
     from itertools import islice
 
     from hearth.kb.loading.load import default
-    from hearth.simulation.episode import read
+    from hearth.simulation.episode_files import read
 
     found = [(len(each.ticks), each.verify()) for each in islice(read(path, default()), limit)]
     differing = [{"episode": number, "fault": fault} for number, (_, fault) in enumerate(found, 1) if fault]

@@ -134,11 +134,11 @@ def read_node(data: Mapping[str, Any]) -> Node:
         raise TypeError(f"yaw is {type(yaw).__name__}, not a number")
     return Node(
         stored(data["id"]),
-        _word(data["class_name"]),
-        _word(data.get("category") or ""),
-        tuple(map(_word, _listed(data.get("properties")))),
-        tuple(map(_word, _listed(data.get("states")))),
-        None if prefab is None else _word(prefab),
+        word(data["class_name"]),
+        word(data.get("category") or ""),
+        tuple(map(word, _listed(data.get("properties")))),
+        tuple(map(word, _listed(data.get("states")))),
+        None if prefab is None else word(prefab),
         Box(_point(box["center"]), _point(box["size"])) if box else None,
         yaw,
     )
@@ -148,10 +148,15 @@ def _edge(data: Mapping[str, Any]) -> Edge:
     source, target = data["from_id"], data["to_id"]
     if type(source) is not int or type(target) is not int:
         raise TypeError("an edge needs numbers for from_id and to_id")
-    return Edge(stored(source), _word(data["relation_type"]), stored(target))
+    return Edge(stored(source), word(data["relation_type"]), stored(target))
 
 
-def _word(value: Any) -> str:
+def word(value: Any) -> str:
+    """A value that must be text.
+
+    Raises:
+        TypeError: it is not.
+    """
     if not isinstance(value, str):
         raise TypeError(f"{type(value).__name__} where a word is expected")
     return value

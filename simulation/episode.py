@@ -1,42 +1,26 @@
-"""Episodes that can be done again: recorded, written to a file, read back, and checked by a digest of every tick.
-
-A file has JSON lines. A line with `graph` is a home's; a line with `ticks` is an episode, which names the home and what
-is different from it at its start. Files whose names end in `.gz` are compressed.
-"""
+"""Episodes that can be done again, and checked by a digest of every tick."""
 
 from __future__ import annotations
 
-import gzip
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from hashlib import blake2b
-from pathlib import Path
-from typing import Any
 
-from hearth.kb.knowledge import Knowledge
-from hearth.schemas import change as changes
-from hearth.schemas.change import Change
-from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.agent_messages import Message
+from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code, Failure
-from hearth.schemas.graph import Edge, EnvironmentGraph, from_release, read_node, to_release
 from hearth.schemas.program import Step
-from hearth.schemas.syntax import parse_steps, print_step
+from hearth.schemas.syntax import print_step
 from hearth.simulation.engine import tick
 from hearth.simulation.env import Env
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.digest import digest
-from hearth.simulation.world.edit import apply, edit
-from hearth.simulation.world.home import Home
-from hearth.simulation.world.snapshot import private, with_private
 from hearth.simulation.world.world import World
-from hearth.storage.files import replacing
-from hearth.storage.input_files import read_input
 
 Instructions = Mapping[int, Step]
 """What each agent tries in a tick, by number."""
 
-
-Said = Mapping[int, str]
+Said = Mapping[int, Message]
 """What each agent says in a tick, by number."""
 
 
@@ -100,98 +84,5 @@ class Episode:
 def _following(last: str, instructions: Instructions, failures: Mapping[int, Failure], said: Said, world: World) -> str:
     tried = ((number, print_step(step), str(failures[number].code) if number in failures else "")
              for number, step in sorted(instructions.items()))  # fmt: skip
-    return blake2b(repr((last, *tried, *sorted(said.items()), digest(world))).encode(), digest_size=16).hexdigest()
-
-
-def write(path: Path, episodes: Iterable[Episode]) -> int:
-    """Write episodes, each home once; the number of episodes."""
-    import orjson
-
-    homes: dict[str, EnvironmentGraph] = {}
-    count = 0
-    with replacing(path) as temporary, _opened(temporary, path) as file:
-        for episode in episodes:
-            root = episode.start.home
-            while root.base is not None:
-                root = root.base[0]
-            base = World.start(root)
-            key = digest(base)
-            if key not in homes:
-                homes[key] = base.graph()
-                file.write(orjson.dumps({"home": root.name, "key": key, "graph": to_release(homes[key])}) + b"\n")
-            file.write(orjson.dumps(_line(episode, key, homes[key])) + b"\n")
-            count += 1
-    return count
-
-
-def _opened(temporary: Path, path: Path) -> Any:
-    # A compressed file without a time has the same bytes every time.
-    return gzip.GzipFile("", "wb", 6, temporary.open("wb"), 0) if path.suffix == ".gz" else temporary.open("wb")
-
-
-def _line(episode: Episode, key: str, base: EnvironmentGraph) -> dict[str, Any]:
-    change = changes.encode(base, episode.start.graph())
-    said = {"said": [{str(n): text for n, text in sorted(each.items())} for each in episode.said]}
-    return {
-        "home": key,
-        "start": {
-            "added": list(map(tuple, change.added)),
-            "removed": list(map(tuple, change.removed)),
-            "set": change.set_states,
-            "cleared": change.cleared_states,
-            "nodes": to_release(EnvironmentGraph(change.added_nodes, ()))["nodes"],
-            "gone": change.removed_nodes,
-            **private(episode.start),
-        },
-        "rules": episode.rules._asdict(),
-        "ticks": [{str(n): print_step(step) for n, step in sorted(each.items())} for each in episode.ticks],
-        **(said if any(episode.said) else {}),
-        "digests": episode.digests,
-    }
-
-
-def read(path: Path, knowledge: Knowledge) -> Iterator[Episode]:
-    """The episodes of a file, one after the other.
-
-    Raises:
-        HearthError: MISSING_FILE; BAD_JSON, with the line, of anything but episodes and homes.
-    """
-    import orjson
-
-    data = read_input(path)
-    lines = (gzip.decompress(data) if path.suffix == ".gz" else data).splitlines()
-    homes: dict[str, Home] = {}
-    for number, line in enumerate(lines, 1):
-        try:
-            row = orjson.loads(line)
-            if "graph" in row:
-                homes[row["key"]] = Home.from_graph(from_release(row["graph"]), row["home"], knowledge)
-            else:
-                yield _episode(row, homes[row["home"]])
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            message = f"not an episode: {type(error).__name__} {error}"
-            raise HearthError(Diagnostic(Code.BAD_JSON, message, str(path), number)) from error
-
-
-def _episode(row: Mapping[str, Any], home: Home) -> Episode:
-    start = row["start"]
-    edges = [tuple(Edge(*edge) for edge in start[name]) for name in ("added", "removed")]
-    states = [tuple((int(node), str(state)) for node, state in start[name]) for name in ("set", "cleared")]
-    world = World.start(home)
-    found = edit(world, remove=start["gone"], add=tuple(map(read_node, start["nodes"])), check=False)
-    assert isinstance(found, World)
-    found = with_private(apply(found, Change(edges[0], edges[1], states[0], states[1])), start)
-    ticks = [{int(n): _read(text, int(n)) for n, text in each.items()} for each in row["ticks"]]
-    said = [{int(n): str(text) for n, text in each.items()} for each in row.get("said", [{}] * len(ticks))]
-    digests: Sequence[str] = row["digests"]
-    if len(digests) != len(ticks) + 1 or len(said) != len(ticks):
-        raise ValueError(f"{len(digests)} digests and {len(said)} rows of what was said, of {len(ticks)} ticks")
-    return Episode(found, Rules(**row["rules"]), tuple(ticks), tuple(map(str, digests)), tuple(said))
-
-
-def _read(text: str, agent: int) -> Step:
-    """An instruction as it was tried: it need not be one that makes sense."""
-    found = parse_steps(text)
-    if isinstance(found, Diagnostic) or len(found) != 1:
-        raise ValueError(f"`{text[:60]}` is not an instruction")
-    return replace(found[0], agent=agent)
+    words = ((number, str(message)) for number, message in sorted(said.items()))
+    return blake2b(repr((last, *tried, *words, digest(world))).encode(), digest_size=16).hexdigest()

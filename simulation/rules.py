@@ -1,10 +1,13 @@
 """Named options of the engine: where the release's accidents and people's expectations differ."""
 
-from typing import Literal, NamedTuple
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, get_args
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key
 from hearth.schemas.program import Program
+
+Origin = Literal["sensible", "release"]
 
 
 class Rules(NamedTuple):
@@ -20,7 +23,7 @@ class Rules(NamedTuple):
         one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
     """
 
-    origin: Literal["sensible", "release"] = "sensible"
+    origin: Origin = "sensible"
     watch_needs_on: bool = True
     doors: bool = True
     bodies: bool = False
@@ -38,6 +41,23 @@ WATCHING_OFF = DEFAULT._replace(watch_needs_on=False)
 
 RULES: dict[str, Rules] = {"default": DEFAULT, "replay": REPLAY, "watching_off": WATCHING_OFF}
 """The options by the names that published executions give them."""
+
+
+def read(given: Mapping[str, Any]) -> Rules:
+    """Options by name, as `Rules._asdict` gives them; what is not named is as usual.
+
+    Raises:
+        TypeError: one of them is unknown.
+        ValueError: one of them has a value that it cannot have.
+    """
+    rules = Rules(**given)
+    switches = {name: value for name, value in rules._asdict().items() if name != "origin"}
+    odd = [name for name, value in switches.items() if not isinstance(value, bool)]
+    if rules.origin not in get_args(Origin):
+        odd.append("origin")
+    if odd:
+        raise ValueError(f"the rule `{odd[0]}` is {given[odd[0]]!r:.40}")
+    return rules
 
 
 def suited(program: Program, knowledge: Knowledge, rules: Rules = DEFAULT) -> Rules:

@@ -129,6 +129,16 @@ def raw(place: Place) -> BinaryIO:
     return file
 
 
+def unpacked(data: bytes, name: str) -> BinaryIO:
+    """The stream of a gzip file's bytes.
+
+    Args:
+        data: the packed bytes.
+        name: of the file, for messages.
+    """
+    return _buffered(_Guarded(cast("IO[bytes]", gzip.open(io.BytesIO(data))), name, len(data)))
+
+
 def _opened(member: Member) -> IO[bytes]:
     try:
         return archive(member.archive).open(member.name)

@@ -17,7 +17,8 @@ from hearth.kb.loading.load import default
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.env import Env
-from hearth.simulation.episode import Episode, read, write
+from hearth.simulation.episode import Episode
+from hearth.simulation.episode_files import read, write
 from hearth.simulation.goal_text import read_goal
 
 ASKING = """
@@ -93,12 +94,22 @@ def test_an_observation_has_what_others_said(start):
 
 def test_an_episode_keeps_what_was_said_and_a_changed_word_is_found(start, tmp_path):
     done, *_ = conversation(start)
-    words = [{n: str(message) for n, message in each.items()} for each in done.said]
     file = tmp_path / "episode.jsonl"
-    write(file, [Episode.of(done.env, words)])
+    write(file, [Episode.of(done.env, done.said)])
     (found,) = read(file, default())
-    assert list(found.said) == words and found.verify() is None
+    assert found.said == done.said and found.verify() is None
     assert found != Episode.of(done.env)
     file.write_text(file.read_text().replace("plate, 55", "plate, 56"))
     (altered,) = read(file, default())
     assert altered.verify().line == 2
+
+
+@pytest.mark.parametrize("text", ["Tell", "<script>alert(1)</script>", "\x1b[2J"])
+def test_what_is_no_message_is_no_episode(start, text, tmp_path):
+    done, *_ = conversation(start)
+    file = tmp_path / "episode.jsonl"
+    write(file, [Episode.of(done.env, done.said)])
+    file.write_text(file.read_text().replace('"Ask"', json.dumps(text)))
+    with pytest.raises(HearthError) as caught:
+        list(read(file, default()))
+    assert str(caught.value.diagnostics[0].code) == "BAD_JSON" and caught.value.diagnostics[0].line == 2

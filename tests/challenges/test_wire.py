@@ -19,7 +19,8 @@ from hearth.challenges.wire import PROTOCOL, WireAgent
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.env import Env
-from hearth.simulation.episode import Episode, read, write
+from hearth.simulation.episode import Episode
+from hearth.simulation.episode_files import read, write
 from hearth.simulation.goal_text import read_goal
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -17,7 +17,8 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.env import Env
-from hearth.simulation.episode import Episode, read, write
+from hearth.simulation.episode import Episode
+from hearth.simulation.episode_files import read, write
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.digest import digest
 from hearth.simulation.world.edit import edit
@@ -87,7 +88,7 @@ def test_what_is_written_is_the_same_in_every_process(file):
     """Another process with another hash seed finds each digest again, and writes the same bytes."""
     program = (
         "import sys; from pathlib import Path; from hearth.kb.loading.load import default;"
-        "from hearth.simulation.episode import read, write; file = Path(sys.argv[1]);"
+        "from hearth.simulation.episode_files import read, write; file = Path(sys.argv[1]);"
         "found = list(read(file, default())); assert all(each.verify() is None for each in found), 'differs';"
         "write(file.with_name('again.jsonl.gz'), found)"
     )
@@ -156,3 +157,32 @@ def test_an_instruction_that_is_none_is_refused(file, tmp_path):
     bad.write_bytes(b"\n".join([lines[0], orjson.dumps(row)]))
     with pytest.raises(HearthError, match="is not an instruction"):
         list(read(bad, default()))
+
+
+@pytest.mark.parametrize(
+    ("rules", "words"),
+    [({"doors": 2}, "the rule `doors` is 2"), ({"origin": "x"}, "the rule `origin` is 'x'"), ({"x": True}, "'x'")],
+)
+def test_rules_that_there_are_not_are_refused(file, tmp_path, rules, words):
+    lines = gzip.decompress(file.read_bytes()).splitlines()
+    bad = tmp_path / "bad.jsonl"
+    bad.write_bytes(b"\n".join([lines[0], orjson.dumps({**orjson.loads(lines[1]), "rules": rules})]))
+    with pytest.raises(HearthError, match=words):
+        list(read(bad, default()))
+
+
+@pytest.mark.parametrize(
+    ("packed", "code"),
+    [
+        (gzip.compress(bytes(300_000_000), 1), Code.FILE_TOO_LARGE),
+        (gzip.compress(b"{}" * 10_000)[:-20], Code.BAD_ARCHIVE),
+        (b"{}", Code.BAD_ARCHIVE),
+    ],
+    ids=["a bomb", "cut off", "not packed"],
+)
+def test_a_packed_file_that_is_none_is_refused(tmp_path, packed, code):
+    path = tmp_path / "bad.jsonl.gz"
+    path.write_bytes(packed)
+    with pytest.raises(HearthError) as caught:
+        list(read(path, default()))
+    assert caught.value.diagnostics[0].code is code

@@ -16,7 +16,8 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import act, run
 from hearth.simulation.env import Env
-from hearth.simulation.episode import Episode, read, write
+from hearth.simulation.episode import Episode
+from hearth.simulation.episode_files import read, write
 from hearth.simulation.instructions import instruction_of
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.positions import placed
