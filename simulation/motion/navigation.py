@@ -144,9 +144,7 @@ class Ways:
         dx, dz = step[0] / cell / count, step[1] / cell / count
         for part in range(1, count + 1):
             i, j = math.floor(x + dx * part), math.floor(z + dz * part)
-            if not (0 <= i < len(rows) and 0 <= j < len(rows[0])):
-                return (part - 1) / count
-            number = rows[i][j]
+            number = rows[i][j] if 0 <= i < len(rows) and 0 <= j < len(rows[0]) else -1
             if number < 0 or not main[number] or number in without:
                 return (part - 1) / count
         return 1.0

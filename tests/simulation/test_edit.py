@@ -12,6 +12,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import OPPOSITE, STATES
 from hearth.simulation.engine import act
 from hearth.simulation.rules import DEFAULT
+from hearth.simulation.world.derived import Movable
 from hearth.simulation.world.edit import added_nodes, apply, edit, extended, free_id
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
@@ -102,6 +103,20 @@ def test_ids_below_the_homes_own_are_put_in_order():
     assert new.ids == [1, 2, 3, 4, 5, 6, 7, 1000, 2000]
     assert new.rows == fresh.rows
     assert new.states == fresh.states
+
+
+@pytest.mark.parametrize("last", [8, 500], ids=["behind", "before"])
+def test_movable_things_come_whether_other_new_nodes_are_in_order_or_not(last):
+    home = extended(kitchen(), [node(last, "bowl")])
+    cup = Movable(node(1001, "cup", properties=["GRABBABLE"]), "ON", home.index[4], home.index[1], 1 << home.index[6])
+    edges = [Edge(100, "ON", 4), Edge(100, "INSIDE", 1)]
+    new = extended(home, [node(100, "plate")], edges, (), {}, [cup])
+    assert new.ids == sorted([1, 2, 3, 4, 5, 6, 7, last, 100, 1001])
+    assert {(1001, "ON", 4), (1001, "INSIDE", 1), (1001, "CLOSE", 6), (6, "CLOSE", 1001), (100, "ON", 4)} <= {
+        tuple(edge) for edge in World.start(new).graph().edges
+    }
+    fresh = Home.from_graph(World.start(new).graph(), "", default())
+    assert new.rows == fresh.rows and new.classes == fresh.classes
 
 
 @pytest.mark.parametrize(

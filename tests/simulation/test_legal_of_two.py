@@ -13,6 +13,7 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.engine import act
 from hearth.simulation.rules import DEFAULT
+from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -79,3 +80,16 @@ def test_what_one_holds_is_grabbed_again_only_by_the_releases_rule():
     assert isinstance(refused, Failure) and refused.code is Code.HELD_ALREADY
     assert again in legal(start, 0, DEFAULT) and again not in legal(start, 0, rules)
     assert not isinstance(act(start, bound_step("Grab", [CUPS[1]], 0), rules), Failure)
+    assert not isinstance(act(world(Edge(2, "HOLDS_RH", 6)), again, rules), Failure)  # after it in the home
+
+
+@pytest.mark.parametrize(("near", "returned"), [(5, True), (6, False)])
+def test_a_thing_goes_back_to_where_one_took_it_only_if_that_is_near(near, returned):
+    tables = [Node(number, "table", "Furniture", ("SURFACES",)) for number in (5, 6)]
+    edges = [Edge(n, "INSIDE", 1) for n in (2, 4, 5, 6)] + [Edge(4, "ON", 5), Edge(2, "CLOSE", 4), Edge(2, "CLOSE", 5)]
+    graph = EnvironmentGraph((KITCHEN, ME, CUPS[0], *tables), tuple(edges))
+    taken = act(World.start(Home.from_graph(graph, "", default())), bound_step("Grab", [CUPS[0]], 0))
+    apart = edit(taken, unlink=[Edge(2, "CLOSE", 5), Edge(5, "CLOSE", 2)])
+    start = edit(apart, link=[Edge(2, "CLOSE", near)])
+    back = bound_step("PutObjBack", [CUPS[0]], 0)
+    assert (code(start, back) is None) is returned is (back in legal(start, 0, DEFAULT))

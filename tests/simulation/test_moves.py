@@ -201,8 +201,19 @@ def test_a_closed_door_stops_who_walks_straight_on(maple):
         if isinstance(act(world, step("Walkforward")), World):
             closed = edit(world, set=[(home.ids[door], "CLOSED")])
             assert isinstance(act(closed, step("Walkforward")), Failure)
+            assert isinstance(act(closed, step("Walkforward"), DEFAULT._replace(doors=False)), World)
+            open_ones = edit(world, set=[(home.ids[each], "OPEN") for each in indices(home.doors)])
+            assert isinstance(act(open_ones, step("Walkforward"), DEFAULT._replace(doors=False)), World)
             stopped += 1
     assert stopped
+
+
+def test_of_blocked_cells_none_is_nearest(maple):
+    ways = ground_of(maple).ground.ways
+    blocked = np.ones(len(ways.points), bool)
+    assert ways.nearest((0.0, 0.0), blocked) == -1
+    blocked[7] = False
+    assert ways.nearest((0.0, 0.0), blocked) == 7 and ways.nearest(tuple(ways.points[7])) == 7
 
 
 def test_a_character_stands_in_the_main_region_from_the_start():
