@@ -299,8 +299,8 @@ def _describe(
     return mistyped(text, chance) if chance.random() < TYPO else text
 
 
-def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:
-    """A program as a line of JSON Lines that `ingest` reads, labelled as generated."""
+def record(found: Synthetic, number: int, seed: int, splits: Mapping[str, str | None]) -> dict[str, Any]:
+    """A program as a line of JSON Lines that `ingest` reads, labelled as generated, with its parts in splits."""
     return {
         "program_id": f"synthetic:{seed}:{number}",
         "origin": "synthetic",
@@ -309,4 +309,5 @@ def record(found: Synthetic, number: int, seed: int) -> dict[str, Any]:
         "descriptions": list(found.descriptions[1:]),
         "steps": found.lines(),
         "tasks": list(found.tasks),
+        "splits": dict(splits),
     }

@@ -123,12 +123,19 @@ def figures(programs: Sequence[Synthetic], rows: Sequence[SplitText] = ()) -> di
     }
 
 
-def write(programs: Sequence[Synthetic], seed: int, path: Path) -> list[SplitText]:
-    """Write the parts of descriptions as CSV: split, program id, number of the description, part; returns them."""
-    rows = splits(programs, seed)
+def of_first(rows: Sequence[SplitText]) -> dict[int, dict[str, str | None]]:
+    """The part of each program's first description in every split, by number of the program."""
+    found: dict[int, dict[str, str | None]] = {}
+    for row in rows:
+        if row.description == 0:
+            found.setdefault(row.program, {})[row.split] = row.part
+    return found
+
+
+def write(rows: Sequence[SplitText], seed: int, path: Path) -> None:
+    """Write the parts of descriptions as CSV: split, program id, number of the description, part."""
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(("split", "program_id", "description", "part"))
     writer.writerows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
     write_bytes(path, table.getvalue().encode())
-    return rows

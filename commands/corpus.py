@@ -58,9 +58,10 @@ def synthesize(
 ) -> None:
     """Draw distinct programs with descriptions from a probabilistic grammar, as JSON Lines that `build` reads.
 
-    Programs have one to three tasks of the grammar. With --splits a table says which descriptions train and test:
-    splits hold out paraphrases, tasks, pairs of tasks, or objects; --json then has their sizes. With --described: the
-    programs, drawn once, whose descriptions were written one by one.
+    Programs have one to three tasks of the grammar. Each says in which part it is of splits that hold out paraphrases,
+    tasks, pairs of tasks, or objects: a build publishes them among its splits. With --splits a table has the parts of
+    all descriptions; --json then has their sizes. With --described: the programs, drawn once, whose descriptions were
+    written one by one.
 
     \b
     Examples:
@@ -86,8 +87,11 @@ def synthesize(
     else:
         weights = synthesis.load(grammar or synthesis.FILE, inputs.read_knowledge(kb), every_action=actions == "all")
         drawn = list(synthesis.synthesize(count, seed, weights, descriptions))
-        figures = numbers.figures(drawn, numbers.write(drawn, seed, splits) if splits else ())
-        records = (synthesis.record(one, number, seed) for number, one in enumerate(drawn, 1))
+        rows = numbers.splits(drawn, seed)
+        if splits:
+            numbers.write(rows, seed, splits)
+        figures, parts = numbers.figures(drawn, rows if splits else ()), numbers.of_first(rows)
+        records = (synthesis.record(one, number, seed, parts[number]) for number, one in enumerate(drawn, 1))
     lines = (orjson.dumps(record) + b"\n" for record in records)
     if out is None:
         sys.stdout.buffer.writelines(lines)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.datasets.format.cases import start_of
 from hearth.datasets.format.codecs import program_of
 from hearth.datasets.format.sketch_choice import ANNOTATED, sketches_query
+from hearth.datasets.format.splits import RULES
 from hearth.datasets.format.stored_cases import stored_cases
 from hearth.datasets.verify import opened
 from hearth.models.interface import Request, Steps
@@ -152,7 +153,8 @@ def _example(row: Any) -> Example:
 def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 0, sketches: str = ANNOTATED) -> Corpus:
     """The training and validation examples of a split.
 
-    Where the split has no part `validation`, one in ten activities of `train` is taken out for it.
+    Where the split has no part `validation`, one in ten activities of `train` is taken out for it. Of a split by
+    activity or home, validation has no activities of `train`; one that came with its source is as it is.
 
     Raises:
         HearthError: UNKNOWN_ID, if the split has no training examples.
@@ -161,7 +163,7 @@ def corpus(dataset: Dataset, split: str, *, originals: bool = True, seed: int = 
     common = shared(train, _read(dataset, split, "test", originals, sketches))
     validation = _read(dataset, split, "validation", originals, sketches)
     if validation:
-        activities = {each.activity for each in train}
+        activities = {each.activity for each in train} if split in RULES else set()
         validation = tuple(each for each in validation if each.activity not in activities)
         return Corpus(dataset, split, train, validation, common)
     return Corpus(dataset, split, *carved(train, seed), common)

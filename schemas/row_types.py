@@ -308,6 +308,13 @@ class WrittenGroundingRow(TypedDict):
     final: Annotated[ChangeRow | None, "what the stored final graph changes"]
 
 
+class PartRow(TypedDict):
+    """The part of a program in a split of its source's own."""
+
+    split: Annotated[str, "name of the split"]
+    part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]
+
+
 class IngestedRow(_Kind, NamedRow):
     """What `ingest` reads."""
 
@@ -319,6 +326,7 @@ class IngestedRow(_Kind, NamedRow):
     ]
     conditions: Annotated[list[ConditionRow] | None, "preconditions that came with the program"]
     keep: Annotated[list[bool] | None, "for each step of the program a sketch is of, whether it is kept"]
+    parts: Annotated[list[PartRow] | None, "its parts in splits of its source's own"]
 
 
 class GroundingRow(TypedDict):
@@ -602,7 +610,9 @@ class PerturbedRow(_Tried, PerturbationRow):
 class SplitRow(TypedDict):
     """The part that an execution has in a split."""
 
-    split: Annotated[str, "activities, held_out_home, homes_1_4 or homes_1_5; splits.json says what they mean"]
+    split: Annotated[
+        str, "activities, held_out_home, homes_1_4, homes_1_5, or one of a source; splits.json says what they mean"
+    ]
     execution_id: Annotated[str, "the execution"]
     program_id: Annotated[str, "its program"]
     part: Annotated[str | None, "train, validation, test...; null where the split has no place for it"]

@@ -6,8 +6,9 @@ programs outside the latest part have none. The leakage that remains is measured
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from hearth.datasets.format.near_duplicates import near_sequences, near_texts
@@ -33,6 +34,9 @@ RULES = {
 
 In a split by program, a program has one part, or none in some homes; by execution, it may have another in each home.
 """
+
+OWN = "by program: the parts that its source gives; augmented programs have those of their originals"
+"""The rule of a split that comes with a source."""
 
 PARTS = ("train", "validation", "test")
 """The parts of `activities`, which is `programs.split`; of near duplicates, those in earlier parts are left out."""
@@ -60,6 +64,9 @@ class SplitProgram:
     root: str
     steps: tuple[str, ...]
     description: str
+
+
+_NONE: Mapping[str, Mapping[str, str | None]] = MappingProxyType({})
 
 
 def roots(parents: dict[str, str | None]) -> dict[str, str]:
@@ -143,7 +150,11 @@ def homes_of(runs: Iterable[tuple[str, str, str]], seed: int) -> tuple[list[str]
 
 
 def parts(
-    programs: Sequence[SplitProgram], runs: Sequence[tuple[str, str, str]], seed: int, similarity: Similarity
+    programs: Sequence[SplitProgram],
+    runs: Sequence[tuple[str, str, str]],
+    seed: int,
+    similarity: Similarity,
+    own: Mapping[str, Mapping[str, str | None]] = _NONE,
 ) -> Iterator[SplitRow]:
     """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
 
@@ -152,7 +163,9 @@ def parts(
         runs: execution id, program id and home of every execution that ran to its end.
         seed: of the assignment.
         similarity: near duplicates among these programs.
+        own: id of an original -> split -> part, where its source gives them; other programs are in no such split.
     """
+    root = {each.program_id: each.root for each in programs}
     group, part_of = groups(programs, similarity), by_activity(programs, similarity)
     homes, out = homes_of(runs, seed)
     number = {home: place for place, home in enumerate(homes, 1)}
@@ -162,6 +175,7 @@ def parts(
             "activities": part,
             "held_out_home": _by_held_out(part, home == out),
             **{split: _by_home(split, derive(seed, "split", split, mine) % 10, at) for split in _BY_HOME},
+            **own.get(root[program_id], {}),
         }
         for split, part in assigned.items():
             yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
@@ -202,7 +216,8 @@ def summary(
     homes, out = homes_of(runs, seed)
     spans = {f"{first}_{last}": ", ".join(homes[first - 1 : last]) or "none here" for first, last in _SPANS}
     found: dict[str, Any] = {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": {}}
-    for split, rule in RULES.items():
+    given = dict.fromkeys(sorted({row["split"] for row in rows} - RULES.keys()), OWN)
+    for split, rule in {**RULES, **given}.items():
         counted = Counter(row["part"] for row in rows if row["split"] == split)
         members: dict[str, dict[str, None]] = {}
         for row in rows:

@@ -265,9 +265,14 @@ def _splits(job: Job) -> list[forms.SplitRow]:
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"], filters=[("executable", "=", True)])
         runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
     known, seed = job.context.assignment, job.settings.seed
-    rows = list(splits.parts(known.programs, runs, seed, known.similarity))
+    rows = list(splits.parts(known.programs, runs, seed, known.similarity, _parts_of_sources(job)))
     write_json(job.folder / "splits.json", splits.summary(known.programs, runs, rows, seed, known.similarity))
     return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
+
+
+def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:
+    rows = _rows(job, "ingest", columns=["program_id", "parts"])
+    return {row["program_id"]: {each["split"]: each["part"] for each in row["parts"]} for row in rows if row["parts"]}
 
 
 def _copy_pictures(job: Job) -> None:

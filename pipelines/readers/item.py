@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 from hearth.schemas.decoding import LOOKED_AT, encoding_of, western
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
-from hearth.schemas.row_types import ConditionRow, IngestedRow, QuantityRow, WrittenGroundingRow
+from hearth.schemas.row_types import ConditionRow, IngestedRow, PartRow, QuantityRow, WrittenGroundingRow
 from hearth.storage.archives import Place, raw
 from hearth.storage.rejects import Reject
 
@@ -84,6 +84,7 @@ def record(
     groundings: list[WrittenGroundingRow] | None = None,
     conditions: list[ConditionRow] | None = None,
     keep: list[bool] | None = None,
+    parts: list[PartRow] | None = None,
 ) -> IngestedRow:
     """The row of an item; id and, unless given, origin, place and description id are those of the item."""
     return {
@@ -106,6 +107,7 @@ def record(
         "groundings": groundings,
         "conditions": conditions,
         "keep": keep,
+        "parts": parts,
     }
 
 

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from typing import Any
 
 from hearth.datasets.format.ids import current_id
+from hearth.datasets.format.splits import RULES
 from hearth.kb.language.plan_lines import header as plan_header
 from hearth.kb.language.plan_lines import is_plan, plan_line
 from hearth.pipelines.readers import plans
@@ -29,6 +30,7 @@ from hearth.storage.rejects import Reject, as_text
 
 NAME = "records"
 
+_PLAIN = re.compile(r"[A-Za-z0-9_-]{1,60}", re.ASCII)
 _WORDS = ("title", "description", "scene", "worker", "platform", "style", "description_id")
 _FORM = 'a record is {"title": ..., "description": ..., "steps": ["[Walk] <bed> (1)", ...]}, or has `text` for `steps`'
 _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
@@ -147,7 +149,11 @@ def read(item: Item) -> list[IngestedRow | Reject]:
     value: Mapping[str, Any] = item.value
     try:
         row = _row(item, value)
-        return [row] if isinstance(row, Reject) else [*_grounded(item, row, value), *_others(item, row, value)]
+        if isinstance(row, Reject):
+            return [row]
+        first, *faults = _placed(item, row, value)
+        assert not isinstance(first, Reject)
+        return [*_grounded(item, first, value), *faults, *_others(item, first, value)]
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         message = f"not a record of ours: {error}"
         return [Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=_FORM)]
@@ -181,6 +187,26 @@ def _row(item: Item, value: Mapping[str, Any]) -> IngestedRow | Reject:
         text=text or None,
         line=item.line - 1 if item.line else None,
     )
+
+
+def _placed(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:
+    """The row with its parts in splits of its source, as `{"pairs": "test", "tasks": null}`; faulty ones are refused
+    alone.
+    """
+    given = value.get("splits")
+    if row["kind"] != "program" or not isinstance(given, Mapping) or not given:
+        yield row
+        return
+    names = (*given, *(part for part in given.values() if part is not None))
+    odd = [name for name in names if not isinstance(name, str) or not _PLAIN.fullmatch(name)]
+    taken = sorted(RULES.keys() & given.keys())
+    if odd or taken:
+        why = f"`{as_text(odd[0])[:40]}` is not a name" if odd else f"`{taken[0]}` is a split that publishing makes"
+        message, remedy = f"splits of a record: {why}", "letters, digits, `_` and `-`, and names that are not taken"
+        yield row
+        yield Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=remedy)
+        return
+    yield {**row, "parts": [{"split": split, "part": part} for split, part in sorted(given.items())]}
 
 
 def _grounded(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[IngestedRow | Reject]:

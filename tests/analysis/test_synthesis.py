@@ -10,10 +10,13 @@ from typer.testing import CliRunner
 from hearth.analysis import synthesis, synthesis_splits, synthesis_wording
 from hearth.analysis.described import described
 from hearth.cli import app
+from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.splits import NEAR, normalised
 from hearth.grounding.environments.sampling import sample
 from hearth.kb import grammar as action_grammar
+from hearth.models.data import corpus
+from hearth.pipelines.build import build
 from hearth.pipelines.checks.programs import contradictions
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng
@@ -216,3 +219,26 @@ def test_the_command_writes_the_splits(tmp_path):
     assert rows[0] == "split,program_id,description,part"
     found = json.loads(done.stdout)
     assert len(rows) - 1 == 4 * found["descriptions"] and set(found["splits"]) == set(synthesis_splits.SPLITS)
+    records = list(map(json.loads, (tmp_path / "s.jsonl").read_text().splitlines()))
+    of_first = {
+        f"{split},{one['program_id']},0,{part or ''}" for one in records for split, part in one["splits"].items()
+    }
+    assert of_first == {row for row in rows if row.split(",")[2] == "0"}
+
+
+def test_a_dataset_of_drawn_programs_has_their_splits(tmp_path):
+    words = ["corpus", "synthesize", "30", "--out", str(tmp_path / "s.jsonl")]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    build([str(tmp_path / "s.jsonl")], str(tmp_path / "out"), pictures=0, homes_each=1)
+    dataset = Dataset.open(tmp_path / "out/publish")
+    rows = dataset.rows("SELECT DISTINCT split, program_id, part FROM splits")[1]
+    published = {(split, name): part for split, name, part in rows if split in synthesis_splits.SPLITS}
+    records = {one["program_id"]: one for one in map(json.loads, (tmp_path / "s.jsonl").read_text().splitlines())}
+    originals = {name: part for name, part in published.items() if name[1] in records}
+    assert len(originals) > 60
+    assert all(records[name]["splits"][split] == part for (split, name), part in originals.items())
+    assert len(published) > len(originals)  # augmented ones, too
+    found = corpus(dataset, "pairs")
+    assert {each.program_id for each in found.validation} == {
+        name for (split, name), part in originals.items() if (split, part) == ("pairs", "validation")
+    }

@@ -107,6 +107,16 @@ def test_homes_are_where_the_rules_say():
         assert found["held_out_home", part] == {*range(1, 8)} - {out}
 
 
+def test_a_source_s_own_splits_are_those_of_originals_and_their_descendants():
+    programs, runs = many()
+    own = {"p00": {"pairs": "test"}, "p01": {"pairs": None}}
+    rows = list(parts(programs, runs, 3, Similarity(programs), own))
+    found = {(row["program_id"], row["part"]) for row in rows if row["split"] == "pairs"}
+    assert found == {("p00", "test"), ("p00+1", "test"), ("p01", None), ("p01+1", None)}
+    about = summary(programs, runs, rows, 3, Similarity(programs))["splits"]["pairs"]
+    assert about["programs"] == {"test": 2} and about["runs_without_part"] == 14 and "its source" in about["rule"]
+
+
 def test_homes_are_named():
     programs, runs = many()
     found = summary(programs, runs, [], 3, Similarity(programs))

@@ -233,6 +233,24 @@ def test_records_of_the_embedded_corpus_as_version_0_1_had_them(write):
     assert (others["origin"], others["worker"], others["platform"]) == ("crowd", "x", "AMT")
 
 
+def test_parts_in_splits_of_a_source(write):
+    sleep = {"title": "Sleep", "steps": ["[Lie] <bed> (1)"]}
+    given = [
+        {"pairs": "test", "tasks": None},
+        {"activities": "test"},
+        {"pairs": "../x"},
+        {"a b": "test"},
+        ["pairs"],
+        {},
+    ]
+    text = "".join(json.dumps({**sleep, "program_id": f"p{n}", "splits": each}) + "\n" for n, each in enumerate(given))
+    found = read(write("a.jsonl", text))
+    parts = {row["program_id"]: row["parts"] for row in rows(found)}
+    wanted = [{"split": "pairs", "part": "test"}, {"split": "tasks", "part": None}]
+    assert parts == {"p0": wanted, **dict.fromkeys(("p1", "p2", "p3", "p4", "p5"))}
+    assert [line for _, _, line in faults(found)] == [2, 3, 4]
+
+
 # The release
 
 
