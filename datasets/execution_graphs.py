@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
@@ -16,6 +17,13 @@ from hearth.schemas.program import Program
 
 SHARE = 128
 """Executions that iteration reads together."""
+
+_INHERITED: list[Any] = []
+"""Datasets of the process that this one was forked from. To close their connections would wait for threads of DuckDB
+that the fork left behind, so they stay to the end; what the fork had dropped, but not collected, stays, too."""
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=gc.freeze)
 
 
 class GraphPair(NamedTuple):
@@ -82,6 +90,7 @@ class ExecutionGraphs(Sequence[GraphPair]):
     @property
     def _dataset(self) -> Dataset:
         if self._opened is None or self._opened[0] != os.getpid():
+            _INHERITED.append(self._opened)
             self._opened = os.getpid(), Dataset.open(self.folder)
         return self._opened[1]
 

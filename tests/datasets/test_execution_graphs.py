@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
 import subprocess
 import sys
@@ -90,13 +91,22 @@ def test_it_needs_no_torch():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def collected(worker):
+    gc.collect()
+
+
 @pytest.mark.parametrize("shuffle", [False, True])
 def test_torch_loads_batches_with_workers(pairs, shuffle):
     torch = pytest.importorskip("torch", reason="torch is not installed: pip install torch")
     from torch.utils.data import DataLoader
 
-    pairs[0]  # workers that are forked must not use this connection
-    loader = DataLoader(pairs, 4, shuffle=shuffle, num_workers=2, collate_fn=pairs.collate, timeout=120)
+    pairs[0]  # workers that are forked must neither use this connection nor close it
+    garbage = [hearth.load(pairs.folder)]
+    garbage[0].rows("SELECT 1")
+    garbage.append(garbage)  # collected in the workers, too
+    del garbage
+    loader = DataLoader(pairs, 4, shuffle=shuffle, num_workers=2, collate_fn=pairs.collate, timeout=60,
+                        worker_init_fn=collected)  # fmt: skip
     lengths = torch.cat([torch.from_numpy(start.lengths) for start, _ in loader]).tolist()
     assert sorted(lengths) == sorted(len(pair.program.steps) for pair in pairs)
     assert len(loader) == -(-len(pairs) // 4)
