@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models film-models full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: all models film-models tables full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -119,6 +119,11 @@ film-models: .venv/.models  ## train the models of films on data_out/clips, whic
 	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002
 	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 30 --rate 0.002
 
+tables: .venv/.models $(call manifest,publish)  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
+	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/synthetic.jsonl
+	@$(HEARTH) build $(OUT)/synthetic.jsonl --out $(OUT)/synthetic --seed $(SEED) --workers $(JOBS) --variants 0 --pictures 0 --videos 0 --homes-each 1 >/dev/null
+	@$(HEARTH) model tables $(OUT) $(OUT)/synthetic --out $(OUT)/tables
+
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"
 
@@ -186,7 +191,7 @@ licences:  ## docs/licences.md: the licence of every library of both locks
 	@build/licences/bin/python docs/hooks/licences.py build/licences/bin/pip-licenses && rm -rf build/licences
 
 clean:  ## remove the output; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/challenges $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/challenges $(OUT)/synthetic* $(OUT)/tables $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## also remove .venv

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import typer
 
-from hearth.commands import output
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from hearth.commands import model_tables, output
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -18,6 +14,10 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Train models that write programs from text and sketches, and use them; needs the extra `models`.",
 )
+
+
+app.command("table")(model_tables.table)
+app.command("tables")(model_tables.tables)
 
 
 @app.command("list")
@@ -230,90 +230,6 @@ def examples(
     output.say(f"{len(shown)} examples in {out}", {"out": out, "examples": len(shown), "of": len(found)}, as_json)
 
 
-@app.command("table")
-def table(
-    number: str,
-    dataset: Path,
-    *,
-    models: list[str] | None = None,
-    split: str = "activities",
-    beam: int = 4,
-    repair: bool = False,
-    sketches: str = "annotated",
-    most: int = 400,
-    seed: int = 0,
-    as_json: bool = False,
-) -> None:
-    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.2, 4.3, 4.3b and 4.6 of clips.
-
-    Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
-    Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
-    and 5.4; in 5.2 and 5.3 augmented ones, too. 5.4 needs a model that writes sketches, such as desc2sketch.
-
-    \b
-    Example:
-      python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
-      python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
-      python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
-      python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
-      python cli.py model table 4.6 data_out/clips --model clips-seen
-    """
-    from hearth.commands.progress_line import bar
-    from hearth.datasets.dataset import Dataset
-
-    data = Dataset.open(dataset)
-    if number in ("4.2", "4.3", "4.3b", "4.6"):
-        _of_films(number, data, models or (), seed, as_json)
-        return
-    if number == "5.1":
-        from hearth.models.sketches.dataset_table import dataset_table
-
-        found = dataset_table(data)
-        output.emit(found) if as_json else output.records([each._asdict() for each in found])
-        return
-    if number.startswith("5."):
-        from hearth.models.sketches import sketch_tables
-
-        columns = sketch_tables.COLUMNS | ({"sketch": ""} if number == "5.4" else {})
-        with bar("executions") as seen:
-            rows = sketch_tables.table(number, data, split, models or (), beam=beam, sketches=sketches, most=most,
-                                       seed=seed, seen=seen)  # fmt: skip
-    else:
-        from hearth.models.text import text_tables
-
-        columns = text_tables.COLUMNS
-        rows = text_tables.table(number, data, split, models or (), beam=beam, repaired=repair, seed=seed)
-    if as_json:
-        output.emit(rows)
-        return
-    shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in columns), row.seeds or None, row.minutes]
-             for row in rows]  # fmt: skip
-    output.table(["method", "of", *columns, "seeds", "minutes"], shown)
-
-
-def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_json: bool) -> None:
-    """Tables 4.2, 4.3, its part (b), and 4.6."""
-    from hearth.commands.progress_line import bar
-    from hearth.models.films import clip_tables, film_tables
-
-    with bar("films") as seen:
-        if number in clip_tables.TABLES:
-            rows: Sequence[Any] = clip_tables.clip_table(number, dataset, models, seed)
-        else:
-            rows = film_tables.film_table(dataset, models, seed, seen=seen)
-    if as_json:
-        output.emit(rows)
-    elif number in clip_tables.TABLES:
-        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
-                  row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
-        output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
-    else:
-        shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
-                  row.films, row.seeds or None] for row in rows]  # fmt: skip
-        output.table(["method", "of", "homes", *film_tables.COLUMNS, "films", "seeds"], shown)
-
-
 @app.command()
 def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool = False) -> None:
     """Draw figure 4-4 (SVG: what actions are taken for) or 4-7 (HTML: films, what was done, and what is read).
@@ -339,13 +255,6 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
     out.parent.mkdir(parents=True, exist_ok=True)
     write_bytes(out, drawn.encode())
     output.say(str(out), {"figure": number, "files": [str(out)]}, as_json)
-
-
-def _score(value: Any) -> str:
-    """A mean with its interval, or a number of the thesis."""
-    if value is None:
-        return ""
-    return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"
 
 
 @app.command("show")

@@ -31,11 +31,23 @@ def status(rejected: int, *, strict: bool) -> None:
 
 def emit(value: Any) -> None:
     """Print one JSON document: keys in the given order, dataclasses and paths converted, a line break at the end."""
+    sys.stdout.write(_document(value).decode())
+    sys.stdout.flush()
+
+
+def write(file: Path, value: Any) -> None:
+    """Write what `emit` prints into a file."""
+    from hearth.storage.files import write_bytes
+
+    file.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(file, _document(value))
+
+
+def _document(value: Any) -> bytes:
     import orjson
 
     options = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE | orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
-    sys.stdout.write(orjson.dumps(value, default=_plain, option=options).decode())
-    sys.stdout.flush()
+    return orjson.dumps(value, default=_plain, option=options)
 
 
 _CONTROL = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"} | {

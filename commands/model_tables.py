@@ -1,0 +1,155 @@
+"""`model table | tables`: the tables of chapters 4 and 5, the thesis's figures beside ours beside yardsticks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hearth.commands import output
+
+if TYPE_CHECKING:
+    from hearth.models.scored_rows import Row
+
+
+def table(
+    number: str,
+    dataset: Path,
+    *,
+    models: list[str] | None = None,
+    split: str = "activities",
+    beam: int = 4,
+    repair: bool = False,
+    sketches: str = "annotated",
+    most: int = 400,
+    seed: int = 0,
+    as_json: bool = False,
+) -> None:
+    """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
+    4.2, 4.3, 4.3b and 4.6 of clips.
+
+    Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
+    Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
+    and 5.4; in 5.2 and 5.3 augmented ones, too. 5.4 needs a model that writes sketches, such as desc2sketch.
+
+    \b
+    Example:
+      python cli.py model table 4.5 data_out --model build/retrieve-edit --repair
+      python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
+      python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
+      python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
+      python cli.py model table 4.6 data_out/clips --model clips-seen
+    """
+    from hearth.commands.progress_line import bar
+    from hearth.datasets.dataset import Dataset
+
+    data = Dataset.open(dataset)
+    if number in ("4.2", "4.3", "4.3b", "4.6"):
+        _of_films(number, data, models or (), seed, as_json)
+        return
+    if number == "5.1":
+        from hearth.models.sketches.dataset_table import dataset_table
+
+        found = dataset_table(data)
+        output.emit(found) if as_json else output.records([each._asdict() for each in found])
+        return
+    if number.startswith("5."):
+        from hearth.models.sketches import sketch_tables
+
+        with bar("executions") as seen:
+            rows = sketch_tables.table(number, data, split, models or (), beam=beam, sketches=sketches, most=most,
+                                       seed=seed, seen=seen)  # fmt: skip
+    else:
+        from hearth.models.text import text_tables
+
+        rows = text_tables.table(number, data, split, models or (), beam=beam, repaired=repair, seed=seed)
+    if as_json:
+        output.emit(rows)
+    else:
+        _print(rows, _columns(number))
+
+
+def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_json: bool) -> None:
+    """Tables 4.2, 4.3, its part (b), and 4.6."""
+    from hearth.commands.progress_line import bar
+    from hearth.models.films import clip_tables, film_tables
+
+    with bar("films") as seen:
+        if number in clip_tables.TABLES:
+            rows: Sequence[Any] = clip_tables.clip_table(number, dataset, models, seed)
+        else:
+            rows = film_tables.film_table(dataset, models, seed, seen=seen)
+    if as_json:
+        output.emit(rows)
+    elif number in clip_tables.TABLES:
+        shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
+                  row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
+        output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
+    else:
+        shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
+                  row.films, row.seeds or None] for row in rows]  # fmt: skip
+        output.table(["method", "of", "homes", *film_tables.COLUMNS, "films", "seeds"], shown)
+
+
+def tables(
+    dataset: Path,
+    drawn: Path,
+    *,
+    out: Path,
+    only: list[str] | None = None,
+    seeds: int = 3,
+    minutes: float = 10.0,
+    most: int = 400,
+    as_json: bool = False,
+) -> None:
+    """Tables 4.4, 4.5 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
+
+    What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
+    night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
+    paraphrases, that are not in training.
+
+    \b
+    Examples:
+      python cli.py model tables data_out data_out/synthetic --out data_out/tables
+      python cli.py model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
+    """
+    from hearth.commands.progress_line import bar
+    from hearth.models import table_plan
+
+    plans, data = table_plan.chosen(only or ()), {"people": dataset, "drawn": drawn}
+    for each in (missing := table_plan.training(plans, seeds)):
+        with bar(f"epochs of {each.folder(out).name}") as seen:
+            table_plan.train(each, data[each.data], out, minutes, seen)
+    found: dict[str, list[Row]] = {}
+    for plan in plans:
+        with bar(f"executions of {plan.name}") as seen:
+            found[plan.name] = table_plan.rows(plan, data[plan.data], out, seeds, most, seen)
+        output.write(out / f"{plan.name}.json", found[plan.name])
+    if as_json:
+        output.emit({"models": len(missing), "tables": found})
+        return
+    for number, (name, rows) in enumerate(found.items()):
+        print("\n" * bool(number) + f"Table {name}")
+        _print(rows, _columns(name.partition("-")[0]))
+
+
+def _columns(number: str) -> Mapping[str, str]:
+    from hearth.models.sketches import sketch_tables
+    from hearth.models.text import text_tables
+
+    if number in text_tables.TABLES:
+        return text_tables.COLUMNS
+    return sketch_tables.COLUMNS | ({"sketch": ""} if number == "5.4" else {})
+
+
+def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:
+    shown = [[row.method, row.of, *(_score(row.scores.get(name)) for name in columns), row.seeds or None, row.minutes]
+             for row in rows]  # fmt: skip
+    output.table(["method", "of", *columns, "seeds", "minutes"], shown)
+
+
+def _score(value: Any) -> str:
+    """A mean with its interval, or a number of the thesis."""
+    if value is None:
+        return ""
+    return f"{value:.3f}" if isinstance(value, float) else f"{value.mean:.3f} ({value.low:.3f}-{value.high:.3f})"

@@ -1,0 +1,161 @@
+"""Tables 4.4, 4.5 and 5.2 to 5.4 whole: which models each needs, trained with several seeds where they are not yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from hearth.models.checkpoint import NAME
+from hearth.models.fit_model import fit
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.scored_rows import Row
+
+Data = Literal["people", "drawn"]
+"""Which dataset: of people's programs, or of drawn ones (`corpus synthesize`)."""
+
+LSTM = ("mle", "mle-composed")
+CRITICS = ("pg-lcs", "pg-lcs-sim")
+"""They go on from `mle-composed` of the same seed."""
+
+GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
+
+RATES: Mapping[str, float] = MappingProxyType({**dict.fromkeys(LSTM, 3e-3), "desc2sketch": 3e-3})
+"""Rates of learning that are not the usual one."""
+
+USUAL_RATE, EPOCHS = 1e-3, 30
+
+
+class Needed(NamedTuple):
+    """A model that a table needs."""
+
+    data: Data
+    split: str
+    name: str
+    seed: int
+
+    def folder(self, out: Path) -> Path:
+        """Of its checkpoint; tables share them."""
+        return out / "models" / f"{self.data}.{self.split}.{self.name}.{self.seed}"
+
+    @property
+    def before(self) -> Needed | None:
+        """The model that its training goes on from."""
+        return self._replace(name="mle-composed") if self.name in CRITICS else None
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A table and its models.
+
+    Attributes:
+        table: its number.
+        data: the dataset.
+        split: of the dataset.
+        once: models without chance: one seed is enough.
+        seeded: models that are trained with each seed.
+        given: methods that need no training.
+        repaired: as of `text_tables.table`.
+    """
+
+    table: str
+    data: Data
+    split: str
+    once: tuple[str, ...] = ()
+    seeded: tuple[str, ...] = ()
+    given: tuple[str, ...] = ()
+    repaired: bool = False
+
+    @property
+    def name(self) -> str:
+        """The table, and the split where it is not the usual one."""
+        return self.table if self.split == "activities" else f"{self.table}-{self.split}"
+
+    def needed(self, seeds: int) -> Iterator[Needed]:
+        """Its models, each after the one that it goes on from."""
+        for name in self.once:
+            yield Needed(self.data, self.split, name, 0)
+        for name in self.seeded:
+            yield from (Needed(self.data, self.split, name, seed) for seed in range(seeds))
+
+
+_DRAWN = Plan("4.4", "drawn", "pairs", ("nearest",), (*LSTM, *CRITICS))
+_SKETCHES = Plan("5.2", "people", "activities", (), (*GRAPHS, "chooser"), ("planner",))
+
+PLANS: dict[str, Plan] = {plan.name: plan for plan in (
+    _DRAWN,
+    replace(_DRAWN, split="paraphrases"),
+    Plan("4.5", "people", "activities", ("nearest", "retrieve-edit"), (*LSTM, *CRITICS, "transformer"), repaired=True),
+    _SKETCHES,
+    replace(_SKETCHES, table="5.3"),
+    Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch",)),
+)}  # fmt: skip
+"""By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
+
+
+def chosen(names: Sequence[str]) -> list[Plan]:
+    """The plans of these tables, in the order of all; every one without a name. `4.4` stands for both of its splits.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, there is no such table.
+    """
+    unknown = [name for name in names if not any(name in (plan.name, plan.table) for plan in PLANS.values())]
+    if unknown:
+        message = f"no table `{unknown[0][:20]}` is made from several models"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"there are {', '.join(PLANS)}")
+    return [plan for plan in PLANS.values() if not names or {plan.name, plan.table} & {*names}]
+
+
+def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
+    """The models of some tables, each once, and each after the one that it goes on from."""
+    every = (each for plan in plans for each in plan.needed(seeds))
+    return list(dict.fromkeys(one for each in every for one in (each.before, each) if one is not None))
+
+
+def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen = unseen) -> bool:
+    """Train a model where it is not there yet; whether it was trained.
+
+    Args:
+        needed: the model.
+        dataset: of `needed.data`.
+        out: the folder of the tables.
+        minutes: the budget of the training; 0 for none.
+        seen: reports epochs.
+    """
+    folder = needed.folder(out)
+    if (folder / NAME).exists():
+        return False
+    before = needed.before
+    changed = [f"start={before.folder(out)}"] if before else []
+    rate = RATES.get(needed.name, USUAL_RATE)
+    how = {"epochs": EPOCHS, "minutes": minutes, "rate": rate, "seed": needed.seed}
+    fit(needed.name, dataset, folder, needed.split, changed, how=how, seen=seen)
+    return True
+
+
+def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen = unseen) -> list[Row]:
+    """The rows of a table, from its trained models.
+
+    Args:
+        plan: the table.
+        dataset: of `plan.data`.
+        out: the folder of the tables.
+        seeds: how many of each trained model.
+        most: test executions of 5.2 to 5.4.
+        seen: reports executions.
+    """
+    from hearth.datasets.dataset import Dataset
+    from hearth.models.sketches import sketch_tables
+    from hearth.models.text import text_tables
+
+    models: list[Any] = [*plan.given, *(each.folder(out) for each in plan.needed(seeds))]
+    data = Dataset.open(dataset)
+    if plan.table in sketch_tables.TABLES:
+        return sketch_tables.table(plan.table, data, plan.split, models, beam=1, most=most, seen=seen)
+    return text_tables.table(plan.table, data, plan.split, models, beam=1, repaired=plan.repaired)

@@ -1,0 +1,47 @@
+"""Which models the tables of chapters 4 and 5 need, and tables made of them."""
+
+from __future__ import annotations
+
+import pytest
+from typer.testing import CliRunner
+
+from hearth.cli import app
+from hearth.models.model_registry import MODELS
+from hearth.models.table_plan import PLANS, Plan, chosen, rows, train, training
+from hearth.pipelines.build import build
+from hearth.schemas.diagnostics import HearthError
+
+
+def test_every_table_has_models_that_there_are():
+    for plan in PLANS.values():
+        assert {*plan.once, *plan.seeded, *plan.given} <= MODELS.keys()
+    assert {plan.table for plan in PLANS.values()} == {"4.4", "4.5", "5.2", "5.3", "5.4"}
+
+
+def test_a_model_is_trained_once_and_after_the_one_that_it_goes_on_from():
+    needed = training(chosen(()), 3)
+    assert len(needed) == len(set(needed)) == len({each.folder for each in needed})
+    for number, each in enumerate(needed):
+        assert each.before is None or (each.before in needed[:number] and each.before.seed == each.seed)
+    assert sum(each.name == "resactgraph" for each in needed) == 3  # 5.2 and 5.3 share them
+    assert {each.seed for each in needed if each.name in ("nearest", "retrieve-edit")} == {0}
+    assert {each.split for each in needed if each.data == "drawn"} == {"pairs", "paraphrases"}
+
+
+def test_tables_are_chosen_by_number_or_name():
+    assert [plan.name for plan in chosen(["4.4"])] == ["4.4-pairs", "4.4-paraphrases"]
+    assert [plan.name for plan in chosen(["4.4-pairs", "5.2"])] == ["4.4-pairs", "5.2"]
+    with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+        chosen(["9.9"])
+
+
+def test_a_table_of_what_is_trained_for_it(tmp_path):
+    pytest.importorskip("torch", reason="torch is not installed: pip install torch")
+    texts, data = tmp_path / "drawn.jsonl", tmp_path / "drawn"
+    assert CliRunner().invoke(app, ["corpus", "synthesize", "40", "--out", str(texts)]).exit_code == 0
+    build([str(texts)], str(data), pictures=0, homes_each=1, variants=0)
+    plan = Plan("4.4", "drawn", "pairs", ("nearest",))
+    (needed,) = training([plan], 2)
+    assert train(needed, data, tmp_path, 0) and not train(needed, data, tmp_path, 0)
+    found = {row.method: row for row in rows(plan, data, tmp_path, 2, 10)}
+    assert found["nearest"].of == "ours" and found["nearest"].seeds == 1
