@@ -276,7 +276,8 @@ def breadths(reached: Reached) -> dict[str, Counter[str]]:
 def chosen(
     mutation: Mutation, reached: Reached, breadth: Mapping[str, Counter[str]], seconds: Mapping[str, float]
 ) -> list[str]:
-    """The tests of a mutation within the budget: those that run its line, and those of its room that run its file.
+    """The tests of a mutation within the budget: those that run its line, and those of its room that run its file; of a
+    line that only an import runs, those that run its file, and all of its room.
 
     The latter because a cache may keep what one test computes, so that a later test does not run the line itself.
     First the fastest, each of another file. Then by turns the one that runs most lines of the room, the room's own
@@ -288,7 +289,8 @@ def chosen(
     of_file = {test for each in lines.values() for test in each}
     of_line = set(lines.get(str(mutation.line), ()))
     own = {test for test in of_file if test.startswith(f"tests/{room}/")}
-    tests = of_line | own if of_line else of_file
+    # What runs when a module is imported runs for no test: any of the room may depend on it.
+    tests = of_line | own if of_line else of_file | {test for test in seconds if test.startswith(f"tests/{room}/")}
     fastest = sorted(tests & seconds.keys(), key=lambda test: (seconds[test], test))
     lines_run = breadth.get(room, Counter())
     broadest = sorted(fastest, key=lambda test: (test not in own, -lines_run[test]))

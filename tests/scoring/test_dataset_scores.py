@@ -216,3 +216,15 @@ def test_starts_are_near_by_the_share_of_what_they_have_in_common():
 def test_the_thesis_s_figures_are_shares():
     figures = [value for row in THESIS for value in row[1:] if value is not None]
     assert len(figures) > 100 and all(0 <= value <= 1 for value in figures)
+
+
+def test_the_thesis_s_means_are_those_of_their_columns():
+    for each in THESIS:
+        if each.mean is not None:
+            assert each.mean == pytest.approx((each.action + each.object + each.step) / 3, abs=0.0015), each.baseline
+        elif each.baseline != "Unaries (K=0), table 5.3":  # as printed
+            low, high = sorted((each.f1_relation, each.f1_state))
+            assert each.f1 is None or low - 0.0025 <= each.f1 <= high + 0.0025, each.baseline
+    known = {each.baseline.partition(",")[0]: each for each in THESIS if "table 5.2" in each.baseline}
+    again = next(each for each in THESIS if each.baseline == "ResActGraph (K=2), table 5.3")
+    assert again[5:9] == known["ResActGraph"][5:9]
