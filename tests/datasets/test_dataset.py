@@ -36,6 +36,26 @@ def test_every_table_has_its_columns(ds):
         assert getattr(ds, name).columns == schema.names, name
 
 
+def test_every_view_and_column_has_a_comment(ds):
+    for table, schema in TABLES.items():
+        query = f"SELECT column_name, comment FROM duckdb_columns() WHERE table_name = '{table}'"
+        comments = dict(ds.rows(query)[1])
+        assert comments.keys() >= set(schema.names) and all(comments.values()), table
+        assert ds.rows(f"SELECT comment FROM duckdb_views() WHERE view_name = '{table}'")[1][0][0], table
+
+
+def test_executions_that_fail_are_left_out_unless_asked_for(made):
+    usual, every = Dataset.open(made.out), Dataset.open(made.out, failures=True)
+    counts = [one.rows(f"SELECT count(*) FROM executions WHERE {one.included}")[1][0][0] for one in (usual, every)]
+    assert counts[0] == every.rows("SELECT count(*) FROM executions WHERE executable")[1][0][0] < counts[1]
+
+
+def test_arrays_are_of_the_start_unless_asked_for(ds):
+    start, later = ds.to_tensors([MILK]), ds.to_tensors([MILK], 1)
+    assert (start.node_states == ds.to_tensors([MILK], 0).node_states).all()
+    assert start.edge_index.shape != later.edge_index.shape or (start.edge_index != later.edge_index).any()
+
+
 def test_the_program_as_text(ds):
     (text,) = ds.rows("SELECT program_text($id)", id=MILK)[1][0]
     assert text == "\n".join(print_lines(ds[MILK].program))

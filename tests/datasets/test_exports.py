@@ -117,6 +117,7 @@ def test_code_is_python_that_makes_the_same_calls(ds, tmp_path):
 def test_graphs_read_by_networkx(ds, tmp_path, form):
     export(ds, form, tmp_path / "out", Wanted((MILK,)))
     (run,) = ds[MILK].runs
+    assert export(ds, form, tmp_path / "two", Wanted(limit=2)) == 2 == len(list((tmp_path / "two").iterdir())) // 2
     for moment, graph in (("start", run.start), ("final", run.final)):
         base = tmp_path / f"out/{file_name(run.row['execution_id'])}.{moment}"
         if form == "graphml":

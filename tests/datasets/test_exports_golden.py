@@ -13,7 +13,9 @@ from golden_files import compare, short
 
 import hearth
 from hearth.datasets.export.formats import FORMATS, export
+from hearth.datasets.report.drawn_plans import draw
 from hearth.datasets.report.write import write_report
+from hearth.homes import library
 
 GOLDEN = "exports.json"
 ACTION = re.compile(r"\(:action (\S+)(.*?)(?=\(:action |\Z)", re.DOTALL)
@@ -43,6 +45,11 @@ def test_what_is_exported(form, ds, tmp_path):
         bodies = {action: short(body.strip(") \n").encode()) for action, body in ACTION.findall(text)}
         compare(GOLDEN, bodies, "actions", others=True)
     compare(GOLDEN, found, form)
+
+
+def test_floor_plans(knowledge):
+    plans = {name: short(draw(library.load_graph(name, knowledge).nodes).encode()) for name in library.names()}
+    compare(GOLDEN, plans, "plans")
 
 
 def test_the_report_s_data(ds, tmp_path):

@@ -260,6 +260,24 @@ def test_altered_fields_of_the_manifest(copy, changed):
     assert "BAD_JSON" in codes(copy)
 
 
+@pytest.mark.parametrize("more", [1, -1])
+def test_a_ledger_that_counts_other_rows(copy, more):
+    def counted(ledger):
+        last = pc.equal(ledger["stage"], "publish")
+        rows = pc.if_else(last, pc.add(ledger["rows"], more), ledger["rows"]).cast(ledger.schema.field("rows").type)
+        return ledger.set_column(ledger.schema.get_field_index("rows"), ledger.schema.field("rows"), rows)
+
+    rewritten(copy, "ledger", counted)
+    (fault,) = verify(copy).faults
+    assert str(fault.code) == "BAD_JSON" and "ledger" in fault.message
+
+
+def test_what_fails_runs_nothing_again(copy):
+    altered(copy, version="9.9.9")
+    found = verify(copy)
+    assert found.faults and found.executions == 0 < found.rows
+
+
 @pytest.mark.parametrize("field", ["records_in", "through", "partial"])
 def test_altered_counts_of_the_manifest(copy, field):
     manifest = orjson.loads((copy / "manifest.json").read_bytes())
@@ -268,11 +286,12 @@ def test_altered_counts_of_the_manifest(copy, field):
     assert "BAD_JSON" in codes(copy)
 
 
-def test_a_part_that_counts_other_rows_and_a_field_of_no_manifest(copy):
+@pytest.mark.parametrize("more", [1, -1])
+def test_a_part_that_counts_other_rows_and_a_field_of_no_manifest(copy, more):
     manifest = orjson.loads((copy / "manifest.json").read_bytes())
     altered(copy, more=1)
     assert [fault.found for fault in verify(copy).unknown] == ["more"]
-    manifest["parts"][0]["rows"] += 1
+    manifest["parts"][0]["rows"] += more
     altered(copy, parts=manifest["parts"])
     assert codes(copy) == ["BAD_JSON"]
 
