@@ -115,6 +115,7 @@ def tables(
     """
     from hearth.commands.progress_line import bar
     from hearth.models import table_plan
+    from hearth.storage.names import inside
 
     plans, data = table_plan.chosen(only or ()), {"people": dataset, "drawn": drawn}
     for each in (missing := table_plan.training(plans, seeds)):
@@ -124,7 +125,7 @@ def tables(
     for plan in plans:
         with bar(f"executions of {plan.name}") as seen:
             found[plan.name] = table_plan.rows(plan, data[plan.data], out, seeds, most, seen)
-        output.write(out / f"{plan.name}.json", found[plan.name])
+        output.write(inside(out, f"{plan.name}.json"), found[plan.name])
     if as_json:
         output.emit({"models": len(missing), "tables": found})
         return

@@ -12,6 +12,7 @@ from hearth.models.checkpoint import NAME
 from hearth.models.fit_model import fit
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Needed(NamedTuple):
 
     def folder(self, out: Path) -> Path:
         """Of its checkpoint; tables share them."""
-        return out / "models" / f"{self.data}.{self.split}.{self.name}.{self.seed}"
+        return inside(out / "models", f"{self.data}.{self.split}.{self.name}.{self.seed}")
 
     @property
     def before(self) -> Needed | None:
