@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from shutil import rmtree
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from hearth.models.checkpoint import NAME
+from hearth.datasets.dataset import Dataset
+from hearth.models.checkpoint import NAME, load
+from hearth.models.data import facts_of
 from hearth.models.fit_model import fit
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -104,7 +107,7 @@ def chosen(names: Sequence[str]) -> list[Plan]:
     """The plans of these tables, in the order of all; every one without a name. `4.4` stands for both of its splits.
 
     Raises:
-        HearthError: BAD_ARGUMENT, there is no such table.
+        HearthError: BAD_ARGUMENT, an unknown table.
     """
     unknown = [name for name in names if not any(name in (plan.name, plan.table) for plan in PLANS.values())]
     if unknown:
@@ -120,7 +123,7 @@ def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
 
 
 def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen = unseen) -> bool:
-    """Train a model where it is not there yet; whether it was trained.
+    """Train a model unless it was trained on this dataset already; whether it was trained now.
 
     Args:
         needed: the model.
@@ -130,8 +133,11 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
         seen: reports epochs.
     """
     folder = needed.folder(out)
+    digest = facts_of(Dataset.open(dataset))["digest"]
     if (folder / NAME).exists():
-        return False
+        if load(folder).trained.get("digest") == digest:
+            return False
+        rmtree(folder)  # of a dataset that was built anew since
     before = needed.before
     changed = [f"start={before.folder(out)}"] if before else []
     rate = RATES.get(needed.name, USUAL_RATE)
@@ -151,7 +157,6 @@ def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen
         most: test executions of 5.2 to 5.4.
         seen: reports executions.
     """
-    from hearth.datasets.dataset import Dataset
     from hearth.models.sketches import sketch_tables
     from hearth.models.text import text_tables
 

@@ -31,6 +31,9 @@ from hearth.storage.rejects import Reject, as_text
 NAME = "records"
 
 _PLAIN = re.compile(r"[A-Za-z0-9_-]{1,60}", re.ASCII)
+MOST_SPLITS = 20
+"""Splits that a record may name: each has a row for every run."""
+
 _WORDS = ("title", "description", "scene", "worker", "platform", "style", "description_id")
 _FORM = 'a record is {"title": ..., "description": ..., "steps": ["[Walk] <bed> (1)", ...]}, or has `text` for `steps`'
 _ORIGINS = frozenset({"written", "crowd", "release", "text", "spoken", "synthetic", "augmented", NAME})
@@ -198,11 +201,12 @@ def _placed(item: Item, row: IngestedRow, value: Mapping[str, Any]) -> Iterator[
         yield row
         return
     names = (*given, *(part for part in given.values() if part is not None))
-    odd = [name for name in names if not isinstance(name, str) or not _PLAIN.fullmatch(name)]
-    taken = sorted(RULES.keys() & given.keys())
-    if odd or taken:
-        why = f"`{as_text(odd[0])[:40]}` is not a name" if odd else f"`{taken[0]}` is a split that publishing makes"
-        message, remedy = f"splits of a record: {why}", "letters, digits, `_` and `-`, and names that are not taken"
+    wrong = [f"there are {len(given):,}, more than {MOST_SPLITS}"] if len(given) > MOST_SPLITS else []
+    odd = (name for name in names if not isinstance(name, str) or not _PLAIN.fullmatch(name))
+    wrong += (f"`{as_text(name)[:40]}` is not a name" for name in odd)
+    wrong += (f"`{name}` is a split that publishing makes" for name in sorted(RULES.keys() & given.keys()))
+    if wrong:
+        message, remedy = f"splits of a record: {wrong[0]}", "letters, digits, `_` and `-`; names that are not taken"
         yield row
         yield Reject.of(Code.BAD_JSON, message, file=item.place, line=item.line, suggestion=remedy)
         return
