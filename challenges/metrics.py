@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, overload
 
 from hearth.challenges.definition import Challenge
 from hearth.challenges.failure_analysis import NAMES, Columns
@@ -72,13 +73,41 @@ def mean(values: Sequence[float]) -> Mean:
     return Mean(value, math.sqrt(variance / len(values)))
 
 
+class Episodes(Sequence[Mapping[str, float]]):
+    """The metrics of many episodes, eight bytes each; an item is one episode's, as JSON has it."""
+
+    def __init__(self) -> None:
+        self._columns: dict[str, array[float]] = {}
+        self._count = 0
+
+    def append(self, metrics: Mapping[str, float]) -> None:
+        """Add an episode; what earlier ones lack, or it lacks, is nan."""
+        for name in metrics.keys() - self._columns.keys():
+            self._columns[name] = array("d", [math.nan] * self._count)
+        for name, values in self._columns.items():
+            values.append(metrics.get(name, math.nan))
+        self._count += 1
+
+    def __len__(self) -> int:
+        return self._count
+
+    @overload
+    def __getitem__(self, number: int) -> Mapping[str, float]: ...
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Mapping[str, float]]: ...
+    def __getitem__(self, number: int | slice) -> Mapping[str, float] | Sequence[Mapping[str, float]]:
+        if isinstance(number, slice):
+            return [self[each] for each in range(self._count)[number]]
+        return {name: values[number] for name, values in self._columns.items()}
+
+
 Outcomes = Mapping[str, Sequence[Mapping[str, Any]]]
 """Task id -> the outcomes of its episodes, as JSON."""
 
 
-def by_task(episodes: Iterable[tuple[str, Mapping[str, Any]]]) -> Outcomes:
+def by_task(episodes: Iterable[tuple[str, Mapping[str, float]]]) -> Outcomes:
     """Outcomes by their task, in the order in which tasks come."""
-    found: defaultdict[str, list[Mapping[str, Any]]] = defaultdict(list)
+    found: defaultdict[str, Episodes] = defaultdict(Episodes)
     for task, each in episodes:
         found[task].append(each)
     return dict(found)

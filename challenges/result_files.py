@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from hashlib import blake2b
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from hearth.challenges.metrics import Outcomes, by_task
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.input_files import read_input
+from hearth.storage.input_files import read_input, read_lines
 from hearth.version import VERSION
 
 FORMAT = "hearth-results-1"
@@ -66,6 +67,25 @@ class Header:
         }
 
 
+class FileRecords(Collection[Record]):
+    """The episodes of a file, read anew each time that somebody goes through them: of many thousands not all fit in
+    memory. A file that has become another meanwhile raises the errors of `read`.
+    """
+
+    def __init__(self, header: Header, path: Path) -> None:
+        self._header, self._path = header, path
+        self._count = sum(1 for _ in self)
+
+    def __iter__(self) -> Iterator[Record]:
+        return read_records(self._header, islice(read_lines(self._path), 1, None), str(self._path))
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __contains__(self, record: object) -> bool:
+        return any(each == record for each in self)
+
+
 @dataclass(frozen=True)
 class Results:
     """What came of a run.
@@ -76,7 +96,7 @@ class Results:
     """
 
     header: Header
-    records: tuple[Record, ...]
+    records: Collection[Record]
 
     def outcomes(self, helped: bool) -> Outcomes:
         """The metrics of the episodes of one kind, by task."""
@@ -125,9 +145,12 @@ def read(path: Path) -> Results:
     Raises:
         HearthError: MISSING_FILE, FILE_TOO_LARGE; BAD_JSON with the line; every fault of the tasks.
     """
-    header, *lines = read_input(path).splitlines() or [b""]
-    found = read_header(header, str(path))
-    return Results(found, tuple(read_records(found, lines, str(path))))
+    if path.is_file():
+        header = read_header(next(read_lines(path), b""), str(path))
+        return Results(header, FileRecords(header, path))
+    first, *lines = read_input(path).splitlines() or [b""]
+    header = read_header(first, str(path))
+    return Results(header, tuple(read_records(header, lines, str(path))))
 
 
 def read_header(data: bytes, file: str) -> Header:

@@ -17,6 +17,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import rng
 from hearth.storage.files import TEMPORARY, commit
+from hearth.storage.input_files import read_lines
 from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
@@ -53,7 +54,7 @@ def run(
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
     """
     header = Header(suite, lineup.checked(), seeds)
-    if out.exists() and out.read_bytes().partition(b"\n")[0] + b"\n" == first_line(header):
+    if out.exists() and next(read_lines(out), b"") == first_line(header):
         return read(out)
     partial = out.with_name(f".{out.name}.run{TEMPORARY}")
     kept = _kept(header, partial)
@@ -76,16 +77,17 @@ def _kept(header: Header, partial: Path) -> int:
     """How many episodes of the same run are in a file that a stopped run left; what is half written is cut off."""
     if not partial.exists():
         return 0
-    lines = partial.read_bytes().splitlines(keepends=True)
-    if not lines or lines[0] != first_line(header):
+    lines = read_lines(partial)
+    first = next(lines, b"")
+    if first != first_line(header):
         return 0
-    keys, kept, length = header.keys, 0, len(lines[0])
-    for each in lines[1:]:
+    kept, length = 0, len(first)
+    for each, key in zip(lines, header.keys, strict=False):
         try:
             (record,) = read_records(header, [each.rstrip(b"\n")], partial.name)
         except HearthError:
             break
-        if not each.endswith(b"\n") or (record.task, record.seed, record.helped) != keys[kept]:
+        if not each.endswith(b"\n") or (record.task, record.seed, record.helped) != key:
             break
         kept, length = kept + 1, length + len(each)
     with partial.open("r+b") as file:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, islice, zip_longest
 
 from hearth.challenges.definition import challenge
 from hearth.challenges.episodes import Job, Known, Record, again, played
@@ -14,10 +14,13 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.parallel import Seen, spread, unseen
 
+MOST_AT_ONCE = 40
+"""Episodes of a task that one process does again before it says what it found."""
+
 
 @dataclass(frozen=True)
 class Check:
-    """The episodes of one task that are to be done again.
+    """Episodes of one task that are to be done again.
 
     Attributes:
         task: theirs.
@@ -43,21 +46,23 @@ def verify(
         known: gives the knowledge.
         workers: processes.
         agents: also let the agents play each episode anew, and compare what they do.
-        seen: called with the number of tasks done.
+        seen: called with the number of episodes done.
     """
     found = [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in _missing(results)]
     if found:
         return found
-    checks = list(_checks(results, known, agents))
-    for faults in spread(differences, checks, workers, seen):
+    checks, done = _checks(results, known, agents), 0
+    for number, faults in spread(differences, checks, workers):
+        done += number
+        seen(done, len(results.records))
         found += [Diagnostic(Code.REPLAY_DIFFERS, fault, file) for fault in faults]
     return found
 
 
 def _missing(results: Results) -> Iterator[str]:
-    here = [(each.task, each.seed, each.helped) for each in results.records]
-    if here != results.header.keys:
-        yield f"{len(here):,} episodes, not {len(results.header.keys):,}: one of each task, seed and kind, in order"
+    keys, here = results.header.keys, ((each.task, each.seed, each.helped) for each in results.records)
+    if any(one != other for one, other in zip_longest(here, keys)):
+        yield f"{len(results.records):,} episodes, not {len(keys):,}: one of each task, seed and kind, in order"
 
 
 def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
@@ -69,15 +74,16 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="verify without --agents")
     lineup = header.lineup.checked() if agents else header.lineup
     for name, group in groupby(results.records, lambda each: each.task):
-        records, jobs = tuple(group), []
-        for each in records if agents else ():
-            goal = None if each.helper_goal is None else grammar.read(each.helper_goal)
-            jobs.append(Job(tasks[name], each.seed, lineup, each.helped, goal, known))
-        yield Check(tasks[name], records, known, tuple(jobs))
+        while records := tuple(islice(group, MOST_AT_ONCE)):
+            jobs = []
+            for each in records if agents else ():
+                goal = None if each.helper_goal is None else grammar.read(each.helper_goal)
+                jobs.append(Job(tasks[name], each.seed, lineup, each.helped, goal, known))
+            yield Check(tasks[name], records, known, tuple(jobs))
 
 
-def differences(check: Check) -> list[str]:
-    """What is different when the episodes of a task are done again."""
+def differences(check: Check) -> tuple[int, list[str]]:
+    """How many episodes of a task were done again, and what was different then."""
     found = []
     # Those without a helper first, then those with one: their starts differ.
     for number, record in sorted(enumerate(check.records), key=lambda pair: pair[1].helped):
@@ -96,4 +102,4 @@ def differences(check: Check) -> list[str]:
             found.append(f"{where}: the last world is another than was recorded")
         elif check.jobs and played(check.jobs[number]) != record:
             found.append(f"{where}: the agents do something else")
-    return found
+    return len(check.records), found

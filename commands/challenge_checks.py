@@ -21,7 +21,7 @@ def verify(results: Path, *, agents: bool = False, workers: int = 0, as_json: bo
     from hearth.kb.loading.load import default
 
     found = read(results)
-    with bar("tasks") as seen:
+    with bar("episodes") as seen:
         faults = differences(found, str(results), default, workers, agents, seen)
     if as_json:
         header = found.header

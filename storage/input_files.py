@@ -6,8 +6,9 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from hearth.schemas.decoding import decode
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -34,6 +35,39 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
     """
     if str(path) == "-":
         return _limited(sys.stdin.buffer.read(largest + 1), "standard input", largest)
+    with _opened(path) as file:
+        return _limited(file.read(largest + 1), str(path), largest)
+
+
+def read_lines(path: Path, longest: int = LARGEST) -> Iterator[bytes]:
+    """The lines of a file with their ends, of which one is in memory at a time.
+
+    Args:
+        path: as of `read_input`.
+        longest: bytes of a line, at most.
+
+    Raises:
+        HearthError: as of `read_input`; FILE_TOO_LARGE with the line that is too long.
+    """
+    if str(path) == "-":
+        yield from _lines(sys.stdin.buffer, "standard input", longest)
+        return
+    with _opened(path) as file:
+        yield from _lines(file, str(path), longest)
+
+
+def _lines(file: BinaryIO, name: str, longest: int) -> Iterator[bytes]:
+    for number in count(1):
+        line = file.readline(longest + 1)
+        if len(line) > longest:
+            raise HearthError(Diagnostic(Code.FILE_TOO_LARGE, f"a line of more than {longest:,} bytes", name, number))
+        if not line:
+            return
+        yield line
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[BinaryIO]:
     inherited = str(path).startswith(_INHERITED)
     try:
         # Not waiting for whoever writes into a pipe; of regular files the flag changes nothing.
@@ -48,7 +82,7 @@ def read_input(path: Path, largest: int = LARGEST) -> bytes:
             what = "is a directory" if stat.S_ISDIR(mode) else "is not a regular file"
             raise HearthError.of(Code.UNSUPPORTED_FILE, what, file=str(path), suggestion="name a file")
         with os.fdopen(descriptor, "rb", closefd=False) as file:
-            return _limited(file.read(largest + 1), str(path), largest)
+            yield file
     finally:
         os.close(descriptor)
 

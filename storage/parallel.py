@@ -5,9 +5,11 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sized
+from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from itertools import chain, islice
 from multiprocessing import connection, forkserver, resource_tracker
 from multiprocessing.context import BaseContext
 from typing import TypeVar
@@ -84,31 +86,46 @@ def unseen(done: int, total: int | None) -> None:
     """Reports nothing."""
 
 
+AHEAD = 8
+"""Jobs of each worker that are given out before their results are asked for."""
+
+
 def spread(
-    function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, seen: Seen = unseen
+    function: Callable[[Job], Result], jobs: Iterable[Job], workers: int, seen: Seen = unseen
 ) -> Iterator[Result]:
     """The results in the order of the jobs, for any number of workers.
 
     Args:
         function: of a module, so that other processes find it.
-        jobs: what it is called with, one after the other.
+        jobs: what it is called with, one after the other; only a few more are taken than results are asked for.
         workers: processes; below 2, or for a single job, all is done in this one.
         seen: called with the number of jobs done.
     """
+    total = len(jobs) if isinstance(jobs, Sized) else None
     for done, result in enumerate(_results(function, jobs, workers), 1):
-        seen(done, len(jobs))
+        seen(done, total)
         yield result
 
 
-def _results(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[Result]:
-    if workers < 2 or len(jobs) < 2:
-        yield from map(function, jobs)
+def _results(function: Callable[[Job], Result], jobs: Iterable[Job], workers: int) -> Iterator[Result]:
+    waiting = iter(jobs)
+    first = list(islice(waiting, max(workers, 2)))
+    if workers < 2 or len(first) < 2:
+        yield from map(function, chain(first, waiting))
         return
-    with ProcessPoolExecutor(min(workers, len(jobs)), context(), begin) as pool:
+    with ProcessPoolExecutor(len(first), context(), begin) as pool:
+        given: deque[Future[Result]] = deque()
         try:
-            with uninterrupted():
-                results = pool.map(function, jobs)
-            yield from results
+            for job in chain(first, waiting):
+                with uninterrupted():  # it may start a worker
+                    given.append(pool.submit(function, job))
+                if len(given) >= AHEAD * workers:
+                    yield given.popleft().result()
+            while given:
+                yield given.popleft().result()
         except KeyboardInterrupt:
             end(pool)
             raise
+        finally:
+            for each in given:
+                each.cancel()

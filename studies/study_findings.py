@@ -108,10 +108,11 @@ def findings(collected: Collected, alone: Collected | None = None) -> Findings:
 
 def _by_condition(rows: Rows) -> dict[str, Outcomes]:
     """Condition -> task -> outcomes of the trials that count."""
-    found: dict[str, list[tuple[str, Mapping[str, Any]]]] = {each.name: [] for each in rows.study.conditions}
+    found: dict[str, list[tuple[str, Mapping[str, float]]]] = {each.name: [] for each in rows.study.conditions}
     for row in rows.trials():
         if row["counted"]:
-            found[row["condition"]].append((row["task_id"], row))
+            numbers = {name: value for name, value in row.items() if isinstance(value, (int, float))}
+            found[row["condition"]].append((row["task_id"], numbers))
     return {name: by_task(some) for name, some in found.items()}
 
 

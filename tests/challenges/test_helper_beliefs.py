@@ -36,11 +36,11 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def believed(results, knowledge):
-    return beliefs(FEW.tasks[0], results.records[1], "nopa", knowledge)
+    return beliefs(FEW.tasks[0], list(results.records)[1], "nopa", knowledge)
 
 
 def test_a_helper_believes_ever_more_of_the_true_goal(results, believed):
-    assert len(believed.moments) == len(results.records[1].actions)
+    assert len(believed.moments) == len(list(results.records)[1].actions)
     first, last = believed.moments[0], believed.moments[-1]
     assert last.truth > first.truth and last.f1 > first.f1
     wanted = [number for number, count in enumerate(believed.goal) if count]
@@ -49,9 +49,9 @@ def test_a_helper_believes_ever_more_of_the_true_goal(results, believed):
 
 def test_beliefs_of_who_infers_nothing_are_refused(results, knowledge):
     with pytest.raises(HearthError, match="infers no goal"):
-        beliefs(FEW.tasks[0], results.records[1], "hp", knowledge)
+        beliefs(FEW.tasks[0], list(results.records)[1], "hp", knowledge)
     with pytest.raises(HearthError, match="infers no goal"):
-        beliefs(FEW.tasks[0], replace(results.records[1], helped=False), "nopa", knowledge)
+        beliefs(FEW.tasks[0], replace(list(results.records)[1], helped=False), "nopa", knowledge)
 
 
 def test_inference_is_scored_over_time(results):

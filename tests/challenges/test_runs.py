@@ -23,6 +23,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.goals import Progress
+from hearth.storage.input_files import read_lines
 
 WAH = challenge("wah")
 FEW = suite("wah", "test-1", limit=2)
@@ -97,7 +98,7 @@ def changed(results, tmp_path, change, signed):
     change(data)
     if signed:
         data.pop("digest")
-        record = replace(found.records[1], **{**data, "actions": tuple(map(tuple, data["actions"]))})
+        record = replace(list(found.records)[1], **{**data, "actions": tuple(map(tuple, data["actions"]))})
         some[2] = line(found.header, record)
     else:
         some[2] = json.dumps(data).encode() + b"\n"
@@ -339,3 +340,23 @@ def test_a_file_of_results_names_no_code_that_is_run(results, tmp_path):
     with pytest.raises(HearthError, match="BAD_ARGUMENT"):
         verify(strange, "strange.jsonl", default, agents=True)
     assert not ran.exists()
+
+
+def test_a_file_of_more_than_fits_in_memory(results, monkeypatch):
+    """Each line is read for itself: it may not be long, the file may."""
+    out, found = results
+    longest = max(len(each) for each in lines(out))
+    monkeypatch.setattr(read_lines, "__defaults__", (longest,))
+    assert list(read(out).records) == list(found.records)
+    monkeypatch.setattr(read_lines, "__defaults__", (longest - 1,))
+    with pytest.raises(HearthError) as raised:
+        read(out)
+    assert raised.value.diagnostics[0].code == Code.FILE_TOO_LARGE
+
+
+def test_a_file_that_lost_its_end_while_it_was_read(results, tmp_path):
+    path = tmp_path / "short.jsonl"
+    path.write_bytes(results[0].read_bytes())
+    found = read(path)
+    path.write_bytes(b"".join(lines(path)[:-1]))
+    assert [fault.code for fault in verify(found, str(path), default)] == [Code.REPLAY_DIFFERS]
