@@ -182,7 +182,17 @@ class _File:
 
 def write_table(path: Path, table: pa.Table) -> None:
     """Write a small table whole, in the stages' way."""
-    file = _File(path, table.schema)
-    for batch in table.to_batches(max_chunksize=ROW_GROUP):
-        file.write(batch)
+    write_batches(path, table.schema, table.to_batches())
+
+
+def write_batches(path: Path, schema: pa.Schema, batches: Iterable[pa.RecordBatch]) -> None:
+    """Write a table of which some batches are in memory at a time, in the stages' way."""
+    file = _File(path, schema)
+    try:
+        for batch in batches:
+            for start in range(0, len(batch), ROW_GROUP):
+                file.write(batch.slice(start, ROW_GROUP))
+    except BaseException:
+        file.abandon()
+        raise
     file.finish({})

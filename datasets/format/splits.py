@@ -5,9 +5,12 @@ nearly the same steps, and programs with nearly the same description. If a rule 
 programs outside the latest part have none. The leakage that remains is measured, beside that of a random split.
 """
 
+from __future__ import annotations
+
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
 from types import MappingProxyType
 from typing import Any
 
@@ -66,6 +69,9 @@ class SplitProgram:
     description: str
 
 
+Run = tuple[str, str, str]
+"""Execution id, program id and home of an execution that ran to its end."""
+
 _NONE: Mapping[str, Mapping[str, str | None]] = MappingProxyType({})
 
 
@@ -92,18 +98,20 @@ class Similarity:
 
     def by_steps(self, program: SplitProgram) -> set[Any]:
         """The steps of similar programs: normalised LCS at least `NEAR`; the program's own included."""
-        return self._steps.get(program.steps, set())
+        return self._steps.get(program.steps) or ({program.steps} if program.steps else set())
 
     def by_text(self, program: SplitProgram) -> set[Any]:
         """The normalised descriptions of similar programs, its own included."""
-        return self._texts.get(normalised(program.description), set())
+        text = normalised(program.description)
+        return self._texts.get(text) or ({text} if len(text) >= SHORTEST_TEXT else set())
 
 
 def _neighbours(values: Sequence[Any], pairs: Iterable[tuple[int, int]]) -> dict[Any, set[Any]]:
-    found = {value: {value} for value in values}
+    """The values that have neighbours, with these and themselves."""
+    found: dict[Any, set[Any]] = {}
     for one, other in pairs:
-        found[values[one]].add(values[other])
-        found[values[other]].add(values[one])
+        for a, b in ((values[one], values[other]), (values[other], values[one])):
+            found.setdefault(a, {a}).add(b)
     return found
 
 
@@ -143,20 +151,14 @@ def by_activity(programs: Sequence[SplitProgram], similarity: Similarity) -> dic
     }
 
 
-def homes_of(runs: Iterable[tuple[str, str, str]], seed: int) -> tuple[list[str], str]:
+def homes_of(runs: Iterable[Run], seed: int) -> tuple[list[str], str]:
     """The homes of runs, in the order in which splits number them, and the one that is held out."""
     homes = sorted({home for _, _, home in runs})
     return homes, homes[derive(seed, "split", "home") % len(homes)] if homes else ""
 
 
-def parts(
-    programs: Sequence[SplitProgram],
-    runs: Sequence[tuple[str, str, str]],
-    seed: int,
-    similarity: Similarity,
-    own: Mapping[str, Mapping[str, str | None]] = _NONE,
-) -> Iterator[SplitRow]:
-    """A row for each run and split: `split`, `execution_id`, `program_id`, `part`.
+class SplitRows(Iterable[SplitRow]):
+    """A row for each run and split, sorted by `split` and `execution_id`; millions, made anew each time.
 
     Args:
         programs: all published programs.
@@ -165,20 +167,43 @@ def parts(
         similarity: near duplicates among these programs.
         own: id of an original -> split -> part, where its source gives them; other programs are in no such split.
     """
-    root = {each.program_id: each.root for each in programs}
-    group, part_of = groups(programs, similarity), by_activity(programs, similarity)
-    homes, out = homes_of(runs, seed)
-    number = {home: place for place, home in enumerate(homes, 1)}
-    for execution_id, program_id, home in sorted(runs):
-        mine, at, part = group[program_id], number[home], part_of[program_id]
-        assigned = {
-            "activities": part,
-            "held_out_home": _by_held_out(part, home == out),
-            **{split: _by_home(split, derive(seed, "split", split, mine) % 10, at) for split in _BY_HOME},
-            **own.get(root[program_id], {}),
+
+    def __init__(
+        self,
+        programs: Sequence[SplitProgram],
+        runs: Iterable[Run],
+        seed: int,
+        similarity: Similarity,
+        own: Mapping[str, Mapping[str, str | None]] = _NONE,
+    ) -> None:
+        self._runs, self._own = sorted(runs), own
+        self._root = {each.program_id: each.root for each in programs}
+        self._part_of = by_activity(programs, similarity)
+        group = groups(programs, similarity)
+        self._decile = {
+            split: {name: derive(seed, "split", split, mine) % 10 for name, mine in group.items()} for split in _BY_HOME
         }
-        for split, part in assigned.items():
-            yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
+        homes, self._held_out = homes_of(self._runs, seed)
+        self._number = {home: place for place, home in enumerate(homes, 1)}
+
+    def __iter__(self) -> Iterator[SplitRow]:
+        for split in sorted({*RULES, *(name for given in self._own.values() for name in given)}):
+            part_of = self._rule(split)
+            for run in self._runs:
+                execution_id, program_id, _ = run
+                if split in RULES or split in self._own.get(self._root[program_id], ()):
+                    part = part_of(run)
+                    yield {"split": split, "execution_id": execution_id, "program_id": program_id, "part": part}
+
+    def _rule(self, split: str) -> Callable[[Run], str | None]:
+        """What gives the part of a run in a split."""
+        if split == "activities":
+            return lambda run: self._part_of[run[1]]
+        if split == "held_out_home":
+            return lambda run: _by_held_out(self._part_of[run[1]], run[2] == self._held_out)
+        if split in _BY_HOME:
+            return lambda run: _by_home(split, self._decile[split][run[1]], self._number[run[2]])
+        return lambda run: self._own[self._root[run[1]]][split]
 
 
 def _by_held_out(part: str | None, held_out: bool) -> str | None:
@@ -201,8 +226,8 @@ def _by_home(split: str, decile: int, home: int) -> str | None:
 
 def summary(
     programs: Sequence[SplitProgram],
-    runs: Sequence[tuple[str, str, str]],
-    rows: Sequence[SplitRow],
+    runs: Iterable[Run],
+    rows: Iterable[SplitRow],
     seed: int,
     similarity: Similarity,
 ) -> dict[str, Any]:
@@ -211,30 +236,61 @@ def summary(
     `leakage` counts test programs with a program in train that has the same original (`siblings`), nearly the same
     steps (`steps`), or nearly the same description (`texts`); `at_random` is the leakage of a random split of equal
     size.
+
+    Args:
+        programs: all published programs.
+        runs: as of `SplitRows`.
+        rows: sorted by split.
+        seed: of the assignment.
+        similarity: near duplicates among these programs.
     """
     by_id = {each.program_id: each for each in programs}
     homes, out = homes_of(runs, seed)
     spans = {f"{first}_{last}": ", ".join(homes[first - 1 : last]) or "none here" for first, last in _SPANS}
-    found: dict[str, Any] = {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": {}}
-    given = dict.fromkeys(sorted({row["split"] for row in rows} - RULES.keys()), OWN)
-    for split, rule in {**RULES, **given}.items():
-        counted = Counter(row["part"] for row in rows if row["split"] == split)
-        members: dict[str, dict[str, None]] = {}
+    measured = {
+        split: _measured(Members.of(some), by_id, seed, similarity)
+        for split, some in groupby(rows, lambda row: row["split"])
+    }
+    rules = {**RULES, **dict.fromkeys(sorted(measured.keys() - RULES.keys()), OWN)}
+    nobody = _measured(Members(), by_id, seed, similarity)
+    described = {
+        split: {"rule": rule.format(held_out=out, **spans), **measured.get(split, nobody)}
+        for split, rule in rules.items()
+    }
+    return {"seed": seed, "near": NEAR, "homes": homes, "held_out": out, "splits": described}
+
+
+def _measured(members: Members, by_id: Mapping[str, SplitProgram], seed: int, similarity: Similarity) -> dict[str, Any]:
+    programs = dict(sorted(members.programs.items()))
+    train = [by_id[name] for name in programs.get("train", ())]
+    tested = dict.fromkeys(name for part, names in programs.items() if part.startswith("test") for name in names)
+    test = [by_id[name] for name in tested]
+    return {
+        "runs": {part: members.runs[part] for part in programs},
+        "runs_without_part": members.runs[None],
+        "programs": {part: len(names) for part, names in programs.items()},
+        "leakage": leakage(train, test, similarity),
+        "at_random": leakage(*_at_random([*train, *test], len(test), seed), similarity),
+    }
+
+
+@dataclass(slots=True)
+class Members:
+    """How many runs the parts of a split have, and the ids of their programs."""
+
+    runs: Counter[str | None] = field(default_factory=Counter)
+    programs: dict[str, dict[str, None]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, rows: Iterable[SplitRow]) -> Members:
+        """Those of the rows of a split."""
+        found = cls()
         for row in rows:
-            if row["split"] == split and row["part"]:
-                members.setdefault(row["part"], {})[row["program_id"]] = None
-        train = [by_id[name] for name in members.get("train", {})]
-        test = [by_id[name] for part, names in sorted(members.items()) if part.startswith("test") for name in names]
-        test = list({each.program_id: each for each in test}.values())
-        found["splits"][split] = {
-            "rule": rule.format(held_out=out, **spans),
-            "runs": {part: counted[part] for part in sorted(members)},
-            "runs_without_part": counted[None],
-            "programs": {part: len(names) for part, names in sorted(members.items())},
-            "leakage": leakage(train, test, similarity),
-            "at_random": leakage(*_at_random([*train, *test], len(test), seed), similarity),
-        }
-    return found
+            part = row["part"]
+            found.runs[part] += 1
+            if part:
+                found.programs.setdefault(part, {})[row["program_id"]] = None
+        return found
 
 
 _SPANS = ((1, 4), (5, 5), (5, 6), (1, 5), (6, 7))

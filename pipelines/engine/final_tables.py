@@ -1,6 +1,7 @@
 """The tables that need all cases, the pictures and the catalog, published last."""
 
 import shutil
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -34,7 +35,7 @@ from hearth.schemas.vocabulary import PROPERTIES, RELATIONS, STATES
 from hearth.simulation.world.world import World
 from hearth.storage.files import replacing, sync_folder, write_json
 from hearth.storage.manifest import Manifest, read_manifest
-from hearth.storage.partitions import Counts, part_path, read_rows, write_table
+from hearth.storage.partitions import Counts, part_path, read_rows, write_batches
 
 BATCH = 4_096
 
@@ -79,8 +80,7 @@ def write_rows(path: Path, schema: pa.Schema, rows: Iterable[Row]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     stamped = ({**row, **STAMP} for row in rows)
     shares = iter(lambda: list(islice(stamped, BATCH)), [])
-    batches = [pa.RecordBatch.from_pylist(share, schema) for share in shares]
-    write_table(path, pa.Table.from_batches(batches, schema))
+    write_batches(path, schema, (pa.RecordBatch.from_pylist(share, schema) for share in shares))
 
 
 _KEYS = {"programs": "program_id", "environments": "environment_id", "executions": "execution_id"}
@@ -249,9 +249,10 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[forms.HomeEdgeRow]:
 
 
 def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow | forms.ClipRow]:
+    drawn = {row["execution_id"] for row in _rows(job, "render", kind, ["execution_id"])}
     home: dict[str, str] = {}
-    for path in (job.folder / "executions").glob("part-*.parquet"):
-        table = pq.read_table(path, columns=["execution_id", "home"])
+    for path in (job.folder / "executions").glob("part-*.parquet") if drawn else ():
+        table = pq.read_table(path, columns=["execution_id", "home"], filters=[("execution_id", "in", drawn)])
         home.update(zip(table["execution_id"].to_pylist(), table["home"].to_pylist(), strict=True))
     for row in _rows(job, "render", kind):
         if row["execution_id"] in home:
@@ -259,15 +260,18 @@ def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow | f
             yield row
 
 
-def _splits(job: Job) -> list[forms.SplitRow]:
-    runs: list[Any] = []
+def _splits(job: Job) -> Iterable[forms.SplitRow]:
+    known, seed = job.context.assignment, job.settings.seed
+    same = {each.program_id: each.program_id for each in known.programs}
+    runs: list[splits.Run] = []
     for path in sorted((job.folder / "executions").glob("part-*.parquet")):
         table = pq.read_table(path, columns=["execution_id", "program_id", "home"], filters=[("executable", "=", True)])
-        runs.extend(zip(*(table[name].to_pylist() for name in table.column_names), strict=True))
-    known, seed = job.context.assignment, job.settings.seed
-    rows = list(splits.parts(known.programs, runs, seed, known.similarity, _parts_of_sources(job)))
+        names, programs, homes = (table[name].to_pylist() for name in table.column_names)
+        # Each text is kept once: there are a million runs.
+        runs.extend(zip(names, map(same.__getitem__, programs), map(sys.intern, homes), strict=True))
+    rows = splits.SplitRows(known.programs, runs, seed, known.similarity, _parts_of_sources(job))
     write_json(job.folder / "splits.json", splits.summary(known.programs, runs, rows, seed, known.similarity))
-    return sorted(rows, key=lambda row: (row["split"], row["execution_id"]))
+    return rows
 
 
 def _parts_of_sources(job: Job) -> dict[str, dict[str, str | None]]:

@@ -11,10 +11,10 @@ from hearth.datasets.format.splits import (
     RULES,
     Similarity,
     SplitProgram,
+    SplitRows,
     by_activity,
     groups,
     leakage,
-    parts,
     roots,
     summary,
 )
@@ -83,7 +83,7 @@ def many():
 
 def test_no_split_leaks_where_random_rows_would():
     programs, runs = many()
-    rows = list(parts(programs, runs, 3, Similarity(programs)))
+    rows = list(SplitRows(programs, runs, 3, Similarity(programs)))
     assert len(rows) == len(RULES) * len(runs)
     found = summary(programs, runs, rows, 3, Similarity(programs))["splits"]
     for split in found.values():
@@ -96,7 +96,7 @@ def test_homes_are_where_the_rules_say():
     programs, runs = many()
     home = {execution_id: int(name[1:]) for execution_id, _, name in runs}
     found = {}
-    for row in parts(programs, runs, 3, Similarity(programs)):
+    for row in SplitRows(programs, runs, 3, Similarity(programs)):
         found.setdefault((row["split"], row["part"]), set()).add(home[row["execution_id"]])
     assert found["homes_1_4", "train"] == found["homes_1_4", "test_seen"] == {1, 2, 3, 4}
     assert (found["homes_1_4", "validation"], found["homes_1_4", "test_unseen"]) == ({5}, {5, 6})
@@ -110,7 +110,7 @@ def test_homes_are_where_the_rules_say():
 def test_a_source_s_own_splits_are_those_of_originals_and_their_descendants():
     programs, runs = many()
     own = {"p00": {"pairs": "test"}, "p01": {"pairs": None}}
-    rows = list(parts(programs, runs, 3, Similarity(programs), own))
+    rows = list(SplitRows(programs, runs, 3, Similarity(programs), own))
     found = {(row["program_id"], row["part"]) for row in rows if row["split"] == "pairs"}
     assert found == {("p00", "test"), ("p00+1", "test"), ("p01", None), ("p01+1", None)}
     about = summary(programs, runs, rows, 3, Similarity(programs))["splits"]["pairs"]
@@ -128,7 +128,7 @@ def test_homes_are_named():
 def test_a_program_has_one_part_wherever_it_runs_unless_a_split_is_by_execution():
     programs, runs = many()
     found = {}
-    for row in parts(programs, runs, 3, Similarity(programs)):
+    for row in SplitRows(programs, runs, 3, Similarity(programs)):
         found.setdefault(row["split"], {}).setdefault(row["program_id"], set()).add(row["part"])
     several = {split for split, of in found.items() if any(len(each - {None}) > 1 for each in of.values())}
     assert several == {"held_out_home"} == {split for split, rule in RULES.items() if rule.startswith("by execution")}
@@ -149,8 +149,8 @@ def test_of_near_duplicates_those_in_the_latest_part_stay():
 
 def test_the_deal_does_not_depend_on_order():
     programs, runs = many()
-    assert list(parts(programs, runs, 3, Similarity(programs))) == list(
-        parts(programs[::-1], runs[::-1], 3, Similarity(programs[::-1]))
+    assert list(SplitRows(programs, runs, 3, Similarity(programs))) == list(
+        SplitRows(programs[::-1], runs[::-1], 3, Similarity(programs[::-1]))
     )
 
 
