@@ -273,6 +273,31 @@ def stats(
         for figure in found["ours"]])  # fmt: skip
 
 
+@app.command()
+def ways(names: list[str] | None = None, homes: Path | None = None, workers: int = 0, as_json: bool = False) -> None:
+    """Make the shortest ways to everything in homes beforehand, and store them; walks by metres then read them there.
+
+    All homes if none is named. The files are beside our homes, or in the folder that HEARTH_WAYS names. Each belongs
+    to a floor: a home that is changed makes its ways anew, stored or not.
+
+    \b
+    Examples:
+      python cli.py home ways
+      HEARTH_WAYS=ways python cli.py home ways oak --homes my_homes
+    """
+    from hearth.commands.progress_line import bar
+    from hearth.homes import library
+    from hearth.kb.loading.load import default
+    from hearth.simulation.motion.making_ways import Wanted, make
+    from hearth.simulation.motion.stored_ways import folder
+
+    chosen = names or library.names(homes)
+    wanted = [Wanted(name, library.load_graph(name, default(), homes), default, folder()) for name in chosen]
+    with bar("homes") as seen:
+        found = [each._asdict() for each in make(wanted, workers, seen)]
+    output.emit(found) if as_json else output.records(found)
+
+
 def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
     from hearth.homes import library
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from functools import cached_property
 from weakref import WeakKeyDictionary
@@ -18,7 +17,8 @@ from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.shell import WALL, interior, strip
 from hearth.schemas.graph import Box, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
-from hearth.simulation.motion.navigation import BODY_RADIUS, Ways
+from hearth.simulation.motion.navigation import BODY_RADIUS, Ways, digest_of
+from hearth.simulation.motion.stored_ways import StoredWays
 from hearth.simulation.world import rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home, Memo
@@ -78,6 +78,10 @@ class Ground:
         except KeyError:
             found = self._stands[node] = tuple(sorted(set(self._found_stands(node))))
             return found
+
+    def every(self) -> list[tuple[int, ...]]:
+        """The standing places of all nodes that have any, each once."""
+        return sorted({self.stands(i) for i in indices(self.home.everything)} - {()})
 
     def _found_stands(self, node: int) -> list[int]:
         box = self.box(node)
@@ -189,17 +193,17 @@ def distance_to(box: Box, point: Spot) -> float:
     return float(gaps(np.asarray([point]), box)[0])
 
 
-_WAYS: dict[bytes, Ways] = {}
+_WAYS: dict[str, Ways] = {}
 
 
 def _shared(floor: Floor) -> Ways:
     """The ways over a floor, the same for floors that are equal."""
-    text = repr((floor.origin, floor.cell, floor.walkable.shape)).encode()
-    key = hashlib.blake2b(text + np.packbits(floor.walkable).tobytes()).digest()
+    key = digest_of(floor)
     if key not in _WAYS:
         if len(_WAYS) >= MOST_WAYS:
             _WAYS.pop(next(iter(_WAYS)))
-        _WAYS[key] = Ways(floor)
+        ways = _WAYS[key] = Ways(floor)
+        ways.stored = StoredWays(ways).field
     return _WAYS[key]
 
 

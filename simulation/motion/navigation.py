@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
+from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,9 +22,13 @@ BODY_RADIUS = 0.25
 """Metres around a character that others keep out of."""
 
 MOST_FIELDS = 1_000
-"""Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells. They are not stored beside homes: reading
-them saves some .1 s for each home and process, and takes 12 MB each (`benchmarks/stored_fields.py`).
-"""
+"""Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells."""
+
+
+def digest_of(floor: Floor) -> str:
+    """32 hexadecimal digits, the same for floors that are equal."""
+    text = repr((floor.origin, floor.cell, floor.walkable.shape)).encode()
+    return blake2b(text + np.packbits(floor.walkable).tobytes(), digest_size=16).hexdigest()
 
 
 class Field(NamedTuple):
@@ -34,8 +39,8 @@ class Field(NamedTuple):
         following: the next cell on the way; negative at its end.
     """
 
-    distance: array[float]
-    following: array[int]
+    distance: array[float] | memoryview[float]
+    following: array[int] | memoryview[int]
 
 
 class Ways:
@@ -46,6 +51,7 @@ class Ways:
         cells: int (n, 2): the walkable cells; a cell's number is its position here.
         number: int, as the grid: the number of each cell, -1 where it is not walkable.
         points: metres (n, 2): the middles of the cells.
+        stored: gives the field to some ends where it was made before (`stored_ways`).
     """
 
     def __init__(self, floor: Floor) -> None:
@@ -55,13 +61,19 @@ class Ways:
         self.number[floor.walkable] = np.arange(len(self.cells))
         self.points = np.asarray(floor.origin) + (self.cells + 0.5) * floor.cell
         self.main = floor.main[floor.walkable]
+        self.stored: Callable[[tuple[int, ...]], Field | None] = lambda ends: None
         self._fields: dict[tuple[tuple[int, ...], tuple[int, ...]], Field] = {}
 
     @cached_property
-    def graph(self) -> csr_matrix:
-        """Distances between neighbouring cells, metres; a diagonal needs both its sides free."""
-        from scipy.sparse import csr_matrix
+    def digest(self) -> str:
+        """Of the floor: 32 hexadecimal digits, the same for floors that are equal."""
+        return digest_of(self.floor)
 
+    @cached_property
+    def edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pairs of neighbouring cells, once each: one, the other, metres between; a diagonal needs both its sides
+        free.
+        """
         sources, targets, lengths = [], [], []
         padded = np.pad(self.number, 1, constant_values=-1)
         inner = padded[1:-1, 1:-1]
@@ -74,12 +86,19 @@ class Ways:
             sources.append(inner[both])
             targets.append(other[both])
             lengths.append(np.full(both.sum(), math.hypot(dx, dz) * self.floor.cell))
-        size = len(self.cells)
-        data = (np.concatenate(lengths), (np.concatenate(sources), np.concatenate(targets)))
-        return csr_matrix(data, shape=(size, size))
+        return np.concatenate(sources), np.concatenate(targets), np.concatenate(lengths)
+
+    @cached_property
+    def graph(self) -> csr_matrix:
+        """The same as a matrix."""
+        from scipy.sparse import csr_matrix
+
+        sources, targets, lengths = self.edges
+        return csr_matrix((lengths, (sources, targets)), shape=(len(self.cells),) * 2)
 
     def field(self, ends: tuple[int, ...], without: tuple[int, ...] = ()) -> Field:
-        """The ways to the nearest of some cells; computed at the first call (some milliseconds), then kept.
+        """The ways to the nearest of some cells; read from where they are stored or computed (some milliseconds) at the
+        first call, then kept.
 
         Args:
             ends: numbers of cells.
@@ -91,7 +110,8 @@ class Ways:
             pass
         if len(self._fields) >= MOST_FIELDS:
             self._fields.pop(next(iter(self._fields)))
-        found = self._fields[ends, without] = self._field(ends, without)
+        stored = None if without else self.stored(ends)
+        found = self._fields[ends, without] = stored or self._field(ends, without)
         return found
 
     def detour(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
