@@ -12,7 +12,7 @@ import argparse
 from pathlib import Path
 
 from measuring import Figure, as_line, finish
-from scale import Watch, place, run
+from scale import Watch, growth, place, run
 
 from hearth.challenges.task_files import suite
 
@@ -31,12 +31,14 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="write the results below this folder")
     parser.add_argument("--json", type=Path, metavar="FILE")
     asked = parser.parse_args()
-    figures = []
+    figures: list[Figure] = []
+    before: list[Figure] = []
     for size in asked.sizes:
         with place(asked.keep, size) as folder:
             found = measured(size, asked.workers, asked.helper, folder)
+        found += growth(before, found)
         print(*map(as_line, found), sep="\n", flush=True)
-        figures += found
+        before, figures = found, figures + found
     finish(figures, asked.json)
 
 
@@ -45,19 +47,19 @@ def measured(size: int, workers: int, helper: str, folder: Path) -> list[Figure]
     tasks, out, seeds = folder / "tasks.json", folder / "results.jsonl", max(1, round(size / EACH))
     run("challenge", "tasks", "wah", "--split", "test-1", "--out", tasks)
     count, figures = seeds * EACH, []
-    for name, words in {
+    for how, words in {
         "played": ("run", tasks, "--helper", helper, "--seeds", seeds, "--out", out),
         "verified": ("verify", out),
     }.items():
         with Watch() as watch:
             run("challenge", *words, "--workers", workers)
-        used = watch.between(0, float("inf"))
+        used, name = watch.between(0, float("inf")), f"{count:,} episodes: {how}"
         figures += [
-            Figure(f"{count:,} episodes {name}, {workers} workers", used.seconds, "s"),
-            Figure("  processor an episode", 1e3 * used.spent / count, "ms"),
-            Figure("  largest process", used.bytes / 1e6, "MB", 2_000),
+            Figure(f"{name} by {workers} workers", used.seconds, "s"),
+            Figure(f"{name}, processor an episode", 1e3 * used.spent / count, "ms"),
+            Figure(f"{name}, largest process", used.bytes / 1e6, "MB", 2_000),
         ]
-    return [*figures, Figure("  on disk, an episode", out.stat().st_size / count, "bytes")]
+    return [*figures, Figure(f"{count:,} episodes: on disk, an episode", out.stat().st_size / count, "bytes")]
 
 
 if __name__ == "__main__":

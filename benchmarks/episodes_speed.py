@@ -94,7 +94,7 @@ def seen(each: Tick) -> None:
     """What each agent sees and could do."""
     for agent in (0, 1):
         view(each.world, agent)
-        legal(each.world, agent)
+        dict(legal(each.world, agent).masks)
 
 
 def searched(env: Env) -> Yardstick:

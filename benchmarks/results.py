@@ -1,6 +1,7 @@
 """All figures: `make bench` runs each `*_speed.py`, writes RESULTS.md and results.json, and compares.
 
     python benchmarks/results.py [--only NAME] [--check]
+    python benchmarks/results.py --take NAME=FILE    (what a benchmark outside `make bench` wrote with --json)
 
 A ratio to plain reference code (`plain.py`, `tests/oracles`), measured in the same run, holds on any machine: one that
 has fallen by a third against the results.json that is committed fails the run (status 1). With `--check` nothing is
@@ -55,6 +56,14 @@ def section(name: str) -> Section:
     }
 
 
+def of_file(file: Path) -> Section:
+    """The section of a benchmark that takes hours, from the figures that it wrote; how busy the machine was, nobody
+    measured.
+    """
+    day = datetime.fromtimestamp(file.stat().st_mtime, UTC).date().isoformat()
+    return {"day": day, "load": None, "still": None, "figures": json.loads(file.read_text("utf-8"))}
+
+
 def measured(script: Path) -> list[Row]:
     """The figures of one benchmark, run in a separate process.
 
@@ -100,8 +109,8 @@ def document(found: Mapping[str, Section]) -> str:
         f"- Python {platform.python_version()}, {libraries}",
     ]
     for name, one in found.items():
-        busy = f"at load {one['load']}; the machine stood still {one['still']}% of the time"
-        head = f"Measured on {one['day']}, {busy}."
+        busy = f", at load {one['load']}; the machine stood still {one['still']}% of the time"
+        head = f"Measured on {one['day']}{busy if one['load'] is not None else ''}."
         lines += [
             "",
             f"## {name}",
@@ -160,10 +169,13 @@ def main(words: Iterable[str] | None = None) -> int:
     """Run, write, compare."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", metavar="NAME", action="append", help="this benchmark only; may be given again")
+    parser.add_argument("--take", metavar="NAME=FILE", action="append", default=[], help="figures that are there")
     parser.add_argument("--check", action="store_true", help="compare only")
     asked = parser.parse_args(list(words) if words is not None else None)
-    names = asked.only or [path.stem.removesuffix("_speed") for path in sorted(HERE.glob("*_speed.py"))]
-    found = {}
+    taken = dict(each.split("=", 1) for each in asked.take)
+    every = [path.stem.removesuffix("_speed") for path in sorted(HERE.glob("*_speed.py"))]
+    names = asked.only or ([] if taken else every)
+    found = {name: of_file(Path(file)) for name, file in taken.items()}
     for name in names:
         print(f"--- {name}", flush=True)
         found[name] = section(name)

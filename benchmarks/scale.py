@@ -16,7 +16,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,13 +37,24 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="build below this folder and leave it there")
     parser.add_argument("--json", type=Path, metavar="FILE")
     asked = parser.parse_args()
-    figures = []
+    figures: list[Figure] = []
+    before: list[Figure] = []
     for size in asked.sizes:
         with place(asked.keep, size) as folder:
             found = measured(size, asked.workers, asked.seed, folder)
+        found += growth(before, found)
         print(*map(as_line, found), sep="\n", flush=True)
-        figures += found
+        before, figures = found, figures + found
     finish(figures, asked.json)
+
+
+def growth(before: Sequence[Figure], found: Sequence[Figure]) -> list[Figure]:
+    """Processor time of an item, and memory, over those of the size before: 1 where time is linear and memory flat."""
+    return [
+        Figure(f"{other.name}, over that of {one.name.split(':')[0]}", other.value / one.value, "times", 1.2)
+        for one, other in zip(before, found, strict=False)
+        if other.unit in ("ms", "MB") and one.value
+    ]
 
 
 @contextlib.contextmanager
@@ -69,22 +80,23 @@ def measured(size: int, workers: int, seed: int, folder: Path) -> list[Figure]:
     whole = watch.between(0, float("inf"))
     count = augmented(folder / "out")
     bytes_ = sum(file.stat().st_size for file in (folder / "out/publish").rglob("*.parquet"))
-    name = f"{count:,} augmented programs, {workers} workers"
+    name = f"{count:,} programs"
+    stages = list(by_stage(watch, folder / "out"))
     return [
-        Figure(f"{name}: build", whole.seconds, "s", 120 * count / 30_000),
+        Figure(f"{name}: build by {workers} workers", whole.seconds, "s", 120 * count / 30_000),
+        Figure(f"{name}: published on disk, a program", bytes_ / count, "bytes", 2_000),
         Figure(f"{name}: processor a program", 1e3 * whole.spent / count, "ms"),
         Figure(f"{name}: largest process", whole.bytes / 1e6, "MB", 2_000),
-        Figure(f"{name}: published on disk, a program", bytes_ / count, "bytes", 2_000),
-        *(figure for stage, used in by_stage(watch, folder / "out") for figure in of_stage(stage, used, count)),
+        *(figure for stage, used in stages for figure in of_stage(f"{name}: {stage}", used, count)),
     ]
 
 
-def of_stage(stage: str, used: Used, count: int) -> list[Figure]:
+def of_stage(name: str, used: Used, count: int) -> list[Figure]:
     """The cost of one stage."""
     return [
-        Figure(f"  {stage}: wall", used.seconds, "s"),
-        Figure(f"  {stage}: processor a program", 1e3 * used.spent / count, "ms"),
-        Figure(f"  {stage}: largest process", used.bytes / 1e6, "MB", 2_000),
+        Figure(f"{name}: wall", used.seconds, "s"),
+        Figure(f"{name}: processor a program", 1e3 * used.spent / count, "ms"),
+        Figure(f"{name}: largest process", used.bytes / 1e6, "MB", 2_000),
     ]
 
 

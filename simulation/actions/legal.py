@@ -8,6 +8,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from hearth.schemas.program import ObjectRef, Step
+from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach
@@ -102,15 +103,39 @@ def legal(
     situation = Situation(world, agent, rules)
     if only_reachable:
         keep &= reach.reachable(world, situation.me)
-    found: dict[str, tuple[int, ...]] = {}
     every = ACTIONS if situation.me.pose is None else EVERY
-    for name, action in every.items():
-        if actions is not None and name not in actions:
-            continue
-        masks = action.mask(situation)
-        if masks is not None:
-            if keep != -1:
-                masks = tuple([mask & keep for mask in masks])
-            if all(masks) and not (len(masks) > 1 and masks[0] == masks[1] and masks[0].bit_count() == 1):
-                found[name] = masks
-    return Legal(world.home, agent, found)
+    chosen = every if actions is None else {name: action for name, action in every.items() if name in actions}
+    return Legal(world.home, agent, _Masks(situation, chosen, keep))
+
+
+class _Masks(Mapping[str, tuple[int, ...]]):
+    """The masks of the actions that can be done, each made when it is asked for: most agents ask for few."""
+
+    def __init__(self, situation: Situation, actions: Mapping[str, Action], keep: int) -> None:
+        self._situation, self._actions, self._keep = situation, actions, keep
+        self._found: dict[str, tuple[int, ...] | None] = {}
+
+    def __getitem__(self, name: str) -> tuple[int, ...]:
+        try:
+            masks = self._found[name]
+        except KeyError:
+            masks = self._found[name] = self._made(name)
+        if masks is None:
+            raise KeyError(name)
+        return masks
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in self._actions if name in self)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def _made(self, name: str) -> tuple[int, ...] | None:
+        action = self._actions.get(name)
+        masks = None if action is None else action.mask(self._situation)
+        if masks is None:
+            return None
+        if self._keep != -1:
+            masks = tuple([mask & self._keep for mask in masks])
+        single = len(masks) > 1 and masks[0] == masks[1] and masks[0].bit_count() == 1
+        return masks if all(masks) and not single else None

@@ -221,7 +221,7 @@ class Here:
         changed = (i for i in same if base.on[i] != home.on[i] or base.inside[i] != home.inside[i] or not ground.box(i))
         self.elsewhere = mask_of(changed) | home.everything & -1 << len(base)
         self._last = NOTHING, self.elsewhere
-        self._standing: tuple[Moved, dict[int, int]] = NOTHING, {}
+        self._standing: tuple[Moved, dict[int, int], dict[tuple[int, int], int]] = NOTHING, {}, {}
 
     def displaced(self, world: World) -> int:
         """The nodes that are elsewhere now: what was carried away is, and what is back where it was is not."""
@@ -237,9 +237,16 @@ class Here:
 
     def standing(self, world: World) -> dict[int, int]:
         """What is known of where displaced nodes are (see `positions`), for as long as nothing moves."""
+        return self._known(world)[1]
+
+    def among(self, world: World) -> dict[tuple[int, int], int]:
+        """What is known of which of some displaced nodes are at some places, for as long as nothing moves."""
+        return self._known(world)[2]
+
+    def _known(self, world: World) -> tuple[Moved, dict[int, int], dict[tuple[int, int], int]]:
         if self._standing[0] is not world.moved:
-            self._standing = world.moved, {}
-        return self._standing[1]
+            self._standing = world.moved, {}, {}
+        return self._standing
 
 
 def _touched(moved: Moved) -> int:

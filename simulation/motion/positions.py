@@ -13,7 +13,7 @@ from hearth.simulation.motion.ground import Here, ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS
 from hearth.simulation.world import rows
 from hearth.simulation.world.agent import Agent
-from hearth.simulation.world.bits import indices, lowest
+from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
@@ -195,14 +195,27 @@ def walked_to(world: World, number: int, doors: int) -> int:
     reached = 0
     for cell in cells:
         reached |= ground.reached(cell, doors)
-    carried = _held(world) | home.characters
-    still = reached
-    moved = (here.displaced(world) | carried) & home.everything
-    for i in indices(moved):
-        there = ends(world, here, i) if carried >> i & 1 else ()
+    carried = (_held(world) | home.characters) & home.everything
+    moved = here.displaced(world) & home.everything & ~carried
+    found = reached & ~carried & ~moved | _at_places(world, here, moved, reached)
+    for i in indices(carried):
+        there = ends(world, here, i)
         place = -1 if there else _standing(world, here, i)
-        if any(ground.joined(cell, there[0], doors) for cell in cells) if there else place >= 0 and still >> place & 1:
-            reached |= 1 << i
-        else:
-            reached &= ~(1 << i)
-    return reached
+        if (
+            any(ground.joined(cell, there[0], doors) for cell in cells)
+            if there
+            else place >= 0 and reached >> place & 1
+        ):
+            found |= 1 << i
+    return found
+
+
+def _at_places(world: World, here: Here, moved: int, places: int) -> int:
+    """Those of some displaced nodes that are at one of some places."""
+    known, standing = here.among(world), here.standing(world)
+    if (moved, places) in known:
+        return known[moved, places]
+    found = mask_of(i for i in indices(moved) if (place := _standing(world, here, i)) >= 0 and places >> place & 1)
+    if all(i in standing for i in indices(moved)):
+        known[moved, places] = found
+    return found
