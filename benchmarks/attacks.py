@@ -25,6 +25,7 @@ from attacks_on_challenges import clients, results, task_files  # noqa: E402
 from attacks_on_episodes import episodes  # noqa: E402
 from attacks_on_models import checkpoints  # noqa: E402
 from attacks_on_studies import studies  # noqa: E402
+from attacks_on_ways import ways  # noqa: E402
 from attacks_on_web import web  # noqa: E402
 from hostile import rename, replace_texts  # noqa: E402
 
@@ -331,7 +332,7 @@ def terminals() -> Iterator[Attack]:
 
 GROUPS = (
     queries, exports, names, inputs, yaml_files, plans, archives, reports, terminals, checkpoints, task_files, results,
-    clients, episodes, studies, web,
+    clients, episodes, studies, ways, web,
 )  # fmt: skip
 
 

@@ -104,6 +104,18 @@ def _read_episodes(path: Path) -> Any:
     return done_again(path)
 
 
+def _ways() -> bytes:
+    from attacks_on_ways import stored
+
+    return stored()
+
+
+def _walked(scratch: Path) -> One:
+    from attacks_on_ways import read
+
+    return lambda data: read(data, scratch)
+
+
 def _read_study(path: Path) -> Any:
     from hearth.studies.study_file import read_study
 
@@ -220,6 +232,7 @@ ROOMS: dict[str, Room] = {
     "tasks": Room(_tasks, _by_file("tasks.json", _read_tasks)),
     "episodes": Room(_episodes, _by_file("episodes.jsonl", _read_episodes)),
     "results": Room(_results, _by_file("results.jsonl", _read_results)),
+    "ways": Room(_ways, _walked),
     "study": Room(_study, _by_file("study.yaml", _read_study)),
     "films-list": Room(lambda: _FILM, _by_file("films.json", _read_films)),
     "checkpoint": _checkpoint(SMALL, "model.json"),
