@@ -45,6 +45,10 @@ class Outcome:
         }
 
 
+METRICS = frozenset({"success", "ticks", "length", "reward", *NAMES})
+"""The names of all metrics of an episode."""
+
+
 def outcome(which: Challenge, success: bool, ticks: int, columns: Columns) -> Outcome:
     """The metrics of an episode that was played."""
     length = ticks if success else which.ticks

@@ -11,7 +11,7 @@ from typing import Any
 
 from hearth.challenges.episodes import Record
 from hearth.challenges.lineup import NOBODY, Lineup
-from hearth.challenges.metrics import Outcomes, by_task
+from hearth.challenges.metrics import METRICS, Outcomes, by_task
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -231,6 +231,7 @@ def episode_of(given: Mapping[str, Any]) -> Record | None:
         isinstance(tick, list) and all(each is None or isinstance(each, str) for each in tick) for tick in actions
     ):
         return None
-    if not all(isinstance(value, (int, float)) for value in given["metrics"].values()):
+    metrics = given["metrics"]
+    if metrics.keys() != METRICS or not all(isinstance(value, (int, float)) for value in metrics.values()):
         return None
     return replace(Record(**given), actions=tuple(map(tuple, actions)))

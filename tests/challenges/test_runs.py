@@ -342,6 +342,13 @@ def test_a_file_of_results_names_no_code_that_is_run(results, tmp_path):
     assert not ran.exists()
 
 
+@pytest.mark.parametrize("metrics", [{}, {"success": 1}, {"success": "yes"}])
+def test_an_episode_without_all_its_metrics_is_none(results, tmp_path, metrics):
+    path = changed(results, tmp_path, lambda data: data.update(metrics=metrics), signed=True)
+    with pytest.raises(HearthError, match="not an episode"):
+        read(path)
+
+
 def test_a_file_of_more_than_fits_in_memory(results, monkeypatch):
     """Each line is read for itself: it may not be long, the file may."""
     out, found = results
