@@ -10,6 +10,7 @@ from typing import Any
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.codecs import program_of
 from hearth.datasets.format.ids import current_id
+from hearth.datasets.format.splits import RULES
 from hearth.pipelines.readers import ours
 from hearth.pipelines.readers.item import Item, refused
 from hearth.schemas.failures import Code
@@ -41,17 +42,30 @@ def scan(path: Path, place: str) -> Iterator[Item]:
     """One item for each original program, then one for each description without any."""
     columns = ["description_id", "scene", "style"]
     described = {row["description_id"]: row for row in _rows(path, "descriptions", columns)}
-    empty = True
+    parts, empty = _own_splits(path), True
     for row in _rows(path, "programs", COLUMNS):
         if row["parent_id"] is None:
             empty = False
-            yield _item(row["program_id"], f"{place}/programs", {**row, **described.get(row["description_id"], {})})
+            words = {**row, **described.get(row["description_id"], {}), "splits": parts.get(row["program_id"])}
+            yield _item(row["program_id"], f"{place}/programs", words)
     for row in _rows(path, "descriptions", DESCRIPTION_COLUMNS):
         if not row.pop("programs"):
             empty = False
             yield _item(row["description_id"], f"{place}/descriptions", row)
     if empty:
         yield refused(place, Reject.of(Code.EMPTY, "a dataset without programs or descriptions", file=place))
+
+
+def _own_splits(path: Path) -> dict[str, dict[str, str | None]]:
+    """Program id -> split -> part, of the splits that came with the dataset's source."""
+    about = read_json(path / "splits.json")
+    named = about.get("splits") if isinstance(about, dict) else None
+    found: dict[str, dict[str, str | None]] = {}
+    if isinstance(named, dict) and named.keys() - RULES.keys():
+        for row in _rows(path, "splits", ["program_id", "split", "part"]):
+            if isinstance(row["split"], str) and row["split"] not in RULES:
+                found.setdefault(row["program_id"], {})[row["split"]] = row["part"]
+    return found
 
 
 def _item(own: str, place: str, row: Any) -> Item:

@@ -18,6 +18,7 @@ from hearth.kb import grammar as action_grammar
 from hearth.models.data import corpus
 from hearth.pipelines.build import build
 from hearth.pipelines.checks.programs import contradictions
+from hearth.pipelines.readers.published import read, scan
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.rng import rng
 from hearth.schemas.syntax import parse_program
@@ -238,6 +239,9 @@ def test_a_dataset_of_drawn_programs_has_their_splits(tmp_path):
     assert len(originals) > 60
     assert all(records[name]["splits"][split] == part for (split, name), part in originals.items())
     assert len(published) > len(originals)  # augmented ones, too
+    ingested = {row["program_id"]: row["parts"] for item in scan(tmp_path / "out/publish", "out") for row in read(item)}
+    again = {(one["split"], name): one["part"] for name, parts in ingested.items() for one in parts or ()}
+    assert again == originals, "a dataset that is built from this one has them, too"
     found = corpus(dataset, "pairs")
     assert {each.program_id for each in found.validation} == {
         name for (split, name), part in originals.items() if (split, part) == ("pairs", "validation")
