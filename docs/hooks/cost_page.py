@@ -41,6 +41,69 @@ def measured() -> dict[str, float]:
     return found
 
 
+def sizes(section: str, what: str) -> dict[int, float]:
+    """A figure of whole runs by their size: `34,875 programs: largest process`.
+
+    Raises:
+        LookupError: results.json has none.
+    """
+    rows = json.loads(RESULTS.read_text("utf-8")).get(section, {}).get("figures", ())
+    found = {}
+    for row in rows:
+        size, _, rest = row["name"].partition(" ")
+        if rest == what:
+            found[int(size.replace(",", ""))] = float(row["value"])
+    if not found:
+        raise LookupError(f"{section}: {what}")
+    return dict(sorted(found.items()))
+
+
+def whole() -> list[str]:
+    """What whole runs took: programs built, episodes played and done again."""
+    lines = [
+        "| whole runs on two processors | time | processor time of each | largest process |",
+        "|---|---:|---:|---:|",
+    ]
+    for section, what, time, each, memory in WHOLE_RUNS:
+        spent, most = sizes(section, each), sizes(section, memory)
+        for size, seconds in sizes(section, time).items():
+            lines.append(f"| {size:,} {what} | {hours(seconds)} | {spent[size]:.1f} ms | {most[size]:,.0f} MB |")
+    return lines
+
+
+WHOLE_RUNS = (
+    (
+        "scale",
+        "programs, augmented from sampling to publishing",
+        "programs: build by 2 workers",
+        "programs: processor a program",
+        "programs: largest process",
+    ),
+    (
+        "challenge_scale",
+        "episodes played",
+        "episodes: played by 2 workers",
+        "episodes: played, processor an episode",
+        "episodes: played, largest process",
+    ),
+    (
+        "challenge_scale",
+        "episodes done again",
+        "episodes: verified by 2 workers",
+        "episodes: verified, processor an episode",
+        "episodes: verified, largest process",
+    ),
+)
+"""Section, what is counted, and the names of time, processor time and memory."""
+
+
+def kept() -> float:
+    """Bytes that publishing keeps of a program: the slope between the smallest and the largest build."""
+    found = sizes("scale", "programs: publish: largest process")
+    (few, small), (many, large) = min(found.items()), max(found.items())
+    return 1e6 * (large - small) / (many - few)
+
+
 def hours(seconds: float) -> str:
     """A duration as one reads it."""
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
@@ -60,7 +123,7 @@ def page() -> str:
         "# Cost at scale",
         "",
         "What ten million programs and ten million episodes take, worked out from what was measured on one machine",
-        "of two processors ([Speed](speed.md)). Nothing on this page was run at that size.",
+        "of two processors ([Speed](speed.md)). Nothing was run at that size; the last table was run.",
         "",
         "| measured | |",
         "|---|---|",
@@ -94,7 +157,13 @@ def page() -> str:
         "```",
         "",
         "Not in these numbers: what one process does at the end (near duplicates over all programs, the joined tables",
-        "and the catalog), pictures, and the network. `python benchmarks/scale.py --sizes 3000 30000` builds datasets",
-        "whole, and prints seconds, memory and bytes a program and the share of each stage.",
+        "and the catalog), pictures, and the network. What was run whole has all of it:",
+        "",
+        *whole(),
+        "",
+        "Memory of workers does not grow with the dataset. The process that publishes keeps"
+        f" {kept() / 1000:.1f} kB a program, which at {WHOLE:,} programs is {kept() * WHOLE / 1e9:.0f} GB: one machine",
+        "of the cluster needs them. `python benchmarks/scale.py` and `python benchmarks/challenge_scale.py` print",
+        "seconds, memory and bytes for other sizes.",
     ]
     return "\n".join(lines) + "\n"
