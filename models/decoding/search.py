@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from hearth.models.decoding.equal_scores import best_places
 from hearth.models.decoding.options import NONE, NOTHING, Grammar, Options, Partial
 from hearth.models.decoding.scorers import Asked, Part, Scorer, Scores
 from hearth.schemas.failures import Failure
@@ -120,7 +121,7 @@ class _Decoder:
             for part in self.scorer.order:
                 beams = self._level(beams, part)
             beams = self._done(beams)
-        return [numbered(max(beam, key=_mean).steps) for beam in beams]
+        return [numbered(beam[best_places(np.array([*map(_mean, beam)]), 1)[0]].steps) for beam in beams]
 
     def _options(self, world: World) -> Options | None:
         if not self.search.constrained:
@@ -155,7 +156,8 @@ class _Decoder:
         """The best drafts of a beam, or random ones; those that this part is not for stay as they are."""
         choices = [c for draft in beam for c in found.get(id(draft), [(draft.score, draft)])]
         if len(choices) > self.search.beam:
-            choices = sorted(choices, key=lambda each: -each[0])[: self.search.beam]  # stable: of equal ones the first
+            scores = np.array([score for score, _ in choices])
+            choices = [choices[place] for place in best_places(scores, self.search.beam)]
         return [draft for _, draft in choices]
 
     def _choices(self, draft: _Draft, part: Part, scores: Scores) -> list[Choice]:
@@ -164,7 +166,7 @@ class _Decoder:
         values = scores.values[allowed]
         if not np.isfinite(values).any():
             return [(draft.score, replace(draft, ended=True, chosen=NOTHING))]
-        best = self._drawn(values, draft.row) if self.search.temperature else _best(values, self.search.beam)
+        best = self._drawn(values, draft.row) if self.search.temperature else best_places(values, self.search.beam)
         made = []
         for place in best:
             if np.isfinite(values[place]):
@@ -258,11 +260,6 @@ class _Decoder:
 def _allows(options: Options, step: Step, home: Home) -> bool:
     nodes = [home.index.get(NONE if ref.node is None else ref.node) for ref in step.objects]
     return None not in nodes and options.allows(step.action, [node for node in nodes if node is not None])
-
-
-def _best(values: np.ndarray, most: int) -> Iterable[int]:
-    """The places of the greatest values; of equal ones the first."""
-    return [int(values.argmax())] if most == 1 else np.argsort(-values, kind="stable")[:most].tolist()
 
 
 def _mean(draft: _Draft) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
+from hearth.models.decoding.equal_scores import best_places
 from hearth.models.sketches.choices import Packed
 
 
@@ -84,4 +85,5 @@ def loss_of(ranker: Ranker, batch: Packed) -> Tensor:
 
 def best(scores: Tensor, starts: Tensor) -> list[int]:
     """The index of the best candidate of each choice; of equal ones the first."""
-    return [int(scores[a:b].argmax()) for a, b in zip(starts.tolist(), starts[1:].tolist(), strict=False)]
+    found, places = scores.detach().numpy(), starts.tolist()
+    return [best_places(found[a:b])[0] for a, b in zip(places, places[1:], strict=False)]

@@ -6,9 +6,11 @@ from collections import Counter
 from itertools import islice
 from random import Random
 
+import numpy as np
 import pytest
 from oracles.scorers import BY_ACTION, BY_OBJECT, WHOLE, Knowing, RandomScorer
 
+from hearth.models.decoding.equal_scores import best_places
 from hearth.models.decoding.options import NONE, Grammar, Partial
 from hearth.models.decoding.search import Search, Start, decode, numbered
 from hearth.schemas.failures import Code, Failure
@@ -177,3 +179,13 @@ def test_a_world_in_which_nothing_can_be_done_ends_the_program(environments, act
     bare = World.start(world.home.copy())
     scorer = RandomScorer([])
     assert decode(scorer, [Start(bare, 0)], Search()) == [()]
+
+
+def test_rounding_does_not_choose_between_equal_scores():
+    values = np.array([0.1, 0.7, 0.7, -np.inf, 0.7, 0.2])
+    for seed in range(20):
+        rounded = values + np.random.default_rng(seed).normal(0, 1e-6, len(values))
+        assert best_places(rounded) == [1]
+        assert best_places(rounded, 4) == [1, 2, 4, 5]
+        assert best_places(rounded, 9) == [1, 2, 4, 5, 0]
+    assert best_places(np.full(3, -np.inf), 2) == [0]

@@ -1,0 +1,28 @@
+"""The best of some scores, where rounding decides nothing.
+
+Nodes that nothing distinguishes have the same score but for rounding, which differs with the batch and the machine.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+SAME = 1e-4
+"""Scores that differ by no more are equal. Single precision errs by some 1e-6 here."""
+
+
+def best_places(values: np.ndarray, most: int = 1) -> list[int]:
+    """The places of the greatest values, `most` at most; of equal ones the first, and -inf only if there is no other.
+
+    Args:
+        values: scores, (N,), N > 0.
+        most: places at most.
+    """
+    left, found = values.astype(np.float64), []
+    for _ in range(min(most, len(left))):
+        best = left.max()
+        if found and best == -np.inf:
+            break
+        found.append(int(np.argmax(left >= best - SAME)))
+        left[found[-1]] = -np.inf
+    return found
