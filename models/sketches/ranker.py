@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import torch
 from torch import Tensor, nn
 
@@ -86,4 +88,4 @@ def loss_of(ranker: Ranker, batch: Packed) -> Tensor:
 def best(scores: Tensor, starts: Tensor) -> list[int]:
     """The index of the best candidate of each choice; of equal ones the first."""
     found, places = scores.detach().numpy(), starts.tolist()
-    return [best_places(found[a:b])[0] for a, b in zip(places, places[1:], strict=False)]
+    return [best_places(found[a:b])[0] for a, b in pairwise(places)]
