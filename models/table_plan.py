@@ -43,10 +43,13 @@ class Needed(NamedTuple):
     split: str
     name: str
     seed: int
+    changed: str = ""
+    """A setting that is not the usual one, as `model train --set` takes it."""
 
     def folder(self, out: Path) -> Path:
         """Of its checkpoint; tables share them."""
-        return inside(out / "models", f"{self.data}.{self.split}.{self.name}.{self.seed}")
+        name = ".".join(part for part in (self.name, self.changed) if part)
+        return inside(out / "models", f"{self.data}.{self.split}.{name}.{self.seed}")
 
     @property
     def before(self) -> Needed | None:
@@ -64,6 +67,7 @@ class Plan:
         split: of the dataset.
         once: models without chance: one seed is enough.
         seeded: models that are trained with each seed.
+        varied: the same, with a setting changed: a model's name, and the setting.
         given: methods that need no training.
         repaired: as of `text_tables.table`.
     """
@@ -73,6 +77,7 @@ class Plan:
     split: str
     once: tuple[str, ...] = ()
     seeded: tuple[str, ...] = ()
+    varied: tuple[tuple[str, str], ...] = ()
     given: tuple[str, ...] = ()
     repaired: bool = False
 
@@ -85,19 +90,20 @@ class Plan:
         """Its models, each after the one that it goes on from."""
         for name in self.once:
             yield Needed(self.data, self.split, name, 0)
-        for name in self.seeded:
-            yield from (Needed(self.data, self.split, name, seed) for seed in range(seeds))
+        for name, changed in (*((name, "") for name in self.seeded), *self.varied):
+            yield from (Needed(self.data, self.split, name, seed, changed) for seed in range(seeds))
 
 
 _DRAWN = Plan("4.4", "drawn", "pairs", ("nearest",), (*LSTM, *CRITICS))
-_SKETCHES = Plan("5.2", "people", "activities", (), (*GRAPHS, "chooser"), ("planner",))
+_SKETCHES = Plan("5.2", "people", "activities", (), (*GRAPHS, "chooser"), given=("planner",))
+_ROUNDS = tuple(("resactgraph", f"rounds={rounds}") for rounds in (1, 3))
 
 PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     _DRAWN,
     replace(_DRAWN, split="paraphrases"),
     Plan("4.5", "people", "activities", ("nearest", "retrieve-edit"), (*LSTM, *CRITICS, "transformer"), repaired=True),
     _SKETCHES,
-    replace(_SKETCHES, table="5.3"),
+    replace(_SKETCHES, table="5.3", seeded=("unaries", "resactgraph"), varied=_ROUNDS),
     Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch",)),
 )}  # fmt: skip
 """By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
@@ -139,7 +145,7 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
             return False
         rmtree(folder)  # of a dataset that was built anew since
     before = needed.before
-    changed = [f"start={before.folder(out)}"] if before else []
+    changed = [f"start={before.folder(out)}"] if before else [needed.changed] if needed.changed else []
     rate = RATES.get(needed.name, USUAL_RATE)
     how = {"epochs": EPOCHS, "minutes": minutes, "rate": rate, "seed": needed.seed}
     fit(needed.name, dataset, folder, needed.split, changed, how=how, seen=seen)
