@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, KeysView, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
@@ -116,25 +116,37 @@ class _Masks(Mapping[str, tuple[int, ...]]):
         self._found: dict[str, tuple[int, ...] | None] = {}
 
     def __getitem__(self, name: str) -> tuple[int, ...]:
-        try:
-            masks = self._found[name]
-        except KeyError:
-            masks = self._found[name] = self._made(name)
+        masks = self._found[name] if name in self._found else self._made(name)
         if masks is None:
             raise KeyError(name)
         return masks
 
+    def __contains__(self, name: object) -> bool:
+        found = self._found
+        return (found[name] if name in found else self._made(name)) is not None  # type: ignore[index, arg-type]
+
+    def keys(self) -> KeysView[str]:
+        found, situation = self._found, self._situation
+        for name, action in self._actions.items():
+            if name not in found:
+                masks = action.mask(situation)
+                found[name] = masks and self._kept(masks)
+        return {name: None for name in self._actions if found[name] is not None}.keys()
+
     def __iter__(self) -> Iterator[str]:
-        return (name for name in self._actions if name in self)
+        return iter(self.keys())
 
     def __len__(self) -> int:
-        return sum(1 for _ in self)
+        return len(self.keys())
 
     def _made(self, name: str) -> tuple[int, ...] | None:
         action = self._actions.get(name)
         masks = None if action is None else action.mask(self._situation)
-        if masks is None:
-            return None
+        self._found[name] = masks = masks and self._kept(masks)
+        return masks
+
+    def _kept(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
+        """The masks without what is out of reach; None where nothing is left, or only a thing with itself."""
         if self._keep != -1:
             masks = tuple([mask & self._keep for mask in masks])
         single = len(masks) > 1 and masks[0] == masks[1] and masks[0].bit_count() == 1
