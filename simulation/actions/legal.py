@@ -123,7 +123,7 @@ class _Masks(Mapping[str, tuple[int, ...]]):
 
     def __contains__(self, name: object) -> bool:
         found = self._found
-        return (found[name] if name in found else self._made(name)) is not None  # type: ignore[index, arg-type]
+        return (found[name] if name in found else self._made(name)) is not None  # type: ignore[arg-type]
 
     def keys(self) -> KeysView[str]:
         found, situation = self._found, self._situation
