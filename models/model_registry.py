@@ -154,6 +154,12 @@ MODELS: dict[str, Entry] = {
         "The consensus of similar texts' programs, with the asked objects.",
         "ours",
     ),
+    "consensus": Entry(
+        "text.consensus_model:Consensus",
+        "text",
+        "The program most like those that `mle-composed` draws and `retrieve-edit` finds.",
+        "ours",
+    ),
     "desc2sketch": Entry(
         "text.text_models:TextModel",
         "text",
@@ -166,6 +172,13 @@ MODELS: dict[str, Entry] = {
         "text.retrieve_edit:RetrieveEdit",
         "text",
         "`retrieve-edit` over the sketches of similar descriptions.",
+        "ours",
+        output="sketch",
+    ),
+    "consensus-sketch": Entry(
+        "text.consensus_model:Consensus",
+        "text",
+        "The sketch most like those that `desc2sketch` draws and `retrieve-sketch` finds.",
         "ours",
         output="sketch",
     ),

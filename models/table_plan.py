@@ -26,7 +26,10 @@ Data = Literal["people", "drawn"]
 
 LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
-"""They go on from `mle-composed` of the same seed."""
+STARTS: Mapping[str, str] = MappingProxyType(
+    {**dict.fromkeys((*CRITICS, "consensus"), "mle-composed"), "consensus-sketch": "desc2sketch"}
+)
+"""Models that go on from another one of the same seed."""
 
 GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
 
@@ -54,7 +57,7 @@ class Needed(NamedTuple):
     @property
     def before(self) -> Needed | None:
         """The model that its training goes on from."""
-        return self._replace(name="mle-composed") if self.name in CRITICS else None
+        return self._replace(name=STARTS[self.name]) if self.name in STARTS else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,17 +97,18 @@ class Plan:
             yield from (Needed(self.data, self.split, name, seed, changed) for seed in range(seeds))
 
 
-_DRAWN = Plan("4.4", "drawn", "pairs", ("nearest",), (*LSTM, *CRITICS))
+_TEXTS = (*LSTM, *CRITICS, "consensus")
+_DRAWN = Plan("4.4", "drawn", "pairs", ("nearest",), _TEXTS)
 _SKETCHES = Plan("5.2", "people", "activities", (), (*GRAPHS, "chooser"), given=("planner",))
 _ROUNDS = tuple(("resactgraph", f"rounds={rounds}") for rounds in (1, 3))
 
 PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     _DRAWN,
     replace(_DRAWN, split="paraphrases"),
-    Plan("4.5", "people", "activities", ("nearest", "retrieve-edit"), (*LSTM, *CRITICS, "transformer"), repaired=True),
+    Plan("4.5", "people", "activities", ("nearest", "retrieve-edit"), (*_TEXTS, "transformer"), repaired=True),
     _SKETCHES,
     replace(_SKETCHES, table="5.3", seeded=("unaries", "resactgraph"), varied=_ROUNDS),
-    Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch",)),
+    Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch", "consensus-sketch")),
 )}  # fmt: skip
 """By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
 

@@ -68,18 +68,21 @@ class TrainedRetrieveEdit:
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """For each text the edited program that is most like the others."""
+        return [consensus(*each) for each in self.candidates(requests)]
+
+    def candidates(self, requests: Sequence[Request]) -> list[tuple[list[Steps], list[float]]]:
+        """For each text the edited programs of its neighbours, and how much each counts."""
         texts = [text_of(each.title, each.description) for each in requests]
         found = self.similarity.nearest(texts, self.settings.neighbours)
-        return [self._answer(text, *neighbours) for text, neighbours in zip(texts, found, strict=True)]
+        return [self._edits(text, *neighbours) for text, neighbours in zip(texts, found, strict=True)]
 
-    def _answer(self, text: str, places: Sequence[int], alike: Sequence[float]) -> Steps:
+    def _edits(self, text: str, places: Sequence[int], alike: Sequence[float]) -> tuple[list[Steps], list[float]]:
         wanted = self._mentioned(text)
         programs = [self.memory.programs[place] for place in places]
         if self.settings.edit:
             own = (self._mentioned(self.memory.texts[place]) for place in places)
             programs = [self._edited(one, its, wanted) for its, one in zip(own, programs, strict=True)]
-        weights = [max(one, 1e-3) ** self.settings.sharpness for one in alike]
-        return consensus(programs, weights)
+        return programs, [max(one, 1e-3) ** self.settings.sharpness for one in alike]
 
     def _mentioned(self, text: str) -> dict[str, int]:
         """The classes that a text mentions, in order of their first mention, and the places of these."""

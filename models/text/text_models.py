@@ -22,7 +22,7 @@ from hearth.models.text.text_scorer import TextScorer
 from hearth.models.text.text_words import words, words_of
 from hearth.models.text.transformer import TransformerBody
 from hearth.models.text.word_vectors import word_vectors
-from hearth.models.text.writer import Numbers, Writer, beam
+from hearth.models.text.writer import Numbers, Writer, beam, sample
 from hearth.models.training import Task, train
 from hearth.schemas.rng import derive
 from hearth.scoring.metrics.lcs import score_pairs
@@ -136,6 +136,14 @@ class TrainedTextModel:
                 texts = text_batch([requests[place] for place in places], self.vocabulary, self.writer.device)
                 found |= dict(zip(places, beam(self.writer, texts, width, self.settings.longest), strict=True))
         return [found[place] for place in range(len(requests))]
+
+    def drawn(self, request: Request, count: int) -> list[Steps]:
+        """Programs for a text, drawn step by step; they depend on the text and the weights alone."""
+        self.writer.eval()
+        generator = torch.Generator().manual_seed(derive(0, "drawn", request.title, request.description) % 2**63)
+        with torch.no_grad():
+            texts = text_batch([request] * count, self.vocabulary, self.writer.device)
+            return [self.program(numbers) for numbers in sample(self.writer, texts, self.settings.longest, generator)]
 
     def program(self, numbers: Numbers) -> Steps:
         """The program of some numbers."""

@@ -1,0 +1,92 @@
+"""The program on which a network and the neighbours of a text agree most (ours).
+
+The score of a program is its mean LCS with what people write. The most probable program of a network is not the one
+with the best expected score: of the programs that it draws, and those of the most similar texts, edited, the answer is
+the one that is most like all of them (the least Bayes risk; Kumar and Byrne 2004).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hearth.models.checkpoint import Checkpoint, load
+from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.text.retrieve_edit import RetrieveEdit, TrainedRetrieveEdit, consensus
+from hearth.models.text.text_models import TextModel, TrainedTextModel
+from hearth.models.text.text_scorer import TextScorer
+from hearth.storage.parallel import Seen, unseen
+
+if TYPE_CHECKING:
+    from hearth.models.data import Corpus
+
+
+@dataclass(frozen=True, slots=True)
+class Consensus(Settings):
+    """How programs are weighed.
+
+    Attributes:
+        start: folder of a trained `mle-composed`, or `desc2sketch` for sketches; if empty, one is trained here, too.
+        draws: programs that the network draws for a text, beside its best one.
+        share: of the weight that the neighbours' programs have; the network's have the rest.
+    """
+
+    start: str = ""
+    draws: int = 24
+    share: float = 0.5
+
+    def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedConsensus:
+        """Train the network, unless it is trained, and remember the training texts and programs."""
+        if self.start:
+            writer = TextModel.restored(load(Path(self.start)))
+        else:
+            writer = TextModel().fit(corpus, how, seen)
+        return TrainedConsensus(replace(self, start=""), writer, RetrieveEdit().fit(corpus, how))
+
+    @classmethod
+    def restored(cls, checkpoint: Checkpoint) -> TrainedConsensus:
+        """The model of a checkpoint."""
+        writer, neighbours = (
+            replace(checkpoint, settings=part["settings"], content=part["content"])
+            for part in (checkpoint.content["writer"], checkpoint.content["neighbours"])
+        )
+        settings = cls.of(checkpoint.settings)
+        if not 0 <= settings.share <= 1 or not 1 <= settings.draws <= 1_000:
+            raise ValueError(f"a share of {settings.share:g}, or {settings.draws:,} draws")
+        return TrainedConsensus(settings, TextModel.restored(writer), RetrieveEdit.restored(neighbours))
+
+
+@dataclass(frozen=True)
+class TrainedConsensus:
+    """A trained network, and the training texts with their programs."""
+
+    settings: Consensus
+    writer: TrainedTextModel
+    neighbours: TrainedRetrieveEdit
+
+    def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
+        """For each text the program that is most like all that were drawn or found for it."""
+        best = self.writer.predict(requests, beam)
+        found = self.neighbours.candidates(requests)
+        return [self._answer(*each) for each in zip(requests, best, found, strict=True)]
+
+    def _answer(self, request: Request, best: Steps, found: tuple[Sequence[Steps], Sequence[float]]) -> Steps:
+        written = [best, *self.writer.drawn(request, self.settings.draws)]
+        programs, weights = found
+        own, others = (1 - self.settings.share) / len(written), self.settings.share / sum(weights)
+        return consensus([*written, *programs], [own] * len(written) + [weight * others for weight in weights])
+
+    def scorer(self) -> TextScorer:
+        """The network alone, for decoding with the engine in the loop."""
+        return self.writer.scorer()
+
+    def checkpoint(self) -> Checkpoint:
+        """All that `restored` needs."""
+        writer, neighbours = self.writer.checkpoint(), self.neighbours.checkpoint()
+        content = {
+            name: {"settings": dict(part.settings), "content": dict(part.content)}
+            for name, part in (("writer", writer), ("neighbours", neighbours))
+        }
+        return Checkpoint("consensus", asdict(self.settings), content, writer.weights, writer.trained)
