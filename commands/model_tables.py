@@ -11,6 +11,9 @@ from hearth.commands import output
 if TYPE_CHECKING:
     from hearth.models.scored_rows import Row
 
+FILMS = ("4.2", "4.3", "4.3b", "4.6")
+"""Tables of clips and films."""
+
 
 def table(
     number: str,
@@ -38,14 +41,14 @@ def table(
       python cli.py model table 5.2 data_out --model planner --most 40 --beam 1
       python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
       python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
-      python cli.py model table 4.6 data_out/clips --model clips-seen
+      python cli.py model table 4.6 data_out/clips --model clips-context --model films-mle
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
 
     data = Dataset.open(dataset)
-    if number in ("4.2", "4.3", "4.3b", "4.6"):
-        _of_films(number, data, models or (), seed, as_json)
+    if number in FILMS:
+        _of_films(number, data, models or (), beam, seed, as_json)
         return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
@@ -69,7 +72,7 @@ def table(
         _print(rows, _columns(number))
 
 
-def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_json: bool) -> None:
+def _of_films(number: str, dataset: Any, models: Sequence[str], beam: int, seed: int, as_json: bool) -> None:
     """Tables 4.2, 4.3, its part (b), and 4.6."""
     from hearth.commands.progress_line import bar
     from hearth.models.films import clip_tables, film_tables
@@ -78,23 +81,28 @@ def _of_films(number: str, dataset: Any, models: Sequence[str], seed: int, as_js
         if number in clip_tables.TABLES:
             rows: Sequence[Any] = clip_tables.clip_table(number, dataset, models, seed)
         else:
-            rows = film_tables.film_table(dataset, models, seed, seen=seen)
-    if as_json:
-        output.emit(rows)
-    elif number in clip_tables.TABLES:
+            rows = film_tables.film_table(dataset, models, seed, beam=beam, seen=seen)
+    output.emit(rows) if as_json else _print_films(number, rows)
+
+
+def _print_films(number: str, rows: Sequence[Any]) -> None:
+    from hearth.models.films import clip_tables, film_tables
+
+    if number in clip_tables.TABLES:
         shown = [[row.method, row.of, row.homes, *(f"{row.scores[name]:.3f}" for name in clip_tables.COLUMNS),
                   row.spread, row.clips, row.seeds or None] for row in rows]  # fmt: skip
         output.table(["method", "of", "homes", *clip_tables.COLUMNS, "error", "clips", "seeds"], shown)
     else:
         shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
-                  row.films, row.seeds or None] for row in rows]  # fmt: skip
-        output.table(["method", "of", "homes", *film_tables.COLUMNS, "films", "seeds"], shown)
+                  row.spread, row.films, row.seeds or None] for row in rows]  # fmt: skip
+        output.table(["method", "of", "homes", *film_tables.COLUMNS, "error", "films", "seeds"], shown)
 
 
 def tables(
     dataset: Path,
-    drawn: Path,
+    drawn: Path | None = None,
     *,
+    clips: Path | None = None,
     out: Path,
     only: list[str] | None = None,
     seeds: int = 3,
@@ -102,26 +110,28 @@ def tables(
     most: int = 400,
     as_json: bool = False,
 ) -> None:
-    """Tables 4.4, 4.5 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
+    """Tables 4.2 to 4.6 and 5.2 to 5.4 whole: all their models are trained, each with several seeds, and compared.
 
     What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
     night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
-    paraphrases, that are not in training.
+    paraphrases, that are not in training. Tables of films are left out where there is no dataset of clips.
 
     \b
     Examples:
       python cli.py model tables data_out data_out/synthetic --out data_out/tables
       python cli.py model tables data_out data_out/synthetic --out quick --table 4.5 --seeds 1 --minutes 1
+      python cli.py model tables data_out --clips data_out/clips --out data_out/tables --table 4.3 --table 4.6
     """
     from hearth.commands.progress_line import bar
     from hearth.models import table_plan
     from hearth.storage.names import inside
 
-    plans, data = table_plan.chosen(only or ()), {"people": dataset, "drawn": drawn}
+    data = {"people": dataset, "drawn": drawn or dataset / "synthetic", "clips": clips or dataset / "clips"}
+    plans = table_plan.chosen(only or (), () if data["clips"].is_dir() else ("clips",))
     for each in (missing := table_plan.training(plans, seeds)):
         with bar(f"epochs of {each.folder(out).name}") as seen:
             table_plan.train(each, data[each.data], out, minutes, seen)
-    found: dict[str, list[Row]] = {}
+    found: dict[str, list[Any]] = {}
     for plan in plans:
         with bar(f"executions of {plan.name}") as seen:
             found[plan.name] = table_plan.rows(plan, data[plan.data], out, seeds, most, seen)
@@ -131,7 +141,7 @@ def tables(
         return
     for number, (name, rows) in enumerate(found.items()):
         print("\n" * bool(number) + f"Table {name}")
-        _print(rows, _columns(name.partition("-")[0]))
+        _print_films(name, rows) if name in FILMS else _print(rows, _columns(name.partition("-")[0]))
 
 
 def _columns(number: str) -> Mapping[str, str]:

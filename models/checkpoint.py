@@ -213,6 +213,11 @@ _ABOUT = {
         "A model of Hearth that names what is done in films of our renderer, by their class masks (thesis 4.3.3).",
         (_OF_FILMS,),
     ),
+    "films": _About(
+        "video-to-program",
+        "A model of Hearth that writes the program of a film of our renderer, by its class masks (thesis 4.3.3).",
+        (_OF_FILMS, "It has the classifier of clips whose answers it reads."),
+    ),
     "masks": _About(
         "image-segmentation",
         "A model of Hearth that predicts the class masks of pictures of our renderer (thesis 4.3.3).",

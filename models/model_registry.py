@@ -93,6 +93,25 @@ MODELS: dict[str, Entry] = {
         "ours",
         {"context": True},
     ),
+    "films-mle": Entry(
+        "films.film_writer:FilmWriter",
+        "film",
+        "LSTM with attention over what a classifier of clips (--set start=FOLDER) says.",
+        "thesis 4.3.3",
+    ),
+    "films-pg-lcs": Entry(
+        "films.film_critical:FilmCritical",
+        "film",
+        "A trained `films-mle` (--set start=FOLDER) trained on by LCS.",
+        "thesis 4.3.1",
+    ),
+    "films-pg-lcs-sim": Entry(
+        "films.film_critical:FilmCritical",
+        "film",
+        "A trained `films-pg-lcs` trained on by LCS and a tenth for programs that run.",
+        "thesis 4.3.1",
+        {"reward": "lcs+sim"},
+    ),
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",
         "film",

@@ -1,4 +1,4 @@
-"""Tables 4.4, 4.5 and 5.2 to 5.4 whole: which models each needs, trained with several seeds where they are not yet."""
+"""Tables 4.2 to 4.6 and 5.2 to 5.4 whole: which models each needs, trained with each seed where they are not yet."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import rmtree
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from hearth.datasets.dataset import Dataset
 from hearth.models.checkpoint import NAME, load
@@ -18,25 +18,37 @@ from hearth.schemas.failures import Code
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, unseen
 
-if TYPE_CHECKING:
-    from hearth.models.scored_rows import Row
-
-Data = Literal["people", "drawn"]
-"""Which dataset: of people's programs, or of drawn ones (`corpus synthesize`)."""
+Data = Literal["people", "drawn", "clips"]
+"""Which dataset: of people's programs, of drawn ones (`corpus synthesize`), or of their films (`--tier clips`)."""
 
 LSTM = ("mle", "mle-composed")
 CRITICS = ("pg-lcs", "pg-lcs-sim")
-STARTS: Mapping[str, str] = MappingProxyType(
-    {**dict.fromkeys((*CRITICS, "consensus"), "mle-composed"), "consensus-sketch": "desc2sketch"}
-)
-"""Models that go on from another one of the same seed."""
+
+CLASSIFIERS = ("clips-seen", "clips-context")
+"""Of clips by masks."""
+
+WRITERS = ("films-mle", "films-pg-lcs", "films-pg-lcs-sim")
+"""Of programs of films."""
+
+STARTS: Mapping[str, str] = MappingProxyType({
+    **dict.fromkeys((*CRITICS, "consensus"), "mle-composed"),
+    "consensus-sketch": "desc2sketch",
+    **dict(zip(WRITERS, ("clips-context", *WRITERS), strict=False)),
+})  # fmt: skip
+"""Models that go on from another one of the same seed, or read its answers."""
 
 GRAPHS = ("unaries", "graph", "fcactgraph", "gruactgraph", "resactgraph")
 
-RATES: Mapping[str, float] = MappingProxyType({**dict.fromkeys(LSTM, 3e-3), "desc2sketch": 3e-3})
+RATES: Mapping[str, float] = MappingProxyType({
+    **dict.fromkeys((*LSTM, "desc2sketch", "films-mle"), 3e-3),
+    **dict.fromkeys((*CLASSIFIERS, "masks"), 2e-3),
+})  # fmt: skip
 """Rates of learning that are not the usual one."""
 
-USUAL_RATE, EPOCHS = 1e-3, 30
+EPOCHS: Mapping[str, int] = MappingProxyType({**dict.fromkeys(CLASSIFIERS, 16), "films-mle": 60})
+"""Passes over the examples, at most, that are not the usual number."""
+
+USUAL_RATE, USUAL_EPOCHS = 1e-3, 30
 
 
 class Needed(NamedTuple):
@@ -57,7 +69,12 @@ class Needed(NamedTuple):
     @property
     def before(self) -> Needed | None:
         """The model that its training goes on from."""
-        return self._replace(name=STARTS[self.name]) if self.name in STARTS else None
+        return self._replace(name=STARTS[self.name], changed="") if self.name in STARTS else None
+
+    @property
+    def chain(self) -> list[Needed]:
+        """The models that its training needs, one after another, and itself."""
+        return [*(self.before.chain if self.before else ()), self]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,12 +126,20 @@ PLANS: dict[str, Plan] = {plan.name: plan for plan in (
     _SKETCHES,
     replace(_SKETCHES, table="5.3", seeded=("unaries", "resactgraph"), varied=_ROUNDS),
     Plan("5.4", "people", "activities", ("retrieve-sketch", "chooser"), ("desc2sketch", "consensus-sketch")),
+    Plan("4.2", "clips", "activities", ("masks",), CLASSIFIERS),
+    Plan("4.3", "clips", "activities", (), CLASSIFIERS),
+    Plan("4.3b", "clips", "activities", (), ("clips-rgb",)),
+    Plan("4.6", "clips", "activities", (), ("clips-context", *WRITERS)),
 )}  # fmt: skip
 """By name: `4.4-pairs`, `4.5`. A pair of tasks, or the paraphrases, of the test are not in training."""
 
 
-def chosen(names: Sequence[str]) -> list[Plan]:
-    """The plans of these tables, in the order of all; every one without a name. `4.4` stands for both of its splits.
+def chosen(names: Sequence[str], without: Sequence[Data] = ()) -> list[Plan]:
+    """The plans of these tables, in the order of all. `4.4` stands for both of its splits.
+
+    Args:
+        names: of tables; every one if there is none.
+        without: datasets that lack: their tables are made only if they are named.
 
     Raises:
         HearthError: BAD_ARGUMENT, an unknown table.
@@ -123,13 +148,15 @@ def chosen(names: Sequence[str]) -> list[Plan]:
     if unknown:
         message = f"no table `{unknown[0][:20]}` is made from several models"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"there are {', '.join(PLANS)}")
-    return [plan for plan in PLANS.values() if not names or {plan.name, plan.table} & {*names}]
+    if not names:
+        return [plan for plan in PLANS.values() if plan.data not in without]
+    return [plan for plan in PLANS.values() if {plan.name, plan.table} & {*names}]
 
 
 def training(plans: Sequence[Plan], seeds: int) -> list[Needed]:
     """The models of some tables, each once, and each after the one that it goes on from."""
     every = (each for plan in plans for each in plan.needed(seeds))
-    return list(dict.fromkeys(one for each in every for one in (each.before, each) if one is not None))
+    return list(dict.fromkeys(one for each in every for one in each.chain))
 
 
 def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen = unseen) -> bool:
@@ -149,14 +176,14 @@ def train(needed: Needed, dataset: Path, out: Path, minutes: float, seen: Seen =
             return False
         rmtree(folder)  # of a dataset that was built anew since
     before = needed.before
-    changed = [f"start={before.folder(out)}"] if before else [needed.changed] if needed.changed else []
-    rate = RATES.get(needed.name, USUAL_RATE)
-    how = {"epochs": EPOCHS, "minutes": minutes, "rate": rate, "seed": needed.seed}
+    changed = [*([f"start={before.folder(out)}"] if before else []), *([needed.changed] if needed.changed else [])]
+    rate, epochs = RATES.get(needed.name, USUAL_RATE), EPOCHS.get(needed.name, USUAL_EPOCHS)
+    how = {"epochs": epochs, "minutes": minutes, "rate": rate, "seed": needed.seed}
     fit(needed.name, dataset, folder, needed.split, changed, how=how, seen=seen)
     return True
 
 
-def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen = unseen) -> list[Row]:
+def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen = unseen) -> list[Any]:
     """The rows of a table, from its trained models.
 
     Args:
@@ -167,11 +194,16 @@ def rows(plan: Plan, dataset: Path, out: Path, seeds: int, most: int, seen: Seen
         most: test executions of 5.2 to 5.4.
         seen: reports executions.
     """
+    from hearth.models.films import clip_tables, film_tables
     from hearth.models.sketches import sketch_tables
     from hearth.models.text import text_tables
 
     models: list[Any] = [*plan.given, *(each.folder(out) for each in plan.needed(seeds))]
     data = Dataset.open(dataset)
+    if plan.table in clip_tables.TABLES:
+        return clip_tables.clip_table(plan.table, data, models)
+    if plan.table == film_tables.TABLE:
+        return film_tables.film_table(data, models, seen=seen)
     if plan.table in sketch_tables.TABLES:
         return sketch_tables.table(plan.table, data, plan.split, models, beam=1, most=most, seen=seen)
     return text_tables.table(plan.table, data, plan.split, models, beam=1, repaired=plan.repaired)

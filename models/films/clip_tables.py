@@ -156,7 +156,16 @@ def classifier(model: Path | str) -> tuple[str, TrainedSeenModel]:
         HearthError: errors of `restore`; BAD_ARGUMENT, for a model of another kind.
     """
     name, found = restore(model)
-    return name, _classifier(found, name, TrainedSeenModel)  # type: ignore[return-value]
+    return name, looks_at_masks(found, name)
+
+
+def looks_at_masks(trained: Any, name: str) -> TrainedSeenModel:
+    """A trained classifier of clips by masks.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, if it is another model.
+    """
+    return _classifier(trained, name, TrainedSeenModel)  # type: ignore[return-value]
 
 
 def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instruction]], seeds: int) -> Iterator[ClipRow]:
@@ -166,11 +175,11 @@ def _rows(method: str, of: str, test: Clips, named: Sequence[Sequence[Instructio
         wanted = [test.clips[number].done for number in which]
         each = [accuracies(wanted, [answers[number] for number in which]) for answers in named]
         means = {name: sum(scores[name] for scores in each) / len(each) for name in COLUMNS}
-        yield ClipRow(method, of, homes, means, _error([scores["mean"] for scores in each]), len(which), seeds)
+        yield ClipRow(method, of, homes, means, standard_error([scores["mean"] for scores in each]), len(which), seeds)
 
 
-def _error(values: Sequence[float]) -> float | None:
-    """The standard error of a mean."""
+def standard_error(values: Sequence[float]) -> float | None:
+    """The standard error of a mean; None of fewer than two values."""
     from statistics import stdev
 
     return stdev(values) / len(values) ** 0.5 if len(values) > 1 else None

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from hearth.models.films.clip_data import COLOURS, FORMS, Clips
 from hearth.models.films.clip_tables import classifier
+from hearth.models.films.film_executions import shown_films
 from hearth.models.films.film_programs import followed
 from hearth.models.films.film_shown import cut
-from hearth.models.films.film_tables import shown_films
 from hearth.models.interface import Steps
 from hearth.models.showing import side_by_side
 from hearth.rendering.film.clips import RATE

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hearth.datasets.format.cases import start_of
-from hearth.datasets.format.codecs import bindings_of, program_of
-from hearth.datasets.format.stored_cases import stored_cases
-from hearth.datasets.verify import opened
-from hearth.models.data import AT_ONCE
 from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
-from hearth.models.films.clip_tables import HOMES, classifier
+from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
+from hearth.models.films.clip_tables import HOMES, looks_at_masks, standard_error
+from hearth.models.films.film_executions import Shown, by_class, shown_films
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_shown import cut
+from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
+from hearth.models.model_registry import restore
 from hearth.repair.completion import complete
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.rng import rng
@@ -57,6 +55,7 @@ class FilmRow(NamedTuple):
         scores: by column; ours have intervals, for which activities are drawn with replacement.
         films: how many; None where the thesis does not say.
         seeds: how many trained models the scores are means of.
+        spread: the standard error over seeds of `mean`; None of fewer than two.
     """
 
     method: str
@@ -65,14 +64,7 @@ class FilmRow(NamedTuple):
     scores: Mapping[str, Interval | float]
     films: int | None = None
     seeds: int = 0
-
-
-class Shown(NamedTuple):
-    """A film's execution: its world at the start, its steps by the classes of their nodes, and its activity."""
-
-    world: World
-    steps: Steps
-    activity: str
+    spread: float | None = None
 
 
 Way = Callable[[Reading, StepOrder, World], FilmProgram]
@@ -102,15 +94,17 @@ WAYS: dict[str, Way] = {
 
 
 def film_table(
-    dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", seen: Seen = unseen
-) -> list[FilmRow]:
+    dataset: Dataset, models: Sequence[Path | str], seed: int = 0, part: str = "test", beam: int = 1,
+    seen: Seen = unseen,
+) -> list[FilmRow]:  # fmt: skip
     """The rows of table 4.6, over the films of a part, each cut into clips whatever is done in it.
 
     Args:
         dataset: with clips.
-        models: checkpoints of classifiers of clips; several of one model are its seeds.
+        models: checkpoints of classifiers of clips, and of writers of programs; several of one model are its seeds.
         seed: of yardsticks and intervals.
         part: of the clips.
+        beam: programs that a writer follows at once.
         seen: reports progress: films, over all models.
 
     Raises:
@@ -126,38 +120,42 @@ def film_table(
     rows += _rows(dataset, "Random retrieval", "yardstick", test, films, [retrieved], seed)
     answers: dict[str, list[list[Steps]]] = {}
     for number, model in enumerate(models):
-        name, trained = classifier(model)
-        for film, masks in enumerate(test.films):
-            (found,) = trained.readings(cut(masks))
-            for way, write in WAYS.items():
-                seeds = answers.setdefault(f"{name}, {way}", [])
-                seeds += [[] for _ in range(number + 1 - len(seeds))]
-                seeds[number].append(write(found, order, films[film].world).steps)
-            seen(number * len(films) + film + 1, len(models) * len(films))
+        name, trained = restore(model)
+        written = _written(trained, name, test, [film.world for film in films], order, beam)
+        for done, found in enumerate(written, number * len(films) + 1):
+            for way, steps in found.items():
+                answers.setdefault(f"{name}, {way}", [[] for _ in models])[number].append(steps)
+            seen(done, len(models) * len(films))
     for method, each in answers.items():
         rows += _rows(dataset, method, "ours", test, films, [found for found in each if found], seed)
     return rows
 
 
-def shown_films(dataset: Dataset, executions: Sequence[str]) -> list[Shown]:
-    """What the films of some executions show, in their order."""
-    homes, found = opened(str(dataset.folder))[1], {}
-    for first in range(0, len(executions), AT_ONCE):
-        for case in stored_cases(dataset, executions[first : first + AT_ONCE]):
-            world = start_of(case["environment"], case["home"], homes)
-            steps = program_of(case, bindings_of(case["bindings"])).steps
-            found[case["execution_id"]] = Shown(world, by_class(steps, world), case["activity_id"])
-    return [found[name] for name in executions]
+def _written(
+    trained: Any, name: str, test: Clips, worlds: Sequence[World], order: StepOrder, beam: int
+) -> Iterator[dict[str, Steps]]:
+    """What a model writes for each film, in each of its ways.
+
+    Raises:
+        HearthError: BAD_ARGUMENT, for a model of another kind.
+    """
+    if isinstance(trained, TrainedFilmWriter):
+        for masks, world in zip(test.films, worlds, strict=True):
+            yield by_writer(trained, of_film(trained.reader, masks), world, beam)
+        return
+    looking = looks_at_masks(trained, name)
+    for masks, world in zip(test.films, worlds, strict=True):
+        (found,) = looking.readings(cut(masks))
+        yield {way: write(found, order, world).steps for way, write in WAYS.items()}
 
 
-def by_class(steps: Steps, world: World) -> Steps:
-    """Steps with the classes of their nodes as names, as masks show them, and without nodes."""
-    home = world.home
-
-    def named(ref: ObjectRef) -> ObjectRef:
-        return ObjectRef(home.classes[home.index[ref.node]] if ref.node in home.index else ref.name)
-
-    return tuple(replace(step, objects=tuple(map(named, step.objects))) for step in steps)
+def by_writer(trained: TrainedFilmWriter, film: ClipProbabilities, world: World, beam: int = 1) -> dict[str, Steps]:
+    """What an encoder-decoder writes for a film: freely, repaired, and with the engine in the loop where it can."""
+    (steps,) = trained.write([film], beam)
+    found = {"free": steps, "free, repaired": _repaired(FilmProgram(steps, ()), world).steps}
+    if not trained.closed:
+        found["engine"] = trained.followed([film], [world], beam)[0]
+    return found
 
 
 def _rows(
@@ -171,7 +169,8 @@ def _rows(
         which = [number for number in range(len(films)) if kinds[number] in wanted]
         values = {name: [_mean([found[number][name] for found in scores]) for number in which] for name in COLUMNS}
         found = by_group(values, [films[number].activity for number in which], seed)
-        yield FilmRow(method, of, homes, found, len(which), len(answers) if of == "ours" else 0)
+        means = [mean for each in scores if (mean := _mean([each[number]["mean"] for number in which])) is not None]
+        yield FilmRow(method, of, homes, found, len(which), len(answers) if of == "ours" else 0, standard_error(means))
 
 
 def _scored(

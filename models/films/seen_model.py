@@ -165,10 +165,14 @@ class TrainedSeenModel:
 
     def readings(self, clips: Clips) -> Iterator[Reading]:
         """What the clips of each film may show, film by film."""
+        for found in self.scored(clips):
+            yield reading(found.actions, found.objects, self.table)
+
+    def scored(self, clips: Clips) -> Iterator[Scored]:
+        """What the clips of each film are taken for, film by film."""
         for part in clips.by_film():
             shown = seen_clips(part, self.table, self.settings.context)
-            found = Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))
-            yield reading(found.actions, found.objects, self.table)
+            yield Scored(*(np.concatenate(columns) for columns in zip(*self._scored(shown), strict=True)))
 
     def _scored(self, shown: SeenClips) -> Iterator[Scored]:
         self.network.eval()

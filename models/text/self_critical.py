@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import torch
 
@@ -18,9 +18,9 @@ from hearth.grounding.binding import nearest
 from hearth.models.checkpoint import Checkpoint, load
 from hearth.models.data import requests
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.text_batches import step_batch, text_batch
+from hearth.models.text.text_batches import InputBatch, step_batch
 from hearth.models.text.text_models import TextModel, TrainedTextModel
-from hearth.models.text.writer import Numbers, beam, sample
+from hearth.models.text.writer import Numbers, Writer, beam, sample
 from hearth.models.training import Task, train
 from hearth.schemas.program import Program
 from hearth.scoring.metrics.lcs import score_pairs
@@ -28,19 +28,42 @@ from hearth.simulation.engine import run
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
-    from hearth.models.data import Corpus, Example
+    from hearth.models.data import Corpus
+    from hearth.simulation.world.world import World
 
 SIM = 0.1
 """The weight of running in the reward."""
 
-Reward = Callable[[Sequence["Example"], Sequence[Steps]], list[float]]
+Reward = Callable[[Sequence[Any], Sequence[Steps]], list[float]]
 """The rewards of programs for examples."""
+
+
+class Learner(Protocol):
+    """A trained model that is trained on: of texts, or of films."""
+
+    @property
+    def settings(self) -> Any:
+        """With `longest`, the steps of its longest program."""
+
+    @property
+    def writer(self) -> Writer:
+        """The network."""
+
+    @property
+    def trained(self) -> dict[str, Any]:
+        """What it records of its training."""
+
+    def asked(self, examples: Sequence[Any], random: Random) -> InputBatch:
+        """What programs of examples are written for; drawn from `random` where there is noise."""
+
+    def program(self, numbers: Numbers) -> Steps:
+        """The program of some numbers."""
 
 
 class Drawn(NamedTuple):
     """A batch: examples, and the seed of what is drawn for them."""
 
-    examples: list[Example]
+    examples: list[Any]
     seed: int
 
 
@@ -66,18 +89,9 @@ class SelfCritical(Settings):
             first = replace(how, folder=how.folder / "first") if how.folder else how
             model = TextModel().fit(corpus, first, seen)
         rewarded = lcs_reward if self.reward == "lcs" else sim_reward(corpus)
-        data = list(corpus.train)
-
-        def batches(random: Random) -> Iterator[Drawn]:
-            order = random.sample(range(len(data)), len(data))
-            for begin in range(0, len(order), self.batch):
-                yield Drawn([data[place] for place in order[begin : begin + self.batch]], random.getrandbits(32))
-
-        task = Task(model.writer, batches, lambda batch: surrogate(model, batch, rewarded),
-                    lambda: model.score(corpus.validation), [self.reward, self.batch, corpus.facts])  # fmt: skip
-        before = {"first_phase": dict(model.trained)}
-        model.trained.clear()
-        model.trained.update({**train(task, replace(how, rate=how.rate / 10), seen).record(), **before})
+        task = rewarding(model, corpus.train, rewarded, self.batch, lambda: model.score(corpus.validation),
+                         [self.reward, self.batch, corpus.facts])  # fmt: skip
+        go_on(model, task, how, seen)
         return model
 
     @classmethod
@@ -86,14 +100,42 @@ class SelfCritical(Settings):
         return TextModel.restored(checkpoint)
 
 
-def surrogate(model: TrainedTextModel, batch: Drawn, rewarded: Reward) -> torch.Tensor:
+def rewarding(
+    model: Learner, data: Sequence[Any], rewarded: Reward, batch: int, validate: Callable[[], float], identity: Any
+) -> Task[Drawn]:
+    """Training by policy gradient.
+
+    Args:
+        model: after the first phase.
+        data: its examples.
+        rewarded: the rewards of programs.
+        batch: examples in a batch.
+        validate, identity: as of `Task`.
+    """
+
+    def batches(random: Random) -> Iterator[Drawn]:
+        order = random.sample(range(len(data)), len(data))
+        for begin in range(0, len(order), batch):
+            yield Drawn([data[place] for place in order[begin : begin + batch]], random.getrandbits(32))
+
+    return Task(model.writer, batches, lambda each: surrogate(model, each, rewarded), validate, identity)
+
+
+def go_on(model: Learner, task: Task[Drawn], how: Training, seen: Seen) -> None:
+    """Train a model on, at a tenth of the rate; what it records of its training is kept as its first phase."""
+    before = {"first_phase": dict(model.trained)}
+    model.trained.clear()
+    model.trained.update({**train(task, replace(how, rate=how.rate / 10), seen).record(), **before})
+
+
+def surrogate(model: Learner, batch: Drawn, rewarded: Reward) -> torch.Tensor:
     """A number whose gradient is that of minus the expected reward: eq. 4.8 with one sample for each example.
 
     Without dropout: what is drawn and what is rewarded are programs of the same policy.
     """
-    writer, known = model.writer, model.vocabulary
+    writer = model.writer
     writer.eval()
-    texts = text_batch([each.request for each in batch.examples], known, writer.device)
+    texts = model.asked(batch.examples, Random(batch.seed))
     with torch.no_grad():
         drawn = sample(writer, texts, model.settings.longest, torch.Generator().manual_seed(batch.seed))
         greedy = beam(writer, texts, 1, model.settings.longest)
@@ -104,11 +146,11 @@ def surrogate(model: TrainedTextModel, batch: Drawn, rewarded: Reward) -> torch.
     return -(logarithms * torch.tensor(gain, device=writer.device)).mean()
 
 
-def _rewards(model: TrainedTextModel, batch: Drawn, programs: Sequence[Numbers], rewarded: Reward) -> list[float]:
+def _rewards(model: Learner, batch: Drawn, programs: Sequence[Numbers], rewarded: Reward) -> list[float]:
     return rewarded(batch.examples, [model.program(numbers) for numbers in programs])
 
 
-def lcs_reward(examples: Sequence[Example], programs: Sequence[Steps]) -> list[float]:
+def lcs_reward(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
     """The LCS of whole steps, from 0 to 1 (eq. 4.1)."""
     pairs = ((program, example.steps) for example, program in zip(examples, programs, strict=True))
     return [score.step for score in score_pairs(pairs)]
@@ -117,19 +159,19 @@ def lcs_reward(examples: Sequence[Example], programs: Sequence[Steps]) -> list[f
 def sim_reward(corpus: Corpus) -> Reward:
     """The LCS, and `SIM` for programs that run in the environment of the first execution of their example."""
 
-    def rewards(examples: Sequence[Example], programs: Sequence[Steps]) -> list[float]:
+    def rewards(examples: Sequence[Any], programs: Sequence[Steps]) -> list[float]:
         names = [example.executions[0] for example in examples]
         found: dict[str, Request] = {}
         for share in requests(corpus.dataset, sorted(set(names)), worlds=True):
             found |= {request.id: request for request in share}
         pairs = zip(lcs_reward(examples, programs), names, programs, strict=True)
-        return [value + SIM * runs(steps, found[name]) for value, name, steps in pairs]
+        return [value + SIM * runs(steps, found[name].world) for value, name, steps in pairs]
 
     return rewards
 
 
-def runs(steps: Steps, request: Request) -> bool:
-    """Whether a program, bound to the nearest nodes, runs in the world of a request; the empty program does not."""
-    assert request.world is not None
+def runs(steps: Steps, world: World | None) -> bool:
+    """Whether a program, bound to the nearest nodes, runs in a world; the empty program does not."""
+    assert world is not None
     program = Program(steps=steps)
-    return bool(steps) and run(request.world, nearest(program, request.world).apply(program)).executable
+    return bool(steps) and run(world, nearest(program, world).apply(program)).executable

@@ -13,7 +13,7 @@ import torch
 from torch import nn
 from torch.nn.utils.rnn import pack_padded_sequence, pad_packed_sequence
 
-from hearth.models.text.text_batches import TextBatch
+from hearth.models.text.text_batches import InputBatch
 
 
 class Memory(NamedTuple):
@@ -23,7 +23,7 @@ class Memory(NamedTuple):
         states: (B, L, H) of the encoder.
         keys: (B, L, H) the encoder's part of eq. 4.4, computed once.
         mask: (B, L) bool, whether there is a word.
-        mentioned: (B, L, C) see `TextBatch`.
+        mentioned: (B, L, C) see `InputBatch`.
     """
 
     states: torch.Tensor
@@ -40,14 +40,19 @@ State = tuple[torch.Tensor, ...]
 """What a decoder knows of programs so far; the rows of each tensor are the programs."""
 
 
+def word_embedding(vectors: torch.Tensor) -> nn.Embedding:
+    """Words as vectors that begin as (V, W) given ones; number 0, no word, stays 0."""
+    return nn.Embedding.from_pretrained(vectors.clone(), freeze=False, padding_idx=0)
+
+
 class Seq2SeqBody(nn.Module):
     """The encoder, and the decoder without its head; `features` is the size of what it gives to the head."""
 
-    def __init__(self, vectors: torch.Tensor, hidden: int, size: int, dropout: float) -> None:
-        """`vectors`: (V, W) of the words."""
+    def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float) -> None:
+        """`words` makes of a batch's inputs (B, L, width) vectors, such as `word_embedding`."""
         super().__init__()
-        self.words = nn.Embedding.from_pretrained(vectors.clone(), freeze=False, padding_idx=0)
-        self.encoder = nn.LSTM(vectors.shape[1], hidden // 2, batch_first=True, bidirectional=True)
+        self.words = words
+        self.encoder = nn.LSTM(width, hidden // 2, batch_first=True, bidirectional=True)
         self.cell = nn.LSTMCell(size + hidden, hidden)
         self.bridge = nn.Linear(hidden, 2 * hidden)
         self.of_decoder = nn.Linear(hidden, hidden)
@@ -56,9 +61,9 @@ class Seq2SeqBody(nn.Module):
         self.dropout = nn.Dropout(dropout)
         self.features = 2 * hidden
 
-    def encode(self, batch: TextBatch) -> Memory:
+    def encode(self, batch: InputBatch) -> Memory:
         """Read texts. Packing keeps the padding out: a text's code depends on no other text."""
-        words = self.dropout(self.words(batch.words))  # (B, L, W)
+        words = self.dropout(self.words(batch.inputs))  # (B, L, W)
         packed = pack_padded_sequence(words, batch.lengths, batch_first=True, enforce_sorted=False)
         states, _ = pad_packed_sequence(self.encoder(packed)[0], batch_first=True)  # (B, L, H)
         states = self.dropout(states)

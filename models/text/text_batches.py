@@ -14,23 +14,24 @@ from hearth.models.text.step_vocabulary import END, UNKNOWN, StepVocabulary
 from hearth.models.text.text_words import BREAK, words_of
 
 
-class TextBatch(NamedTuple):
-    """B texts of at most L words; C is the number of classes and one, for no object.
+class InputBatch(NamedTuple):
+    """B texts of at most L words, or films of at most L clips; C is the number of classes and one, for no object.
 
     Attributes:
-        words: (B, L) int64, 0 past the end.
+        inputs: (B, L) int64 words, 0 past the end; of clips (B, L, F) float32 numbers.
         lengths: (B,) int64, at least 1, on the processor.
-        mentioned: (B, L, C) float32, 1 where a class is mentioned.
+        mentioned: (B, L, C) float32, 1 where a class is mentioned; in clips how probable it is.
     """
 
-    words: torch.Tensor
+    inputs: torch.Tensor
     lengths: torch.Tensor
     mentioned: torch.Tensor
 
     @property
     def mask(self) -> torch.Tensor:
         """(B, L) bool: whether there is a word."""
-        return torch.arange(self.words.shape[1], device=self.words.device) < self.lengths.to(self.words.device)[:, None]
+        device = self.inputs.device
+        return torch.arange(self.inputs.shape[1], device=device) < self.lengths.to(device)[:, None]
 
 
 class StepBatch(NamedTuple):
@@ -60,7 +61,7 @@ class Noise:
 
 def text_batch(
     requests: Sequence[Request], vocabulary: StepVocabulary, device: torch.device, noise: Random | None = None
-) -> TextBatch:
+) -> InputBatch:
     """The texts of some requests; with noise, if a generator is given."""
     texts = [words_of(request) or [BREAK] for request in requests]
     shares = Noise()
@@ -77,7 +78,7 @@ def text_batch(
         for place, number in vocabulary.mentioned(text):
             mentioned[row, place, number] = 1
     lengths = torch.tensor([len(found) for found in numbers])
-    return TextBatch(words_in.to(device), lengths, mentioned.to(device))
+    return InputBatch(words_in.to(device), lengths, mentioned.to(device))
 
 
 def _without_title(words: list[str]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from random import Random
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,25 +14,23 @@ from hearth.models.checkpoint import Checkpoint
 from hearth.models.devices import device
 from hearth.models.filled import filled
 from hearth.models.interface import Request, Settings, Steps, Training
-from hearth.models.text.seq2seq import Seq2SeqBody
+from hearth.models.text.likelihood import likelihood, written
+from hearth.models.text.seq2seq import Seq2SeqBody, word_embedding
 from hearth.models.text.step_heads import ClosedHead, ComposedHead, StepEmbedding
 from hearth.models.text.step_vocabulary import UNKNOWN, StepVocabulary
-from hearth.models.text.text_batches import StepBatch, TextBatch, encoded, step_batch, text_batch
+from hearth.models.text.text_batches import InputBatch, encoded, text_batch
 from hearth.models.text.text_scorer import TextScorer
 from hearth.models.text.text_words import words, words_of
 from hearth.models.text.transformer import TransformerBody
 from hearth.models.text.word_vectors import word_vectors
-from hearth.models.text.writer import Numbers, Writer, beam, sample
-from hearth.models.training import Task, train
+from hearth.models.text.writer import Numbers, Writer, sample
+from hearth.models.training import train
 from hearth.schemas.rng import derive
 from hearth.scoring.metrics.lcs import score_pairs
 from hearth.storage.parallel import Seen, unseen
 
 if TYPE_CHECKING:
     from hearth.models.data import Corpus, Example
-
-AT_ONCE = 64
-"""Texts that are read at once in prediction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,20 +64,12 @@ class TextModel(Settings):
         pairs = [(each.request, each.steps) for each in corpus.train]
         vocabulary = StepVocabulary.of(pairs, corpus.dataset.knowledge)
         torch.manual_seed(derive(how.seed, "weights"))
-        closed = _listed(pairs, vocabulary, self.longest) if self.steps == "closed" else ()
+        closed = listed(pairs, vocabulary, self.longest) if self.steps == "closed" else ()
         writer = self.network(vocabulary, closed, _vectors(pairs, vocabulary, self.vector)).to(device())
         model = TrainedTextModel(self, vocabulary, closed, writer, {})
         data = [(request, encoded(steps, vocabulary, self.longest)) for request, steps in pairs]
-
-        def batches(random: Random) -> Iterator[tuple[TextBatch, StepBatch]]:
-            order = random.sample(range(len(data)), len(data))
-            for start in range(0, len(order), self.batch):
-                rows = [data[place] for place in order[start : start + self.batch]]
-                texts = text_batch([request for request, _ in rows], vocabulary, writer.device, random)
-                yield texts, step_batch([steps for _, steps in rows], writer.device, self.longest)
-
-        task = Task(writer, batches, lambda batch: writer.loss(*batch), lambda: model.score(corpus.validation),
-                    [asdict(self), corpus.facts])  # fmt: skip
+        task = likelihood(writer, data, model.read, self.batch, self.longest,
+                          lambda: model.score(corpus.validation), [asdict(self), corpus.facts])  # fmt: skip
         model.trained.update(train(task, how, seen).record())
         return model
 
@@ -91,10 +81,11 @@ class TextModel(Settings):
         given = torch.zeros(count + len(vocabulary.classes), self.vector) if vectors is None else torch.tensor(vectors)
         embedding = StepEmbedding(vocabulary, self.vector, given[count:])
         body: Any
+        sizes = self.hidden, self.vector, self.dropout
         if self.body == "lstm":
-            body = Seq2SeqBody(given[:count], self.hidden, self.vector, self.dropout)
+            body = Seq2SeqBody(word_embedding(given[:count]), self.vector, *sizes)
         else:
-            body = TransformerBody(given[:count], self.hidden, self.vector, self.dropout, self.layers)
+            body = TransformerBody(word_embedding(given[:count]), self.vector, *sizes, self.layers)
         if self.steps == "closed":
             head: Any = ClosedHead(vocabulary, embedding, body.features, self.vector, closed)
         else:
@@ -127,15 +118,15 @@ class TrainedTextModel:
 
     def numbers(self, requests: Sequence[Request], width: int = 1) -> list[Numbers]:
         """The programs as numbers of the vocabulary."""
-        self.writer.eval()
-        order = sorted(range(len(requests)), key=lambda place: len(words_of(requests[place])))
-        found: dict[int, Numbers] = {}
-        with torch.no_grad():
-            for start in range(0, len(order), AT_ONCE):
-                places = order[start : start + AT_ONCE]
-                texts = text_batch([requests[place] for place in places], self.vocabulary, self.writer.device)
-                found |= dict(zip(places, beam(self.writer, texts, width, self.settings.longest), strict=True))
-        return [found[place] for place in range(len(requests))]
+        return written(self.writer, requests, self.read, lambda each: len(words_of(each)), width, self.settings.longest)
+
+    def read(self, requests: Sequence[Request], noise: Random | None = None) -> InputBatch:
+        """The texts of requests; with noise, if a generator is given."""
+        return text_batch(requests, self.vocabulary, self.writer.device, noise)
+
+    def asked(self, examples: Sequence[Example], random: Random) -> InputBatch:
+        """The texts of examples in the second phase of training, without noise."""
+        return self.read([each.request for each in examples])
 
     def drawn(self, request: Request, count: int) -> list[Steps]:
         """Programs for a text, drawn step by step; they depend on the text and the weights alone."""
@@ -158,7 +149,7 @@ class TrainedTextModel:
 
     def scorer(self) -> TextScorer:
         """The model for decoding with the engine in the loop."""
-        return TextScorer(self.writer, self.vocabulary)
+        return TextScorer(self.writer, self.vocabulary, self.read)
 
     def checkpoint(self) -> Checkpoint:
         """All that `restored` needs."""
@@ -173,7 +164,7 @@ def mean_lcs(predicted: Sequence[Steps], references: Sequence[Steps]) -> float:
     return sum(score.mean for score in scores) / len(scores) if scores else 0.0
 
 
-def _listed(
+def listed(
     pairs: Sequence[tuple[Request, Steps]], vocabulary: StepVocabulary, longest: int
 ) -> tuple[tuple[int, int, int], ...]:
     """Every step of the training programs once, sorted."""

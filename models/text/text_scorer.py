@@ -1,20 +1,19 @@
-"""A model of texts as decoding with the engine in the loop sees it: its classes are scored as the nodes of a home."""
+"""A model of texts or films as decoding with the engine in the loop sees it: its classes score the nodes of a home."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.decoding.scorers import Asked, Part, Scores
-from hearth.models.interface import Request
 from hearth.models.text.seq2seq import Memory
 from hearth.models.text.step_heads import NEVER, ComposedHead, Context
 from hearth.models.text.step_vocabulary import StepVocabulary
-from hearth.models.text.text_batches import text_batch
+from hearth.models.text.text_batches import InputBatch
 from hearth.models.text.writer import Draft, Writer
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -41,19 +40,22 @@ class TextScorer:
 
     order = (Part.ACTION, Part.FIRST, Part.SECOND)
 
-    def __init__(self, writer: Writer, vocabulary: StepVocabulary) -> None:
-        """Raises HearthError, BAD_ARGUMENT: the model chooses whole steps of a list."""
+    def __init__(self, writer: Writer, vocabulary: StepVocabulary, read: Callable[[Sequence[Any]], InputBatch]) -> None:
+        """`read` makes a batch of what programs are written for.
+
+        Raises HearthError, BAD_ARGUMENT: the model chooses whole steps of a list.
+        """
         if not isinstance(writer.head, ComposedHead):
             message = "a model with a closed list of steps can't be decoded with the engine in the loop"
             raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="use one with composed steps: `mle-composed`")
         self.writer, self.head, self.vocabulary = writer.eval(), writer.head, vocabulary
-        self.actions = vocabulary.actions
+        self.actions, self.read = vocabulary.actions, read
         self._nodes: dict[int, dict[str, list[tuple[int, float]]]] = {}
 
-    def begin(self, worlds: Sequence[World], inputs: Sequence[Request]) -> list[Place]:
-        """The places before the first steps; the inputs are requests."""
+    def begin(self, worlds: Sequence[World], inputs: Sequence[Any]) -> list[Place]:
+        """The places before the first steps; the inputs are what `read` reads: requests, of films their clips."""
         with torch.no_grad():
-            return self._places(self.writer.begin(text_batch(inputs, self.vocabulary, self.writer.device)))
+            return self._places(self.writer.begin(self.read(inputs)))
 
     def score(self, asked: Sequence[Asked], part: Part) -> list[Scores]:
         """The logarithms of the probabilities of actions and of the end, or the scores of nodes."""

@@ -12,18 +12,18 @@ from torch import nn
 from torch.nn import functional
 
 from hearth.models.text.seq2seq import Memory, State
-from hearth.models.text.text_batches import TextBatch
+from hearth.models.text.text_batches import InputBatch
 
 
 class TransformerBody(nn.Module):
     """Layers of attention over words, and over steps and words; `features` is the size of what goes to the head."""
 
-    def __init__(self, vectors: torch.Tensor, hidden: int, size: int, dropout: float, layers: int) -> None:
-        """`vectors`: (V, W) of the words."""
+    def __init__(self, words: nn.Module, width: int, hidden: int, size: int, dropout: float, layers: int) -> None:
+        """`words` makes of a batch's inputs (B, L, width) vectors."""
         super().__init__()
         heads, inner = 4, 2 * hidden
-        self.words = nn.Embedding.from_pretrained(vectors.clone(), freeze=False, padding_idx=0)
-        self.of_words, self.of_steps = nn.Linear(vectors.shape[1], hidden), nn.Linear(size, hidden)
+        self.words = words
+        self.of_words, self.of_steps = nn.Linear(width, hidden), nn.Linear(size, hidden)
         encoder = nn.TransformerEncoderLayer(hidden, heads, inner, dropout, batch_first=True, norm_first=True)
         decoder = nn.TransformerDecoderLayer(hidden, heads, inner, dropout, batch_first=True, norm_first=True)
         self.encoder = nn.TransformerEncoder(encoder, layers, nn.LayerNorm(hidden), enable_nested_tensor=False)
@@ -32,9 +32,9 @@ class TransformerBody(nn.Module):
         self.dropout = nn.Dropout(dropout)
         self.features = 2 * hidden
 
-    def encode(self, batch: TextBatch) -> Memory:
+    def encode(self, batch: InputBatch) -> Memory:
         """Read texts; words past the end are never attended to."""
-        words = self.of_words(self.words(batch.words))  # (B, L, H)
+        words = self.of_words(self.words(batch.inputs))  # (B, L, H)
         states = self.encoder(self.dropout(_placed(words)), src_key_padding_mask=~batch.mask)
         return Memory(states, self.key(states), batch.mask, batch.mentioned)
 

@@ -10,7 +10,7 @@ from torch.nn import functional
 
 from hearth.models.text.seq2seq import Memory, State
 from hearth.models.text.step_heads import NEVER, ClosedHead, ComposedHead, Context, StepEmbedding
-from hearth.models.text.text_batches import StepBatch, TextBatch
+from hearth.models.text.text_batches import InputBatch, StepBatch
 
 Numbers = tuple[tuple[int, int, int], ...]
 
@@ -58,7 +58,7 @@ class Writer(nn.Module):
         """Where its weights are."""
         return self.embedding.actions.weight.device
 
-    def log_probabilities(self, texts: TextBatch, programs: StepBatch) -> torch.Tensor:
+    def log_probabilities(self, texts: InputBatch, programs: StepBatch) -> torch.Tensor:
         """(B, T) the logarithm of the probability of each step, given the true steps before; 0 past the end."""
         memory = self.body.encode(texts)
         shifted = functional.pad(programs.steps[:, :-1], (0, 0, 1, 0))  # (B, T, 3)
@@ -74,11 +74,11 @@ class Writer(nn.Module):
         found = self.head.log_probability(context, programs.steps[real])
         return torch.zeros_like(programs.weights).masked_scatter(real, found)
 
-    def loss(self, texts: TextBatch, programs: StepBatch) -> torch.Tensor:
+    def loss(self, texts: InputBatch, programs: StepBatch) -> torch.Tensor:
         """The mean over steps of minus the logarithm of the probability."""
         return -self.log_probabilities(texts, programs).sum() / programs.weights.sum()
 
-    def begin(self, texts: TextBatch) -> Draft:
+    def begin(self, texts: InputBatch) -> Draft:
         """Programs without steps, one for each text."""
         memory = self.body.encode(texts)
         count = len(memory.states)
@@ -101,7 +101,7 @@ class Writer(nn.Module):
         return draft._replace(last=steps, used=used)
 
 
-def beam(writer: Writer, texts: TextBatch, width: int, longest: int) -> list[Numbers]:
+def beam(writer: Writer, texts: InputBatch, width: int, longest: int) -> list[Numbers]:
     """The best program for each text by beam search: greedy for a width of 1.
 
     A program's score is the mean logarithm of the probability of its steps, its end included.
@@ -112,7 +112,7 @@ def beam(writer: Writer, texts: TextBatch, width: int, longest: int) -> list[Num
         width: programs followed for each text.
         longest: steps at most.
     """
-    count, device = len(texts.words), writer.device
+    count, device = len(texts.inputs), writer.device
     draft = writer.begin(texts).rows(torch.arange(count, device=device).repeat_interleave(width))
     totals = torch.full((count, width), NEVER, device=device)
     totals[:, 0] = 0
@@ -148,10 +148,10 @@ def _numbers(steps: torch.Tensor) -> Numbers:
     return tuple((action, first, second) for action, first, second in steps.tolist())
 
 
-def sample(writer: Writer, texts: TextBatch, longest: int, generator: torch.Generator) -> list[Numbers]:
+def sample(writer: Writer, texts: InputBatch, longest: int, generator: torch.Generator) -> list[Numbers]:
     """A program for each text, drawn step by step."""
     draft = writer.begin(texts)
-    rows: list[list[tuple[int, int, int]]] = [[] for _ in range(len(texts.words))]
+    rows: list[list[tuple[int, int, int]]] = [[] for _ in range(len(texts.inputs))]
     going = list(range(len(rows)))
     for _ in range(longest):
         draft, context = writer.look(draft)

@@ -6,8 +6,9 @@ import numpy as np
 
 import hearth
 from hearth.models.films.clip_data import Instruction
+from hearth.models.films.film_executions import by_class
 from hearth.models.films.film_readings import Reading
-from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS, by_class
+from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
 from hearth.models.films.step_order import StepOrder
 from hearth.schemas.program import Program
 

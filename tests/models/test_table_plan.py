@@ -17,7 +17,8 @@ from hearth.schemas.diagnostics import HearthError
 def test_every_table_has_models_that_there_are():
     for plan in PLANS.values():
         assert {*plan.once, *plan.seeded, *plan.given} <= MODELS.keys()
-    assert {plan.table for plan in PLANS.values()} == {"4.4", "4.5", "5.2", "5.3", "5.4"}
+    tables = {"4.2", "4.3", "4.3b", "4.4", "4.5", "4.6", "5.2", "5.3", "5.4"}
+    assert {plan.table for plan in PLANS.values()} == tables
 
 
 def test_a_model_is_trained_once_and_after_the_one_that_it_goes_on_from():
@@ -27,7 +28,9 @@ def test_a_model_is_trained_once_and_after_the_one_that_it_goes_on_from():
         assert each.before is None or (each.before in needed[:number] and each.before.seed == each.seed)
     graphs = Counter(each.changed for each in needed if each.name == "resactgraph")
     assert graphs == {"": 3, "rounds=1": 3, "rounds=3": 3}  # 5.2 and 5.3 share those of the usual rounds
-    assert {each.seed for each in needed if each.name in ("nearest", "retrieve-edit")} == {0}
+    assert {each.seed for each in needed if each.name in ("nearest", "retrieve-edit", "masks")} == {0}
+    of_films = [each.name for each in training(chosen(["4.6"]), 1)]
+    assert of_films == ["clips-context", "films-mle", "films-pg-lcs", "films-pg-lcs-sim"]
     assert {each.split for each in needed if each.data == "drawn"} == {"pairs", "paraphrases"}
 
 
@@ -36,6 +39,8 @@ def test_tables_are_chosen_by_number_or_name():
     assert [plan.name for plan in chosen(["4.4-pairs", "5.2"])] == ["4.4-pairs", "5.2"]
     with pytest.raises(HearthError, match="BAD_ARGUMENT"):
         chosen(["9.9"])
+    assert {plan.data for plan in chosen((), ("clips",))} == {"people", "drawn"}
+    assert [plan.name for plan in chosen(["4.6"], ("clips",))] == ["4.6"]
 
 
 def test_a_table_of_what_is_trained_for_it(tmp_path):

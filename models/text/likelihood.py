@@ -1,0 +1,71 @@
+"""What all writers of programs share: the first phase of training, and writing programs batch by batch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from random import Random
+from typing import Any, TypeVar
+
+import torch
+
+from hearth.models.text.text_batches import InputBatch, StepBatch, step_batch
+from hearth.models.text.writer import Numbers, Writer, beam
+from hearth.models.training import Task
+
+AT_ONCE = 64
+"""Texts or films that are read at once in prediction."""
+
+Asked = TypeVar("Asked")
+"""What a program is written for: a text, or what is seen in a film."""
+
+Read = Callable[[Sequence[Asked], Random | None], InputBatch]
+"""Makes a batch of what is asked; with noise, if a generator is given."""
+
+
+def likelihood(
+    writer: Writer, data: Sequence[tuple[Asked, Sequence[tuple[int, int, int]]]], read: Read[Asked], batch: int,
+    longest: int, validate: Callable[[], float], identity: Any,
+) -> Task[tuple[InputBatch, StepBatch]]:  # fmt: skip
+    """Training by the likelihood of the true steps, given the true steps before them (thesis 4.3.1, first phase).
+
+    Args:
+        writer: that is trained.
+        data: what is asked, and the numbers of its program's steps.
+        read: see `Read`.
+        batch: examples in a batch.
+        longest: steps of the longest program.
+        validate, identity: as of `Task`.
+    """
+
+    def batches(random: Random) -> Iterator[tuple[InputBatch, StepBatch]]:
+        order = random.sample(range(len(data)), len(data))
+        for start in range(0, len(order), batch):
+            rows = [data[place] for place in order[start : start + batch]]
+            inputs = read([asked for asked, _ in rows], random)
+            yield inputs, step_batch([steps for _, steps in rows], writer.device, longest)
+
+    return Task(writer, batches, lambda each: writer.loss(*each), validate, identity)
+
+
+def written(
+    writer: Writer, asked: Sequence[Asked], read: Read[Asked], length: Callable[[Asked], int], width: int, longest: int
+) -> list[Numbers]:
+    """The most probable program for each, by greedy or beam search; no answer depends on another.
+
+    Args:
+        writer: trained.
+        asked: what programs are written for.
+        read: see `Read`; without noise here.
+        length: of what is asked: alike ones are read together.
+        width: programs followed at once; 1 is greedy.
+        longest: steps at most.
+    """
+    writer.eval()
+    order = sorted(range(len(asked)), key=lambda place: length(asked[place]))
+    found: dict[int, Numbers] = {}
+    with torch.no_grad():
+        for start in range(0, len(order), AT_ONCE):
+            places = order[start : start + AT_ONCE]
+            inputs = read([asked[place] for place in places], None)
+            found |= dict(zip(places, beam(writer, inputs, width, longest), strict=True))
+    return [found[place] for place in range(len(asked))]
