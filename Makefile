@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models film-models tables full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: all models film-models film-tables tables full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -118,6 +118,9 @@ models: .venv/.models $(call manifest,publish)  ## train the models that come wi
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
 	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002
 	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 30 --rate 0.002
+
+film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
+	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --table 4.2 --table 4.3 --table 4.3b --table 4.6
 
 tables: .venv/.models $(call manifest,publish)  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
 	@$(HEARTH) corpus synthesize --seed $(SEED) --out $(OUT)/synthetic.jsonl

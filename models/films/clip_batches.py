@@ -26,7 +26,7 @@ class Doubt:
         flattened: probabilities are raised to a power between this one and 1, the same for a film.
     """
 
-    left_out: float = 0.3
+    left_out: float = 0.1
     mistaken: float = 0.1
     flattened: float = 0.6
 
@@ -57,12 +57,13 @@ def clip_batch(
     """
     given = _doubted(films, noise, doubt) if noise is not None else films
     longest, actions = max(map(len, given)), given[0].actions.shape[1]
-    inputs = torch.zeros(len(given), longest, actions + 2 * len(rows))
+    inputs = torch.zeros(len(given), longest, actions + 1 + 2 * len(rows))
     mentioned = torch.zeros(len(given), longest, len(rows))
     known = (rows > 0).astype(np.float32)
     for number, film in enumerate(given):
         objects = film.objects[:, :, rows] * known  # (N, 2, C)
-        found = np.concatenate((film.actions, objects[:, 0], objects[:, 1]), 1)
+        length = np.log(film.lengths)[:, None] / 3  # of a clip 0, of 20 about 1
+        found = np.concatenate((film.actions, length, objects[:, 0], objects[:, 1]), 1)
         inputs[number, : len(film)] = torch.from_numpy(found)
         mentioned[number, : len(film)] = torch.from_numpy(objects.sum(1).clip(max=1))
     return InputBatch(inputs.to(device), torch.tensor([*map(len, given)]), mentioned.to(device))
@@ -70,7 +71,7 @@ def clip_batch(
 
 def _doubted(films: Sequence[ClipProbabilities], noise: Random, doubt: Doubt) -> list[ClipProbabilities]:
     draw = np.random.Generator(np.random.PCG64(noise.getrandbits(64)))
-    columns = zip(*((each.actions, each.objects) for each in films), strict=True)
+    columns = zip(*((each.actions, each.objects, each.lengths) for each in films), strict=True)
     others = ClipProbabilities(*map(np.concatenate, columns))
     found = []
     for film in films:
@@ -81,7 +82,7 @@ def _doubted(films: Sequence[ClipProbabilities], noise: Random, doubt: Doubt) ->
         power = draw.uniform(doubt.flattened, 1.0)
         actions = np.where(swapped[:, None], other.actions, shown.actions)
         objects = np.where(swapped[:, None, None], other.objects, shown.objects)
-        found.append(ClipProbabilities(_flattened(actions, power), _flattened(objects, power)))
+        found.append(ClipProbabilities(_flattened(actions, power), _flattened(objects, power), shown.lengths))
     return found
 
 

@@ -23,17 +23,17 @@ class ClipReader(nn.Module):
     def __init__(self, actions: int, traits: Tensor, size: int, unnamed: float) -> None:
         super().__init__()
         self.actions, self.unnamed, self.width = actions, unnamed, 3 * size
-        self.of_actions = nn.Linear(actions, size)
+        self.of_actions = nn.Linear(actions + 1, size)
         self.of_classes = nn.Embedding(len(traits), size)
         nn.init.normal_(self.of_classes.weight, std=0.1)
         self.of_traits = nn.Linear(traits.shape[1], size, bias=False)
         self.register_buffer("traits", traits, persistent=False)
 
     def forward(self, clips: Tensor) -> Tensor:
-        """(B, L, A + 2 C) probabilities of actions, first and second objects -> (B, L, width)."""
+        """(B, L, A + 1 + 2 C) probabilities of actions, length, first and second objects -> (B, L, width)."""
         learned = self.of_classes.weight
         if self.training:
             learned = learned * (torch.rand(len(learned), 1, device=learned.device) >= self.unnamed)
         vectors = learned + self.of_traits(self.traits)  # (C, size)
-        actions, first, second = clips.split((self.actions, len(vectors), len(vectors)), -1)
+        actions, first, second = clips.split((self.actions + 1, len(vectors), len(vectors)), -1)
         return torch.cat((self.of_actions(actions), first @ vectors, second @ vectors), -1)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from hearth.models.data import facts_of
 from hearth.models.films.clip_data import Clips
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
 from hearth.models.films.film_executions import shown_films
 from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.interface import Steps
 from hearth.simulation.world.world import World
+from hearth.storage.files import value_digest
 
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
@@ -44,8 +48,43 @@ def film_examples(dataset: Dataset, part: str, reader: TrainedSeenModel, most: i
         HearthError: errors of `Clips.of`.
     """
     clips = Clips.of(dataset, part, most)
-    shown = shown_films(dataset, clips.executions)
+    shown, read = shown_films(dataset, clips.executions), film_probabilities(dataset, clips, part, most, reader)
     return [
-        FilmExample(name, of_film(reader, masks), each.steps, each.world)
-        for name, masks, each in zip(clips.executions, clips.films, shown, strict=True)
+        FilmExample(name, found, each.steps, each.world)
+        for name, found, each in zip(clips.executions, read, shown, strict=True)
     ]
+
+
+@dataclass(frozen=True)
+class _Question:
+    """A classifier and films: alike for equal weights and equal files."""
+
+    dataset: str
+    part: str
+    most: int
+    weights: str
+    clips: Clips = field(compare=False)
+    reader: TrainedSeenModel = field(compare=False)
+
+
+def film_probabilities(
+    dataset: Dataset, clips: Clips, part: str, most: int, reader: TrainedSeenModel
+) -> tuple[ClipProbabilities, ...]:
+    """What a classifier says of each film of a part.
+
+    It takes two seconds a film, and several writers read the same: a process remembers it.
+
+    Args:
+        dataset: with clips.
+        clips: its clips of the part.
+        part, most: as of `film_examples`.
+        reader: the classifier.
+    """
+    weights = {name: value.numpy().tobytes().hex() for name, value in reader.network.state_dict().items()}
+    about = value_digest([asdict(reader.settings), reader.table.document(), weights])
+    return _read(_Question(facts_of(dataset)["digest"], part, most, about, clips, reader))
+
+
+@lru_cache(maxsize=12)
+def _read(asked: _Question) -> tuple[ClipProbabilities, ...]:
+    return tuple(of_film(asked.reader, masks) for masks in asked.clips.films)

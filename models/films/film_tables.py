@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from hearth.models.evaluation import by_group
 from hearth.models.films.clip_data import Clips
-from hearth.models.films.clip_probabilities import ClipProbabilities, of_film
+from hearth.models.films.clip_probabilities import ClipProbabilities
 from hearth.models.films.clip_tables import HOMES, looks_at_masks, standard_error
+from hearth.models.films.film_examples import film_probabilities
 from hearth.models.films.film_executions import Shown, by_class, shown_films
 from hearth.models.films.film_programs import FilmProgram, alone, described, followed
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_shown import cut
 from hearth.models.films.film_writer import TrainedFilmWriter
+from hearth.models.films.seen_model import TrainedSeenModel
 from hearth.models.films.step_order import StepOrder, programs_of
 from hearth.models.interface import Steps
 from hearth.models.model_registry import restore
@@ -121,7 +123,12 @@ def film_table(
     answers: dict[str, list[list[Steps]]] = {}
     for number, model in enumerate(models):
         name, trained = restore(model)
-        written = _written(trained, name, test, [film.world for film in films], order, beam)
+        worlds = [film.world for film in films]
+        if isinstance(trained, TrainedFilmWriter):
+            read = film_probabilities(dataset, test, part, 0, trained.reader)
+            written = (by_writer(trained, *each, beam) for each in zip(read, worlds, strict=True))
+        else:
+            written = _classified(looks_at_masks(trained, name), test, worlds, order)
         for done, found in enumerate(written, number * len(films) + 1):
             for way, steps in found.items():
                 answers.setdefault(f"{name}, {way}", [[] for _ in models])[number].append(steps)
@@ -131,21 +138,12 @@ def film_table(
     return rows
 
 
-def _written(
-    trained: Any, name: str, test: Clips, worlds: Sequence[World], order: StepOrder, beam: int
+def _classified(
+    trained: TrainedSeenModel, test: Clips, worlds: Sequence[World], order: StepOrder
 ) -> Iterator[dict[str, Steps]]:
-    """What a model writes for each film, in each of its ways.
-
-    Raises:
-        HearthError: BAD_ARGUMENT, for a model of another kind.
-    """
-    if isinstance(trained, TrainedFilmWriter):
-        for masks, world in zip(test.films, worlds, strict=True):
-            yield by_writer(trained, of_film(trained.reader, masks), world, beam)
-        return
-    looking = looks_at_masks(trained, name)
+    """What is read of each film by a classifier of clips, in each of the ways."""
     for masks, world in zip(test.films, worlds, strict=True):
-        (found,) = looking.readings(cut(masks))
+        (found,) = trained.readings(cut(masks))
         yield {way: write(found, order, world).steps for way, write in WAYS.items()}
 
 

@@ -69,6 +69,7 @@ class FilmWriter(Settings):
         batch: films in a batch.
         longest: steps of the longest program.
         films: of training, at most; 0 for all.
+        passes: over the films in an epoch: they are few, and an epoch decides about the rate.
     """
 
     start: str = "clips-context"
@@ -76,11 +77,12 @@ class FilmWriter(Settings):
     copy: bool = True
     hidden: int = 100
     vector: int = 48
-    dropout: float = 0.4
+    dropout: float = 0.3
     unnamed: float = 0.5
     batch: int = 16
     longest: int = 40
     films: int = 0
+    passes: int = 4
 
     def fit(self, dataset: Dataset, how: Training, seen: Seen = unseen) -> TrainedFilmWriter:
         """Train on the films of `train` by the likelihood of the true steps; those of `validation` decide when to stop.
@@ -99,7 +101,7 @@ class FilmWriter(Settings):
         model = TrainedFilmWriter(self, reader, vocabulary, closed, writer)
         data = [(each.clips, encoded(each.steps, vocabulary, self.longest)) for each in learned]
         facts = {"films": len(learned), "classifier": _told(reader.facts), "seed": how.seed}
-        task = likelihood(writer, data, model.read, self.batch, self.longest, lambda: model.score(checked),
+        task = likelihood(writer, data * self.passes, model.read, self.batch, self.longest, lambda: model.score(checked),
                           [asdict(self), facts])  # fmt: skip
         model.trained.update({**facts, **train(task, how, seen).record()})
         return model
