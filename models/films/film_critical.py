@@ -52,9 +52,9 @@ class FilmCritical(Settings):
         rewarded: Reward = lcs_reward if self.reward == "lcs" else sim_reward
         task = rewarding(model, learned, rewarded, self.batch, lambda: model.score(checked),
                          [self.reward, self.batch, len(learned), model.trained])  # fmt: skip
-        facts = {name: model.trained[name] for name in ("films", "classifier") if name in model.trained}
+        facts = {"films": len(learned), "classifier": model.trained.get("classifier", {}), "seed": how.seed}
         go_on(model, task, how, seen)
-        model.trained.update({**facts, "films": len(learned), "seed": how.seed})
+        model.trained.update(facts)
         return model
 
     @classmethod

@@ -121,12 +121,12 @@ def film_table(
                  for _ in test.executions]  # fmt: skip
     rows += _rows(dataset, "Random retrieval", "yardstick", test, films, [retrieved], seed)
     answers: dict[str, list[list[Steps]]] = {}
+    worlds = [film.world for film in films]
     for number, model in enumerate(models):
         name, trained = restore(model)
-        worlds = [film.world for film in films]
         if isinstance(trained, TrainedFilmWriter):
             read = film_probabilities(dataset, test, part, 0, trained.reader)
-            written = (by_writer(trained, *each, beam) for each in zip(read, worlds, strict=True))
+            written = _by_writer(trained, read, worlds, beam)
         else:
             written = _classified(looks_at_masks(trained, name), test, worlds, order)
         for done, found in enumerate(written, number * len(films) + 1):
@@ -136,6 +136,14 @@ def film_table(
     for method, each in answers.items():
         rows += _rows(dataset, method, "ours", test, films, [found for found in each if found], seed)
     return rows
+
+
+def _by_writer(
+    trained: TrainedFilmWriter, read: Sequence[ClipProbabilities], worlds: Sequence[World], beam: int
+) -> Iterator[dict[str, Steps]]:
+    """What an encoder-decoder writes for each film, in each of its ways."""
+    for film, world in zip(read, worlds, strict=True):
+        yield by_writer(trained, film, world, beam)
 
 
 def _classified(

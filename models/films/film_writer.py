@@ -99,9 +99,9 @@ class FilmWriter(Settings):
         torch.manual_seed(derive(how.seed, "weights"))
         writer = self.network(vocabulary, closed, reader).to(device())
         model = TrainedFilmWriter(self, reader, vocabulary, closed, writer)
-        data = [(each.clips, encoded(each.steps, vocabulary, self.longest)) for each in learned]
+        data = [(each.clips, encoded(each.steps, vocabulary, self.longest)) for each in learned] * self.passes
         facts = {"films": len(learned), "classifier": _told(reader.facts), "seed": how.seed}
-        task = likelihood(writer, data * self.passes, model.read, self.batch, self.longest, lambda: model.score(checked),
+        task = likelihood(writer, data, model.read, self.batch, self.longest, lambda: model.score(checked),
                           [asdict(self), facts])  # fmt: skip
         model.trained.update({**facts, **train(task, how, seen).record()})
         return model
