@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 import hearth
-from hearth.models.films.clip_data import Instruction
-from hearth.models.films.film_executions import by_class
+from hearth.models.films import film_tables
+from hearth.models.films.clip_data import Clip, Clips, Instruction
+from hearth.models.films.film_executions import Shown, by_class
 from hearth.models.films.film_readings import Reading
 from hearth.models.films.film_tables import COLUMNS, THESIS, WAYS
+from hearth.models.films.film_writer import TrainedFilmWriter
 from hearth.models.films.step_order import StepOrder
-from hearth.schemas.program import Program
+from hearth.schemas.program import ObjectRef, Program, Step
 
 DONE = (Instruction("Sit", ("sofa",)), Instruction("StandUp", ()), Instruction("Walk", ("sofa",)))
 
@@ -38,6 +40,40 @@ def test_with_the_engine_programs_run_and_without_they_need_not():
         runs[name] = hearth.run(world, Program(steps=steps)).executable if steps else None
     assert runs["engine"] and runs["engine, order of steps"] and runs["Viterbi, order of steps, repaired"]
     assert not runs["each clip alone"]
+
+
+class Writer(TrainedFilmWriter):
+    """It writes the same for every film, and something else with the engine."""
+
+    def __init__(self, free, followed):
+        for name, value in {"free": free, "engine": followed, "closed": (), "reader": None}.items():
+            object.__setattr__(self, name, value)
+
+    def write(self, films, beam=1):
+        return [self.free] * len(films)
+
+    def followed(self, films, worlds, beam=1):
+        return [self.engine] * len(films)
+
+
+def test_writers_stand_beside_classifiers_and_seeds_are_one_row(monkeypatch):
+    world = hearth.World.start(hearth.home("maple"))
+    steps = tuple(Step(each.action, tuple(map(ObjectRef, each.objects))) for each in (DONE[2], DONE[0]))
+    clips = tuple(Clip(film, 0, DONE[0], kind, 1) for film, kind in enumerate(("seen", "unseen")))
+    models = {"a": ("films-mle", Writer(steps, steps)), "b": ("films-mle", Writer((), steps))}
+    test = Clips(("one", "two"), [np.zeros((9, 2, 2), np.uint16)] * 2, clips, 9)
+    monkeypatch.setattr(film_tables.Clips, "of", lambda *_, **__: test)
+    monkeypatch.setattr(film_tables, "restore", models.__getitem__)
+    monkeypatch.setattr(film_tables, "shown_films", lambda *_: [Shown(world, steps, name) for name in "xy"])
+    monkeypatch.setattr(film_tables, "film_probabilities", lambda *_: (None, None))
+    monkeypatch.setattr(film_tables, "score_steps", lambda dataset, pairs: [None for _ in pairs])
+    monkeypatch.setattr(film_tables, "METRICS", dict.fromkeys(("executable", "goal"), lambda _: 1.0))
+    rows = {(row.method, row.homes): row for row in film_tables.film_table(None, ["a", "b"])}
+    free, engine = rows["films-mle, free", "all"], rows["films-mle, engine", "unseen"]
+    assert free.seeds == engine.seeds == 2 and free.films == 2 and engine.films == 1
+    assert free.scores["mean"].mean == free.spread == 0.5
+    assert engine.scores["mean"].mean == 1.0 and engine.spread == 0
+    assert rows["films-mle, free, repaired", "seen"].scores["mean"].mean < 1
 
 
 def test_the_thesis_has_a_figure_in_each_column_but_ours():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from random import Random
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,12 +13,13 @@ import torch
 import hearth
 from hearth.kb.loading.load import default
 from hearth.models.checkpoint import load, save
+from hearth.models.films import film_critical, film_examples, film_writer
 from hearth.models.films.class_table import ClassTable
 from hearth.models.films.clip_batches import clip_batch, rows_of
-from hearth.models.films.clip_data import Instruction
+from hearth.models.films.clip_data import Clips, Instruction
 from hearth.models.films.clip_probabilities import ClipProbabilities, of_scores
-from hearth.models.films.film_critical import sim_reward
-from hearth.models.films.film_examples import FilmExample
+from hearth.models.films.film_critical import FilmCritical, sim_reward
+from hearth.models.films.film_examples import FilmExample, film_probabilities
 from hearth.models.films.film_tables import by_writer
 from hearth.models.films.film_writer import FilmWriter, TrainedFilmWriter
 from hearth.models.films.seen_model import Scored, SeenModel, TrainedSeenModel
@@ -259,3 +261,40 @@ def test_classes_of_programs_are_those_of_clips(reader, films):
     batch = clip_batch([films[2].clips], rows, model.writer.device)
     assert batch.mentioned[0, -1, milk] > 0.8 > batch.mentioned[0, 0, milk]
     assert (batch.mentioned[..., 0] == 0).all()
+
+
+@pytest.fixture
+def filmed(reader, films, monkeypatch):
+    """A dataset of the eight films, read by the classifier."""
+    monkeypatch.setattr(film_writer, "classifier", lambda start: ("clips-seen", reader))
+    for module in (film_writer, film_critical):
+        monkeypatch.setattr(module, "film_examples", lambda *_: list(films))
+    return SimpleNamespace(knowledge=default())
+
+
+def test_both_phases_are_trained_and_recorded(filmed, reader, tmp_path):
+    first = FilmWriter(hidden=16, vector=16, passes=1, longest=8).fit(filmed, Training(epochs=2))
+    assert first.trained["epochs"] == 2 and first.trained["films"] == 8
+    save(first.checkpoint(), tmp_path / "first")
+    second = FilmCritical("lcs+sim", str(tmp_path / "first"), 4).fit(filmed, Training(epochs=1))
+    assert second.trained["first_phase"]["epochs"] == 2 and second.trained["films"] == 8
+    assert FilmCritical.restored(second.checkpoint()).trained == second.trained
+    save(reader.checkpoint(), tmp_path / "reader")
+    with pytest.raises(HearthError, match="writes no programs of films"):
+        FilmCritical(start=str(tmp_path / "reader")).fit(filmed, Training(epochs=1))
+
+
+def test_films_are_read_once_by_equal_classifiers(reader, monkeypatch):
+    asked = []
+    monkeypatch.setattr(film_examples, "facts_of", lambda dataset: {"digest": "of this test"})
+    monkeypatch.setattr(film_examples, "of_film", lambda trained, masks: asked.append(trained))
+    clips = Clips(("film",), [np.zeros((9, 2, 2), np.uint16)], (), 9)
+    same = SeenModel.restored(reader.checkpoint())
+    for each in (reader, same):
+        film_probabilities(SimpleNamespace(), clips, "test", 0, each)
+    assert asked == [reader]
+    torch.manual_seed(9)
+    other = replace(reader, network=reader.settings.network(reader.table).eval())
+    film_probabilities(SimpleNamespace(), clips, "test", 0, other)
+    film_probabilities(SimpleNamespace(), clips, "train", 0, other)
+    assert asked == [reader, other, other]
