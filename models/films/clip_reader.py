@@ -15,7 +15,7 @@ class ClipReader(nn.Module):
 
     Args:
         actions: how many the classifier knows.
-        traits: (C, traits) the properties of classes; row 0 is no object.
+        traits: (C, traits) the properties of classes; row 0 stands for no object.
         size: of the vectors of actions, first and second objects; `width` is that of all three.
         unnamed: share of classes whose learned numbers are left out in training.
     """

@@ -100,7 +100,7 @@ class FilmWriter(Settings):
         writer = self.network(vocabulary, closed, reader).to(device())
         model = TrainedFilmWriter(self, reader, vocabulary, closed, writer)
         data = [(each.clips, encoded(each.steps, vocabulary, self.longest)) for each in learned] * self.passes
-        facts = {"films": len(learned), "classifier": _told(reader.facts), "seed": how.seed}
+        facts = {"films": len(learned), "classifier": _recorded(reader.facts), "seed": how.seed}
         task = likelihood(writer, data, model.read, self.batch, self.longest, lambda: model.score(checked),
                           [asdict(self), facts])  # fmt: skip
         model.trained.update({**facts, **train(task, how, seen).record()})
@@ -203,6 +203,6 @@ class TrainedFilmWriter:
         return Checkpoint(NAME, asdict(self.settings), content, weights, self.trained)
 
 
-def _told(facts: Mapping[str, Any]) -> dict[str, Any]:
+def _recorded(facts: Mapping[str, Any]) -> dict[str, Any]:
     """What is recorded of a classifier: what it was trained on, and its seed."""
     return {name: facts[name] for name in ("digest", "clips", "seed") if name in facts}
