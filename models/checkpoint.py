@@ -213,6 +213,11 @@ _ABOUT = {
         "A model of Hearth that names what is done in films of our renderer, by their class masks (thesis 4.3.3).",
         (_OF_FILMS,),
     ),
+    "demo2sketch": _About(
+        "video-classification",
+        "A model of Hearth that writes the sketch of what is done in pictures from above (thesis 5.4.3).",
+        (_OF_FILMS,),
+    ),
     "masks": _About(
         "image-segmentation",
         "A model of Hearth that predicts the class masks of pictures of our renderer (thesis 4.3.3).",
