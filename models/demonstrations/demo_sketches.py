@@ -35,8 +35,8 @@ def demonstrated(
     if not readers:
         message = "table 5.5 needs a model that writes sketches of demonstrations"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name a trained `demo2sketch` with --model")
-    train = [(each.sketch, name) for each, name in shown(there, examples(there.dataset, split, "train", originals=True))
-             if each.sketch]  # fmt: skip
+    known = shown(there, examples(there.dataset, split, "train", originals=True))
+    train = [(each.sketch, name) for each, name in known if each.sketch]
     if train:
         sketches = [sketch for sketch, _ in train]
         yield "random sketch", {name: rng(seed, "random sketch", name).choice(sketches) for name in names}

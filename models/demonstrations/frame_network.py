@@ -55,7 +55,10 @@ class FrameBatch(NamedTuple):
         """What a writer counts demonstrations by."""
         return self.classes
 
-    words = inputs
+    @property
+    def words(self) -> Tensor:
+        """The same."""
+        return self.inputs
 
     @property
     def mask(self) -> Tensor:
