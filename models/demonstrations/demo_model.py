@@ -170,7 +170,7 @@ class TrainedDemoModel:
     def loss(self, batch: Batch) -> torch.Tensor:
         """Of the steps of sketches; `guided` times that of the steps before each picture."""
         frames, sketches, done = batch
-        memory: Any = self.writer.body.encode(frames)  # type: ignore[operator]
+        memory: Any = self.writer.body.encode(frames)
         total = self.writer.loss(memory, sketches)
         if self.settings.guided:
             total = total + self.settings.guided * self.guidance(frames, memory, done)
