@@ -35,7 +35,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models film-models film-tables tables full mini frames challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: all models film-models film-tables tables full mini frames demos challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
 
@@ -57,12 +57,14 @@ clips: $(READY)  ## some 20,000 two-second clips of drawn programs in our homes,
 	@$(HEARTH) corpus synthesize 700 --seed $(SEED) --out $(OUT)/clips.jsonl
 	@$(HEARTH) build $(OUT)/clips.jsonl --out $(OUT)/clips --seed $(SEED) --workers $(JOBS) --tier clips
 
+demos: $(READY)  ## 2,000 programs of our corpus pictured from above with class masks, in data_out/demos
+
 challenges: $(READY)  ## all tasks and demonstrations of Watch-And-Help, in data_out/challenges/wah
 	@$(HEARTH) challenge build wah --out $(OUT)/challenges/wah --workers $(JOBS)
 
 mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
 frames: $(READY)  ## a dataset of our corpus with many pictures and some films, in data_out/frames
-mini frames:
+mini frames demos:
 	@$(HEARTH) build --out $(OUT)/$@ --seed $(SEED) --workers $(JOBS) --tier $@
 
 setup: $(READY)  ## make .venv with the locked versions (with uv if installed, else pip)
@@ -194,7 +196,7 @@ licences:  ## docs/licences.md: the licence of every library of both locks
 	@build/licences/bin/python docs/hooks/licences.py build/licences/bin/pip-licenses && rm -rf build/licences
 
 clean:  ## remove the output; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/challenges $(OUT)/synthetic* $(OUT)/tables $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/demos $(OUT)/challenges $(OUT)/synthetic* $(OUT)/tables $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## also remove .venv

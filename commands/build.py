@@ -41,6 +41,7 @@ def build(
     pictures: int = 3,
     videos: int = 1,
     clips: int = 0,
+    demonstrations: int = 0,
     tier: str = "",
     engine: str = "local",
     scheduler: str = "",
@@ -197,7 +198,7 @@ def _homes_or_names(given: list[str] | None) -> tuple[Path | None, list[str]]:
     return folder, [name for text in texts if not Path(text).is_dir() for name in text.split(",") if name]
 
 
-@_with_options("out", "seed", "pictures", "videos", "clips", "homes", "kb")
+@_with_options("out", "seed", "pictures", "videos", "clips", "demonstrations", "homes", "kb")
 def render(context: typer.Context, **_: Any) -> None:
     """Picture a few programs while they run, and film some of them.
 

@@ -278,7 +278,7 @@ def show(
     to the home's, steps that it lacks are inserted as in `repair`, and those that cannot run there are left out. With
     two homes the programs stand side by side, common steps marked and coloured. The status is 1 if nothing is left.
     A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are
-    predicted: its steps with times, and the program.
+    predicted: its steps with times, and the program. A model of demonstrations reads pictures from above.
 
     \b
     Example:
@@ -286,11 +286,13 @@ def show(
       python cli.py model show planner --sketch sketch.txt --home maple --home birch
       python cli.py model show clips-seen data_out/clips/publish/films/FOLDER --film shown
       python cli.py model show clips-seen film.webm --film shown
+      python cli.py model show build/demo2sketch data_out/demos/publish/frames/FOLDER --writer chooser --home maple
     """
     from hearth.commands import model_shown
+    from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.films.film_input import is_film
 
-    if is_film(text):
+    if is_film(text) and not is_demonstration(text):
         from hearth.commands import film_read
 
         found = film_read.show(model, Path(text), (home or ["maple"])[0], homes, kb, film, masks)

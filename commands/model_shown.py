@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
+    from hearth.models.interface import Steps
     from hearth.models.showing import Shown
     from hearth.schemas.program import Step
     from hearth.simulation.engine import Execution
@@ -35,6 +36,7 @@ def shown(
     from hearth.commands.inputs import read_knowledge, read_program
     from hearth.grounding.environments.default_state import prepared
     from hearth.homes import library
+    from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.model_registry import MODELS, restore
     from hearth.models.showing import show_sketch, show_text
     from hearth.simulation.world.home import Home
@@ -45,14 +47,33 @@ def shown(
     _check(name, MODELS[name].input, text, sketch)
     beside = _writer(writer)
     steps = read_program(sketch, known).unbound().steps if sketch else ()
+    above = is_demonstration(text)
+    if above:
+        steps = _seen(name, trained, Path(text), beam)
     found = {}
     for each in homes:
         place = Home.from_graph(library.load_graph(each, known, folder), each, known)
         world = World.start(prepared(place).home)
-        if sketch:
+        if above:
+            found[each] = show_sketch(beside, steps, world, "", beam)
+        elif sketch:
             found[each] = show_sketch(trained, steps, world, text, beam)
         else:
             found[each] = show_text(trained, text, world, beside, beam)
+    return found
+
+
+def _seen(name: str, trained: Any, pictures: Path, beam: int) -> Steps:
+    """The sketch of pictures from above."""
+    from hearth.models.demonstrations.demo_model import TrainedDemoModel
+    from hearth.models.demonstrations.demonstration_data import read_pictures
+    from hearth.schemas.diagnostics import HearthError
+    from hearth.schemas.failures import Code
+
+    if not isinstance(trained, TrainedDemoModel):
+        message = f"`{name}` does not read pictures from above"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name a trained `demo2sketch`")
+    (found,) = trained.sketches([trained.see(read_pictures(pictures))], beam)
     return found
 
 

@@ -29,11 +29,12 @@ def table(
     as_json: bool = False,
 ) -> None:
     """A table of the thesis beside ours: 4.4 (a dataset of synthesized programs), 4.5 (of people's), 5.1 to 5.4;
-    4.2, 4.3, 4.3b and 4.6 of clips.
+    4.2, 4.3, 4.3b and 4.6 of clips; 5.5 and A.4 of demonstrations.
 
     Rows are the thesis's, yardsticks, and the models of --model; several checkpoints of one model are its seeds.
     Intervals are of activities drawn with replacement. The parts of the test are original programs alone in 4.4, 4.5
-    and 5.4; in 5.2 and 5.3 augmented ones, too. 5.4 needs a model that writes sketches, such as desc2sketch.
+    and 5.4; in 5.2 and 5.3 augmented ones, too. 5.4 needs a model that writes sketches, such as desc2sketch;
+    5.5 needs a demo2sketch; A.4 compares both kinds.
 
     \b
     Example:
@@ -42,6 +43,8 @@ def table(
       python cli.py model table 4.2 data_out/clips --model clips-seen --model masks
       python cli.py model table 4.3 data_out/clips --model clips-0 --model clips-1
       python cli.py model table 4.6 data_out/clips --model clips-context --model films-mle
+      python cli.py model table 5.5 data_out/demos --model build/demo2sketch --model chooser --beam 1
+      python cli.py model table A.4 data_out/demos --model build/demo2sketch --model build/retrieve-sketch
     """
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
@@ -49,6 +52,9 @@ def table(
     data = Dataset.open(dataset)
     if number in FILMS:
         _of_films(number, data, models or (), beam, seed, as_json)
+        return
+    if number == "A.4":
+        _compared(data, models or (), split, beam, sketches, as_json)
         return
     if number == "5.1":
         from hearth.models.sketches.dataset_table import dataset_table
@@ -96,6 +102,22 @@ def _print_films(number: str, rows: Sequence[Any]) -> None:
         shown = [[row.method, row.of, row.homes, *(_score(row.scores.get(name)) for name in film_tables.COLUMNS),
                   row.spread, row.films, row.seeds or None] for row in rows]  # fmt: skip
         output.table(["method", "of", "homes", *film_tables.COLUMNS, "error", "films", "seeds"], shown)
+
+
+def _compared(dataset: Any, models: Sequence[str], split: str, beam: int, sketches: str, as_json: bool) -> None:
+    """Sketches from demonstrations beside those from descriptions (A.4)."""
+    from hearth.models.demonstrations.kinds_compared import compared
+
+    found = compared(dataset, split, models, beam, sketches)
+    if as_json:
+        output.emit(found)
+        return
+    for title, rows in (("Descriptions of", found.by_words), ("Activity", found.by_activity)):
+        shown = [[row.group, row.programs, *(f"{value:.3f}" for value in row.lcs), row.easier] for row in rows]
+        output.table([title, "programs", *found.models, "easier from pictures"], shown)
+        print()
+    print(f"Easier from pictures: {found.easier} of {found.programs}; their descriptions have {found.words_easier:.1f} "
+          f"words on average, the others {found.words_others:.1f}.")  # fmt: skip
 
 
 def tables(
@@ -150,7 +172,7 @@ def _columns(number: str) -> Mapping[str, str]:
 
     if number in text_tables.TABLES:
         return text_tables.COLUMNS
-    return sketch_tables.COLUMNS | ({"sketch": ""} if number == "5.4" else {})
+    return sketch_tables.COLUMNS | ({"sketch": ""} if number in sketch_tables.PREDICTED else {})
 
 
 def _print(rows: Sequence[Row], columns: Mapping[str, str]) -> None:

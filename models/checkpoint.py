@@ -218,6 +218,11 @@ _ABOUT = {
         "A model of Hearth that writes the program of a film of our renderer, by its class masks (thesis 4.3.3).",
         (_OF_FILMS, "It has the classifier of clips whose answers it reads."),
     ),
+    "demo2sketch": _About(
+        "video-classification",
+        "A model of Hearth that writes the sketch of what is done in pictures from above (thesis 5.4.3).",
+        (_OF_FILMS,),
+    ),
     "masks": _About(
         "image-segmentation",
         "A model of Hearth that predicts the class masks of pictures of our renderer (thesis 4.3.3).",

@@ -53,13 +53,14 @@ def fit(
 
     model = settings_of(name, **_changed(name, changed))
     dataset, training = Dataset.open(folder), Training(**how, folder=out / STATE)
-    if MODELS[name].input == "film":
+    of_films, of_sketches = MODELS[name].input == "film", MODELS[name].output == "sketch"
+    if of_films and not of_sketches:
         checkpoint = model.fit(dataset, training, seen).checkpoint()  # type: ignore[arg-type]
         facts = {**facts_of(dataset), **checkpoint.trained}
     else:
         originals = originals and MODELS[name].input != "sketch"
         found = corpus(dataset, split, originals=originals, seed=training.seed, sketches=sketches)
-        found = found.of_sketches() if MODELS[name].output == "sketch" else found
+        found = found.of_sketches() if of_sketches and not of_films else found
         checkpoint = model.fit(found, training, seen).checkpoint()
         facts = {**found.facts, "sketches": sketches, "seed": training.seed, **checkpoint.trained}
     save(replace(checkpoint, model=name, trained=facts), out)

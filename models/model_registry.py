@@ -112,6 +112,13 @@ MODELS: dict[str, Entry] = {
         "thesis 4.3.1",
         {"reward": "lcs+sim"},
     ),
+    "demo2sketch": Entry(
+        "demonstrations.demo_model:DemoModel",
+        "film",
+        "Writes the sketch of pictures from above, by colours, masks and what is beside the person.",
+        "thesis 5.4.3, A.1",
+        output="sketch",
+    ),
     "goal-inference": Entry(
         "watching.goal_inference:GoalInference",
         "film",

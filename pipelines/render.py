@@ -1,6 +1,7 @@
 """Stage 5: pictures of a few executions, from above and by one camera, as colour and instance ids; and films of some.
 
-Each film has its own light, bodies, designs, positions and speed. Films for clips are small, and arrays.
+Each film has its own light, bodies, designs, positions and speed. Films for clips are small, and arrays; so are
+demonstrations, pictures from above alone with class masks.
 """
 
 from __future__ import annotations
@@ -12,15 +13,23 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hearth.datasets.format.cases import rerun
-from hearth.pipelines.engine import clip_cases
+from hearth.pipelines.engine import clip_cases, demonstration_cases
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.overlays import overlays, overlays_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job, Partition, Plan, Stage
 from hearth.schemas.failures import Code
 from hearth.schemas.libraries import lacking, remedy
-from hearth.schemas.row_types import CaseRow, ClippedRow, FilmedRow, PinholeRow, RenderedRow, TrackRow
-from hearth.schemas.tables import CLIPPED, FILMED, RENDERED
+from hearth.schemas.row_types import (
+    CaseRow,
+    ClippedRow,
+    DemonstratedRow,
+    FilmedRow,
+    PinholeRow,
+    RenderedRow,
+    TrackRow,
+)
+from hearth.schemas.tables import CLIPPED, DEMONSTRATED, FILMED, RENDERED
 from hearth.storage.files import value_digest, write_bytes
 from hearth.storage.manifest import read_manifest
 from hearth.storage.partitions import READ_BATCH, read_rows
@@ -58,8 +67,13 @@ class Context(NamedTuple):
         return self.drawable[name]
 
 
-def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow | FilmedRow | ClippedRow] | Reject]:
-    """One row for each picture of a case, its film and its clips, if any; a reject if libraries for pictures lack."""
+Made = RenderedRow | FilmedRow | ClippedRow | DemonstratedRow
+"""A row of any of the stage's tables."""
+
+
+def process(case: CaseRow, context: Context) -> Iterator[tuple[str, Made] | Reject]:
+    """One row for each picture of a case, its film, its clips and its demonstration, if any; a reject if libraries for
+    pictures lack."""
     if context.job.plan["lacking"]:
         yield Reject.of(Code.NOT_RENDERED, no_pictures(context.job.plan["lacking"]), suggestion=remedy("pictures"))
         return
@@ -74,6 +88,8 @@ def process(case: CaseRow, context: Context) -> Iterator[tuple[str, RenderedRow 
         yield "videos", _film(case, execution, place, context)
     if case["execution_id"] in job.plan["clips"]:
         yield from (("clips", row) for row in _clips(case, execution, place, context))
+    if case["execution_id"] in job.plan["demonstrations"]:
+        yield from (("demonstration_frames", row) for row in _demonstrated(case, execution, place, context))
     if case["execution_id"] not in job.plan["pictures"]:
         return
     for shot in snapshots(execution, home, context.homes.knowledge):
@@ -153,6 +169,33 @@ def _clips(case: CaseRow, execution: Execution, place: DrawableHome, context: Co
         }
 
 
+def _demonstrated(
+    case: CaseRow, execution: Execution, place: DrawableHome, context: Context
+) -> Iterator[DemonstratedRow]:
+    """Write a demonstration's arrays, and give the rows of its pictures."""
+    from hearth.rendering.film import demonstrations
+
+    job, known = context.job, context.homes.knowledge
+    numbers = {thing.name: thing.id for thing in known.objects.values()}
+    found = demonstrations.demonstration(execution, place.graph, known, numbers, job.settings.seed)
+    file = f"{FRAMES}/{_folder(case['execution_id'])}/{demonstrations.FILE}"
+    path = job.folder / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_bytes(path, demonstrations.stored(found))
+    for number in range(len(found.class_ids)):
+        yield {
+            "execution_id": case["execution_id"],
+            "tick": number,
+            "index": number,
+            "width": found.camera.width,
+            "height": found.camera.height,
+            "intrinsics": _intrinsics(found.camera),
+            "pose": _pose(found.camera),
+            "layout_made": place.made,
+            "file": file,
+        }
+
+
 def _track(track: list[tuple[int, Camera]]) -> Iterator[TrackRow]:
     """The pictures at which the tick or the camera changes."""
     before: tuple[int, Camera] | None = None
@@ -214,18 +257,21 @@ def prepare(settings: Settings) -> Plan:
     ran: list[tuple[str, str, str]] = []
     files: dict[str, str] = {}
     for file, row in _sampled(settings):
-        if len(found) >= wanted and not settings.clips:
+        if len(found) >= wanted and not settings.clips and not settings.demonstrations:
             break
         if row["executable"] and homes.in_catalog(row["home"]):
             if len(found) < wanted:
                 found.setdefault(row["program_id"], (row["execution_id"], file))
-            if settings.clips:
+            if settings.clips or settings.demonstrations:
                 ran.append((row["program_id"], row["execution_id"], row["home"]))
                 files[row["execution_id"]] = file
     films = sorted(name for name, _ in list(found.values())[: settings.videos])
     clips = dict(sorted(clip_cases.chosen(ran, homes.names(), settings.clips, settings.seed).items()))
+    above = demonstration_cases.chosen(ran, homes.names(), settings.demonstrations, settings.seed)
     executions = dict(sorted([*found.values(), *((name, files[name]) for name in clips)]))
+    executions |= {name: files[name] for name in above if name not in executions}
     chosen = {"executions": executions, "pictures": sorted(dict(found.values())), "films": films, "clips": clips}
+    chosen |= {"demonstrations": above}
     return {**overlays(settings), **chosen, "lacking": lacking("pictures")}
 
 
@@ -286,10 +332,10 @@ def open_context(job: Job) -> Context:
 
 STAGE = Stage(
     name="render",
-    tables={"": RENDERED, "videos": FILMED, "clips": CLIPPED},
+    tables={"": RENDERED, "videos": FILMED, "clips": CLIPPED, "demonstration_frames": DEMONSTRATED},
     process=process,
     reads=("sample",),
-    settings=("pictures", "videos", "clips", "seed"),
+    settings=("pictures", "videos", "clips", "demonstrations", "seed"),
     open=open_context,
     prepare=prepare,
     facts=overlays_used,

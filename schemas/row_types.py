@@ -454,6 +454,24 @@ class ClippedRow(TypedDict):
     file: Annotated[str, "the film's arrays (.npz), each (frames of the film, height, width), relative to the dataset"]
 
 
+class DemonstratedRow(TypedDict):
+    """A picture from above of an execution, as it is after a tick (thesis 5.4.3)."""
+
+    execution_id: Annotated[str, "the execution filmed"]
+    tick: Annotated[int, "the number of ticks done before the picture; 0 before the first"]
+    index: Annotated[int, "its place in the arrays of the file, from 0"]
+    width: Annotated[int, "pixels"]
+    height: Annotated[int, "pixels"]
+    intrinsics: Annotated[PinholeRow, "pinhole camera, pixels"]
+    pose: Annotated[list[float], "camera to world, 4x4 row by row"]
+    layout_made: Annotated[bool, "whether the home had no geometry, and was laid out by its relations"]
+    file: Annotated[
+        str,
+        "arrays (.npz), relative to the dataset: class_ids (pictures, height, width), as in `vocabulary`; rgb_changes "
+        "(pictures, height, width, 3), colours: each picture less the one before, modulo 256",
+    ]
+
+
 class RejectRow(TypedDict):
     """A fault of a record that was refused."""
 
@@ -632,6 +650,12 @@ class VideoRow(FilmedRow):
 
 class ClipRow(ClippedRow):
     """A clip of an execution's film."""
+
+    home: Annotated[str, "where it was filmed"]
+
+
+class DemonstrationFrameRow(DemonstratedRow):
+    """A picture from above of an execution, with class masks: what models of demonstrations see."""
 
     home: Annotated[str, "where it was filmed"]
 

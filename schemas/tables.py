@@ -72,6 +72,7 @@ SKETCHED: Final = _schema(row_types.SketchRow)
 RENDERED: Final = _schema(row_types.RenderedRow)
 FILMED: Final = _schema(row_types.FilmedRow)
 CLIPPED: Final = _schema(row_types.ClippedRow)
+DEMONSTRATED: Final = _schema(row_types.DemonstratedRow)
 REJECTED: Final = _schema(row_types.RejectedRow)
 
 _VERSIONS: Final = _schema(row_types.VersionsRow)
@@ -94,6 +95,7 @@ TABLES: Final[dict[str, pa.Schema]] = {
         "frames": _schema(row_types.FrameRow),
         "videos": _schema(row_types.VideoRow),
         "clips": _schema(row_types.ClipRow),
+        "demonstration_frames": _schema(row_types.DemonstrationFrameRow),
         "vocabulary": _schema(row_types.NameRow),
         "rejects": _schema(row_types.RejectRow),
         "ledger": _schema(row_types.LedgerRow),

@@ -19,6 +19,8 @@ CREATE VIEW sketches AS SELECT * FROM read_parquet(dataset_folder() || 'sketches
 CREATE VIEW frames AS SELECT * FROM read_parquet(dataset_folder() || 'frames/*.parquet');
 CREATE VIEW videos AS SELECT * FROM read_parquet(dataset_folder() || 'videos/*.parquet');
 CREATE VIEW clips AS SELECT * FROM read_parquet(dataset_folder() || 'clips/*.parquet');
+CREATE VIEW demonstration_frames AS
+SELECT * FROM read_parquet(dataset_folder() || 'demonstration_frames/*.parquet');
 CREATE VIEW vocabulary AS SELECT * FROM read_parquet(dataset_folder() || 'vocabulary/*.parquet');
 CREATE VIEW rejects AS SELECT * FROM read_parquet(dataset_folder() || 'rejects/*.parquet');
 CREATE VIEW ledger AS SELECT * FROM read_parquet(dataset_folder() || 'ledger/*.parquet');

@@ -25,10 +25,15 @@ if TYPE_CHECKING:
 NOTHING = 0
 """Number of no object."""
 
-MASKS, COLOURS = "class_ids", "rgb"
-"""Names of a film's arrays: class masks, which every film has, and colours."""
+MASKS, COLOURS, CHANGES = "class_ids", "rgb", "rgb_changes"
+"""Names of a film's arrays: class masks, which every film has, and colours; those of demonstrations are changes from
+picture to picture."""
 
-FORMS: Mapping[str, tuple[int, type[np.generic]]] = {MASKS: (3, np.uint16), COLOURS: (4, np.uint8)}
+FORMS: Mapping[str, tuple[int, type[np.generic]]] = {
+    MASKS: (3, np.uint16),
+    COLOURS: (4, np.uint8),
+    CHANGES: (4, np.uint8),
+}
 """Dimensions and kind of numbers of a film's arrays."""
 
 LARGEST = 64 << 20

@@ -1,4 +1,4 @@
-"""Tables 5.2 to 5.4: programs from sketches and graphs, the thesis's figures beside ours beside yardsticks."""
+"""Tables 5.2 to 5.5: programs from sketches and graphs, the thesis's figures beside ours beside yardsticks."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hearth.datasets.format.sketch_choice import ANNOTATED
 from hearth.models.data import requests
+from hearth.models.demonstrations.demo_sketches import demonstrated
+from hearth.models.demonstrations.demonstration_data import Demonstrations
 from hearth.models.evaluation import by_group
 from hearth.models.interface import Request, Steps
 from hearth.models.model_registry import MODELS, restore
@@ -25,12 +27,16 @@ from hearth.storage.parallel import Seen, unseen
 if TYPE_CHECKING:
     from hearth.datasets.dataset import Dataset
 
-TABLES = ("5.2", "5.3", "5.4")
+TABLES = ("5.2", "5.3", "5.4", "5.5")
+
+PREDICTED = ("5.4", "5.5")
+"""Tables of sketches that are predicted, from texts and from demonstrations."""
 
 COLUMNS = {"lcs": "lcs_step", "lcs_instances": "lcs_step_instances", "f1_relation": "f1_relation",
            "f1_state": "f1_state", "f1": "f1", "goal": "goal", "goal_fraction": "goal_fraction",
            "executable": "executable", "parsable": "parsable"}  # fmt: skip
-"""Columns of the tables, and the scores that they show; the thesis's LCS is by instance. 5.4 has `sketch`, too."""
+"""Columns of the tables, and the scores that they show; the thesis's LCS is by instance. Those of
+`PREDICTED` have `sketch`, too."""
 
 MOST = 400
 """Test executions; of more, a sample spread over all of them."""
@@ -72,7 +78,8 @@ def table(
 
     Args:
         number: 5.2 and 5.3, from given sketches, over originals and augmented programs; 5.4, from sketches that models
-            of texts write, over originals.
+            of texts write, over originals; 5.5, from sketches that models of demonstrations write, over executions that
+            have one.
         dataset: with the executions.
         split: of the dataset.
         models: checkpoints; several of one model are its seeds.
@@ -83,13 +90,16 @@ def table(
         seen: reports progress.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if there is no such table, or none of the models of 5.4 writes sketches.
+        HearthError: BAD_ARGUMENT, if there is no such table, or none of the models of 5.4 or 5.5 writes such sketches.
     """
     if number not in TABLES:
         raise HearthError.of(Code.BAD_ARGUMENT, f"no table `{number}` of programs from sketches",
                              suggestion=f"there are {', '.join(TABLES)}")  # fmt: skip
     test = baselines.examples(dataset, split, "test", number == "5.4", sketches)
     every = [each for each in test if each.sketch]
+    if number == "5.5":
+        there = Demonstrations.of(dataset)
+        every = [each for each in every if each.execution_id in there.files]
     test = every[:: max(1, -(-len(every) // most))]
     train = baselines.examples(dataset, split, "train", True, sketches)
     if not test or not train:
@@ -97,7 +107,10 @@ def table(
     names = [each.execution_id for each in test]
     methods = [*_yardsticks(train, test, seed), *_trained(models, beam)]
     if number == "5.4":
-        methods = _after_texts(_texts(models, beam, dataset, names), methods)
+        methods = _after(_texts(models, beam, dataset, names), methods)
+    elif number == "5.5":
+        written = list(demonstrated(models, beam, there, split, names, seed))
+        methods = [*(each for each in methods if each.name == "empty program"), *_after(written, methods)]
     elif number == "5.3":
         methods = [each for each in methods if each.name == "planner" or "(K=" in each.name]
     answers = _answers(dataset, names, methods, sketches, seen)
@@ -231,7 +244,7 @@ def _texts(
     """The models that write sketches, and their sketches by execution."""
     made: list[tuple[str, Mapping[str, Steps]]] = []
     for name, trained, _ in _restored(models):
-        if MODELS[name].output == "sketch":
+        if MODELS[name].output == "sketch" and MODELS[name].input == "text":
             written = predict(trained, dataset, names, beam, text=True)
             made.append((name, dict(written)))
     if not made:
@@ -240,11 +253,12 @@ def _texts(
     return made
 
 
-def _after_texts(texts: Sequence[tuple[str, Mapping[str, Steps]]], methods: Sequence[Method]) -> list[Method]:
+def _after(texts: Sequence[tuple[str, Mapping[str, Steps]]], methods: Sequence[Method]) -> list[Method]:
     """Each model after each model of sketches, and the planner, which has the given sketches, too."""
     planner = next(each for each in methods if each.name == "planner")
     writers = [planner, *(each for each in methods if each.of == "ours")]
     made = [planner._replace(name="planner, given sketches")]
     for name, written in texts:
-        made += [each._replace(name=f"{name}, {each.name}", of="ours", sketches=written) for each in writers]
+        of = "ours" if name in MODELS else "yardstick"
+        made += [each._replace(name=f"{name}, {each.name}", of=of, sketches=written) for each in writers]
     return made

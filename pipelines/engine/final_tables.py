@@ -60,6 +60,7 @@ def finish(job: Job, counts: Counts) -> None:
         "frames": lambda: _frames(job, ""),
         "videos": lambda: _frames(job, "videos"),
         "clips": lambda: _frames(job, "clips"),
+        "demonstration_frames": lambda: _frames(job, "demonstration_frames"),
         "vocabulary": lambda: _vocabulary(homes.knowledge),
         "rejects": lambda: _rejects(job),
         "ledger": lambda: _ledger(job, counts),
@@ -248,7 +249,7 @@ def _home_edges(job: Job, homes: Homes) -> Iterator[forms.HomeEdgeRow]:
             yield {"home": name, "source": edge.source, "relation": edge.relation, "target": edge.target}
 
 
-def _frames(job: Job, kind: str) -> Iterator[forms.FrameRow | forms.VideoRow | forms.ClipRow]:
+def _frames(job: Job, kind: str) -> Iterator[Row]:
     drawn = {row["execution_id"] for row in _rows(job, "render", kind, ["execution_id"])}
     home: dict[str, str] = {}
     for path in (job.folder / "executions").glob("part-*.parquet") if drawn else ():

@@ -31,6 +31,7 @@ class Settings:
         pictures: number of programs to picture, step by step.
         videos: number of them to film.
         clips: number of programs to film small, for clips.
+        demonstrations: number of programs to picture from above with class masks, step by step.
         time_limit: seconds that a record may take in a stage; 0 for no limit. Records that take longer are tried again
             by the next build. Scanning a packed file may take a sixth of it, and half of it for each megabyte.
         store: URL of the store of which `out` is a local copy (see `stores`), or "".
@@ -54,6 +55,7 @@ class Settings:
     pictures: int = 3
     videos: int = 0
     clips: int = 0
+    demonstrations: int = 0
     time_limit: float = 60.0
     store: str = ""
     revision: str = ""

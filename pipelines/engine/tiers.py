@@ -20,11 +20,13 @@ TIERS: dict[str, dict[str, int]] = {
     "full": {"homes_each": 2, "variants": 6, "target": 30_000, "pictures": 0, "videos": 0},
     "frames": {"homes_each": 1, "variants": 1, "pictures": 200, "videos": 20},
     "clips": {"homes_each": 0, "variants": 0, "pictures": 0, "videos": 0, "clips": 600},
+    "demos": {"homes_each": 1, "variants": 0, "pictures": 0, "videos": 0, "demonstrations": 2_000},
 }
 """`standard` has the whole embedded corpus, each program in two homes, and takes minutes; `first` its first part in all
 homes, as versions before built it; `mini` is small, for trying things out; `full` has all programs, augmented to
 30,000, as text and graphs; `frames` has every program about once, with many pictures and some films; `clips` films 600
-programs small, in the homes of their part, as some 20,000 clips of two seconds."""
+programs small, in the homes of their part, as some 20,000 clips of two seconds; `demos` has every program once, and
+pictures 2,000 of them from above, with class masks."""
 
 
 def tiered(tier: str, options: Mapping[str, Any], given: Container[str]) -> dict[str, Any]:

@@ -14,7 +14,15 @@ def filmed(tmp_path_factory, build_folder):
     program = folder / "bed.txt"
     program.write_text("Rest\nLie down.\n\n[Walk] <bed> (1)\n")
     built = build_folder(
-        folder / "out", [program], homes=("maple",), homes_folder=None, pictures=1, videos=1, clips=1, variants=0
+        folder / "out",
+        [program],
+        homes=("maple",),
+        homes_folder=None,
+        pictures=1,
+        videos=1,
+        clips=1,
+        demonstrations=1,
+        variants=0,
     )
     return built.run_all()
 
@@ -109,3 +117,22 @@ def test_clips_are_read_as_arrays(filmed):
         Clips.of(ds, part, array=COLOURS)
     with pytest.raises(HearthError, match="of the part"):
         Clips.of(ds, {"train": "test"}.get(part, "train"))
+
+
+def test_demonstrations_have_a_picture_a_tick_from_above(filmed):
+    import numpy as np
+
+    import hearth
+
+    rows = filmed.rows("render/demonstration_frames")
+    assert [(row["tick"], row["index"], row["width"], row["height"]) for row in rows] == [
+        (0, 0, 320, 240),
+        (1, 1, 320, 240),
+    ]
+    with np.load(filmed.out / "render" / rows[0]["file"], allow_pickle=False) as file:
+        assert file["class_ids"].shape == (2, 240, 320)
+        assert file["rgb_changes"].shape == (2, 240, 320, 3)
+    ds = hearth.load(filmed.out)
+    assert ds.rows("SELECT count(*), any_value(home) FROM demonstration_frames")[1] == [(2, "maple")]
+    assert (ds.folder / rows[0]["file"]).is_file()
+    assert hearth.verify(filmed.out).faults == ()

@@ -27,7 +27,7 @@ def test_who_wants_no_pictures_wants_no_films():
 
 def test_mini_and_full_have_no_pictures_and_only_mini_is_cut():
     found = {name: tiered(name, PLAIN, []) for name in TIERS}
-    assert [name for name, options in found.items() if not options["pictures"]] == ["mini", "full", "clips"]
+    assert [name for name, options in found.items() if not options["pictures"]] == ["mini", "full", "clips", "demos"]
     assert [name for name, options in found.items() if options["limit"]] == ["mini"]
 
 
@@ -39,7 +39,7 @@ def test_every_option_is_one_of_a_build(name):
 def test_an_unknown_tier():
     with pytest.raises(HearthError, match="unknown tier `huge`") as caught:
         tiered("huge", PLAIN, [])
-    assert caught.value.diagnostics[0].suggestion == "tiers are standard, first, mini, full, frames, clips"
+    assert caught.value.diagnostics[0].suggestion == "tiers are standard, first, mini, full, frames, clips, demos"
 
 
 def test_the_command_takes_a_tier_and_what_was_chosen_goes_first(monkeypatch, tmp_path):

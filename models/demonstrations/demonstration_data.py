@@ -1,0 +1,118 @@
+"""Demonstrations of a published dataset: which executions have one, and their pictures from above as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hearth.models.films.clip_data import CHANGES, LARGEST, MASKS, film_array
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.storage.input_files import read_input
+from hearth.storage.names import inside
+
+if TYPE_CHECKING:
+    from hearth.datasets.dataset import Dataset
+    from hearth.models.data import Example
+
+FILE = "above.npz"
+"""Name of a demonstration's arrays in its folder."""
+
+
+class Pictures(NamedTuple):
+    """T pictures from above, at the start and after each tick.
+
+    Attributes:
+        masks: (T, H, W) class numbers.
+        colours: (T, H, W, 3).
+    """
+
+    masks: NDArray[np.uint16]
+    colours: NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Demonstrations:
+    """The demonstrations of a dataset.
+
+    Attributes:
+        dataset: where they are.
+        files: of each execution that has one.
+        person: class number of people in masks.
+    """
+
+    dataset: Dataset
+    files: Mapping[str, str]
+    person: int
+
+    @classmethod
+    def of(cls, dataset: Dataset) -> Demonstrations:
+        """All that a dataset has.
+
+        Raises:
+            HearthError: UNKNOWN_ID, if there are none.
+        """
+        rows = dataset.rows("SELECT DISTINCT execution_id, file FROM demonstration_frames ORDER BY 1")[1]
+        if not rows:
+            message = "the dataset has no demonstrations"
+            raise HearthError.of(Code.UNKNOWN_ID, message, file=str(dataset.folder),
+                                 suggestion="`make demos`, or `build --demonstrations N`, makes some")  # fmt: skip
+        return cls(dataset, dict(rows), dataset.knowledge.objects["character"].id)
+
+    def of_example(self, example: Example) -> str:
+        """The execution of an example's program that has a demonstration; "" if none has."""
+        return next((name for name in example.executions if name in self.files), "")
+
+    def pictures(self, execution: str) -> Pictures:
+        """The pictures of an execution.
+
+        Raises:
+            HearthError: DAMAGED_FILE, if its arrays are not what the table says.
+        """
+        file = self.files[execution]
+        return arrays(read_input(inside(self.dataset.folder, file), LARGEST), file)
+
+
+def read_pictures(path: Path) -> Pictures:
+    """The pictures of a file, or of a folder with one.
+
+    Raises:
+        HearthError: there is no such file; DAMAGED_FILE, if it is another.
+    """
+    file = path / FILE if path.is_dir() else path
+    return arrays(read_input(file, LARGEST), str(file))
+
+
+def is_demonstration(text: str) -> bool:
+    """Whether an argument names pictures from above: their file, or a folder with one."""
+    try:
+        path = Path(text)
+        return bool(text) and (path.name == FILE or (path / FILE).is_file())
+    except (OSError, ValueError):  # a long text, or one with a null, names nothing
+        return False
+
+
+def arrays(data: bytes, file: str) -> Pictures:
+    """The pictures of an .npz file as `rendering.film.demonstrations` stores them.
+
+    Raises:
+        HearthError: DAMAGED_FILE, if it is something else.
+    """
+    masks = film_array(BytesIO(data), file, MASKS)
+    changes = film_array(BytesIO(data), file, CHANGES)
+    if changes.shape != (*masks.shape, 3):
+        message = f"its {CHANGES} have the form {changes.shape}, its {MASKS} {masks.shape}"
+        raise HearthError.of(Code.DAMAGED_FILE, message, file=file, suggestion="fetch the dataset again")
+    return Pictures(masks, np.cumsum(changes, axis=0, dtype=np.uint8))
+
+
+def shown(demonstrations: Demonstrations, examples: Sequence[Example]) -> list[tuple[Example, str]]:
+    """The examples that have a demonstration, with its execution."""
+    found = ((each, demonstrations.of_example(each)) for each in examples)
+    return [(each, name) for each, name in found if name]
