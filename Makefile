@@ -119,7 +119,7 @@ models: .venv/.models $(call manifest,publish)  ## train the models that come wi
 
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
 	@$(HEARTH) model train clips-context $(OUT)/clips --seed $(SEED) --out models/trained/clips-context --epochs 16 --rate 0.002
-	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 30 --rate 0.002
+	@$(HEARTH) model train masks $(OUT)/clips --seed $(SEED) --out models/trained/masks --epochs 22 --rate 0.002
 
 film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
 	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --table 4.2 --table 4.3 --table 4.3b --table 4.6

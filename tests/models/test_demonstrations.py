@@ -167,13 +167,18 @@ def test_the_loss_before_training_is_the_logarithm_of_the_choices(dataset, kept,
 
 
 @pytest.mark.slow
-def test_guidance_names_what_each_step_is_about(learned, kept):
+def test_guidance_names_what_each_step_is_about(learned, dataset, kept):
+    import torch
+
     model, seen, _ = learned
     frames = frame_batch(seen, model.known, model.writer.device)
     memory = model.writer.body.encode(frames)
     done = done_batch([model.done(each) for each in kept], model.writer.device)
     assert ((memory.kept > 0) == (done.kept > 0))[done.real].float().mean() > 0.95
-    assert float(model.guidance(frames, memory, done)) < 0.5
+    before = made(DemoModel(), dataset, kept)
+    memory_before = before.writer.body.encode(frames)
+    with torch.no_grad():
+        assert model.guidance(frames, memory, done) < before.guidance(frames, memory_before, done) / 4
 
 
 @pytest.mark.parametrize("changed", [{"facts": False, "guided": 0.0, "whole": True}, {"colours": False},
