@@ -18,9 +18,11 @@ from hearth.rendering.models.textures import decode, texels
 from hearth.rendering.rays import lamplight as loops
 from hearth.rendering.rays import light_rays
 from hearth.rendering.rays.casting import Hits
-from hearth.rendering.rays.kernels import COLUMNS, gather_rows
+from hearth.rendering.rays.kernels import COLUMNS, FLAT, gather_rows
 from hearth.rendering.rays.light_rays import OPEN
 from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.shadow_loops import own_groups
+from hearth.rendering.rays.shadow_maps import occluded
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.triangles import Geometry, Part
@@ -104,6 +106,7 @@ class SurfacePoints:
         normals, flats: (M, 3) smooth and flat normals towards the viewer; flat ones are 0 for the background.
         views: (M, 3) unit vectors along the rays.
         bounds: least and greatest x and z of the points.
+        triangles: (M,) the triangles that they lie on.
     """
 
     pixels: Ints
@@ -113,6 +116,7 @@ class SurfacePoints:
     flats: Floats
     views: Floats
     bounds: Floats
+    triangles: Ints
 
 
 def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> SurfacePoints:
@@ -123,7 +127,7 @@ def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str
     points, normals, flats, views = scratch(use, 4, count, 3)
     bounds = np.empty(4, np.float32)
     light_rays.locate(pixels, rays, hits.distance, hits.u, hits.v, rows, points, normals, flats, views, bounds)
-    return SurfacePoints(pixels, rows, points, normals, flats, views, bounds)
+    return SurfacePoints(pixels, rows, points, normals, flats, views, bounds, hits.triangle[pixels])
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,22 +173,24 @@ def expose(surface: SurfacePoints, geometry: Geometry, setting: Setting, noise: 
     out, index, power = scratch("rays", count, 6), scratch("index", count, dtype=np.int32), scratch("power", count)
     # Soft shadow rays are random and can't be repeated: they are cast at static and moving things at once.
     parts = (geometry.static, geometry.moving) if setting.fine else (geometry.static,)
+    own = NO_LIGHT if setting.fine else _own_groups(surface, geometry)
     if setting.day[light_rays.D_UP]:
         light_rays.facing_sun(surface.normals, surface.flats, setting.day, power)
         found = light_rays.aim_at_sun(points, power, setting.day, noise, out, index)
-        blocked = _blocked(parts, out[:found], 0.999)
+        blocked = _blocked(parts, out[:found], 0.999, index[:found], own, setting.day[:3])
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
             light_rays.reach(points, surface.normals, light, power)
             found = light_rays.aim_at_light(points, surface.flats, power, light, noise, out, index)
-            blocked = _blocked(parts, out[:found], 0.97, lamps=True)
+            where = light[WHERE]
+            blocked = _blocked(parts, out[:found], 0.97, index[:found], own, where, lamp=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
             lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
     for number in range(AROUND if setting.fine else 0):
         found = light_rays.aim_around(points, surface.flats, noise, number, np.float32(number / AROUND), out, index)
-        blocked = _blocked(parts, out[:found], 0.999)
+        blocked = _blocked(parts, out[:found], 0.999, index[:found], NO_LIGHT, setting.day[:0])
         light_rays.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
     return Exposure(surface.pixels, points.copy(), near, seen, lit)
 
@@ -193,15 +199,30 @@ AROUND = 1
 """Rays per point over its hemisphere in fine pictures."""
 
 
-def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = False) -> NDArray[np.bool_]:
-    """(N,) whether rays are blocked; with `lamps`, lamps do not block."""
-    stays = parts[0]
-    found = (stays.shadows if lamps else stays.caster).occluded(rays, far)
+WHERE = [*range(light_rays.L_PLACE, light_rays.L_PLACE + 3), *range(light_rays.L_AREA, light_rays.L_AREA + 4)]
+"""Columns of a light's row with its place and the area that it lights."""
+
+
+def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
+    """(M,) groups that cannot shade some points; (0,) while there are no shadow maps."""
+    maps = geometry.static.shadow_maps
+    if not maps.made:
+        return NO_LIGHT
+    own = scratch("own groups", len(surface.pixels), dtype=np.int32)
+    own_groups(surface.triangles, maps.groups(), surface.rows, surface.flats, FLAT, own)
+    return own
+
+
+def _blocked(
+    parts: Sequence[Part], rays: Floats, far: float, index: Ints, own: Ints, light: Floats, *, lamp: bool = False
+) -> NDArray[np.bool_]:
+    """(N,) whether rays are blocked; lamps do not block a lamp's rays; see `shadow_maps.occluded`."""
+    found: NDArray[np.bool_] = occluded(parts[0], rays, far, index, own, light, lamp=lamp)
     for moves in parts[1:]:
-        index = scratch("meeting", len(rays), dtype=np.int32)
-        index = index[: light_rays.meeting(rays, found, moves.boxes, index)]
-        if len(index):
-            found[index] = (moves.shadows if lamps else moves.caster).occluded(rays[index], far)
+        some = scratch("meeting", len(rays), dtype=np.int32)
+        some = some[: light_rays.meeting(rays, found, moves.boxes, some)]
+        if len(some):
+            found[some] = (moves.shadows if lamp else moves.caster).occluded(rays[some], far)
     return found
 
 
@@ -296,6 +317,7 @@ def whole(
     pixels: Sequence[Ints], rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes
 ) -> list[Exposure]:
     """Draft colours of pixels, chunk by chunk; returns the exposures with static occlusion."""
+    geometry.static.shadow_maps.make()
 
     def work(chunk: Ints) -> Exposure:
         surface = located(chunk, rays, hits, geometry)

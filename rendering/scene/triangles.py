@@ -13,6 +13,7 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
 from hearth.rendering.rays.casting import Caster, Hits
 from hearth.rendering.rays.kernels import COLUMNS, nearer, triangle_rows
+from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 
 Numbers = NDArray[np.integer[Any]]
@@ -58,6 +59,11 @@ class Part:
         """A caster for shadows of lamps: all things but lamps that are on."""
         lamps = np.array([thing.lamp for thing in self.things], np.bool_)
         return Caster.of(self.mesh.corners[~lamps[self.owner]]) if lamps.any() else self.caster
+
+    @cached_property
+    def shadow_maps(self) -> ShadowMaps:
+        """What lights see of the things."""
+        return ShadowMaps(self)
 
     @cached_property
     def rows(self) -> Floats:
