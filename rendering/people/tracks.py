@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import atan2, degrees, hypot, pi, sin
+from math import atan2, degrees, hypot, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -33,6 +33,9 @@ RELAX, RISE, LAY, REACH, BACK, HOLD = 0.3, 1.2, 1.8, 0.6, 0.4, 0.5
 
 HEADS, HANDS = 1.1, 1.7
 """Greatest speeds of heads and hands in blends of poses, metres per second."""
+
+QUICKENING = 9.0
+"""Greatest acceleration of heads and hands in blends of poses, metres per second squared."""
 
 AT_BED = 0.5
 """Metres from where one stands beside a bed to the hips of who sits on its edge."""
@@ -255,7 +258,9 @@ def _seconds(one: Actor, other: Actor) -> float:
     least = 0.0
     for name, speed in (("head", HEADS), ("hand_r", HANDS), ("hand_l", HANDS)):
         start, end = (np.array(actor.world(tuple(found[name]))) for actor, found in ((one, a), (other, b)))
-        least = max(least, float(np.linalg.norm(end - start)) * pi / 2 / speed)
+        far = float(np.linalg.norm(end - start))
+        # An eased motion is fastest in its middle, and quickens most at its ends.
+        least = max(least, far * pi / 2 / speed, pi * sqrt(far / 2 / QUICKENING))
     return least
 
 

@@ -170,20 +170,18 @@ def expose(surface: SurfacePoints, geometry: Geometry, setting: Setting, noise: 
     near = setting.reaching(surface.bounds)
     seen = np.full((count, len(setting.lights) + 2), OPEN, np.uint8)
     lit: dict[int, Ints] = {}
-    out, index, power = scratch("rays", count, 6), scratch("index", count, dtype=np.int32), scratch("power", count)
+    out, index = scratch("rays", count, 6), scratch("index", count, dtype=np.int32)
     # Soft shadow rays are random and can't be repeated: they are cast at static and moving things at once.
     parts = (geometry.static, geometry.moving) if setting.fine else (geometry.static,)
     own = NO_LIGHT if setting.fine else _own_groups(surface, geometry)
     if setting.day[light_rays.D_UP]:
-        light_rays.facing_sun(surface.normals, surface.flats, setting.day, power)
-        found = light_rays.aim_at_sun(points, power, setting.day, noise, out, index)
+        found = light_rays.aim_at_sun(points, surface.normals, surface.flats, setting.day, noise, out, index)
         blocked = _blocked(parts, out[:found], 0.999, index[:found], own, setting.day[:3])
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
-            light_rays.reach(points, surface.normals, light, power)
-            found = light_rays.aim_at_light(points, surface.flats, power, light, noise, out, index)
+            found = light_rays.aim_at_light(points, surface.normals, surface.flats, light, noise, out, index)
             where = light[WHERE]
             blocked = _blocked(parts, out[:found], 0.97, index[:found], own, where, lamp=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
@@ -276,22 +274,9 @@ def paint(
         out: (N, 3) sRGB of all pixels, filled.
     """
     count, day = len(surface.pixels), setting.day
-    light, gloss, power = scratch("light", count, 3), scratch("gloss", count, 3), scratch("power", count)
-    gloss[:] = 0
-    loops.ambient(surface.normals, seen, day, light)
-    if day[light_rays.D_UP]:
-        light_rays.facing_sun(surface.normals, surface.flats, day, power)
-        loops.add(power, seen, SUN, day[light_rays.D_COLOR :], light)
-    polished = scratch("index", count, dtype=np.int32)
-    polished = polished[: loops.shiny(surface.rows, polished)]
-    for number in near.tolist():
-        row = setting.rows[number]
-        color = row[light_rays.L_COLOR :]
-        light_rays.reach(surface.points, surface.normals, row, power)
-        loops.add(power, seen, number + 1, color, light)
-        if len(polished):
-            faces = (surface.rows, surface.points, surface.normals, surface.views)
-            loops.add_glints(polished, *faces, power, seen, number + 1, row, color, gloss)
+    light, gloss = scratch("light", count, 3), scratch("gloss", count, 3)
+    places = (surface.points, surface.normals, surface.flats, surface.views, surface.rows)
+    loops.lighten(*places, seen, day, setting.rows, near, light, gloss)
     faces = (surface.rows, surface.normals, surface.flats, surface.views)
     atlas = (texels(), decode(), tones(), out)
     where = (surface.pixels, rays, hits.distance, hits.u, hits.v)
