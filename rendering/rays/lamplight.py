@@ -97,7 +97,7 @@ def lighten(
         x, y, z = points[k, 0], points[k, 1], points[k, 2]
         r = level * (ONE + np.float32(0.22) * ny + np.float32(0.06) * nx)
         r *= np.float32(0.15) + np.float32(0.85) * np.float32(seen[k, last]) * SHARE
-        r, g, b = r, r * np.float32(0.985), r * np.float32(0.96)
+        g, b = r * np.float32(0.985), r * np.float32(0.96)
         shine_r, shine_g, shine_b = ZERO, ZERO, ZERO
         if up and seen[k, 0] > 0 and dot3(flats[k, 0], flats[k, 1], flats[k, 2], sx, sy, sz) > ZERO:
             found = max(dot3(nx, ny, nz, sx, sy, sz), ZERO) * np.float32(seen[k, 0]) * SHARE
@@ -108,7 +108,9 @@ def lighten(
             n = near[j]
             if seen[k, n + 1] == 0:
                 continue
-            if not (lights[n, L_AREA] < x < lights[n, L_AREA + 1] and lights[n, L_AREA + 2] < z < lights[n, L_AREA + 3]):
+            if not (
+                lights[n, L_AREA] < x < lights[n, L_AREA + 1] and lights[n, L_AREA + 2] < z < lights[n, L_AREA + 3]
+            ):
                 continue
             wx, wy, wz = lights[n, L_PLACE] - x, lights[n, L_PLACE + 1] - y, lights[n, L_PLACE + 2] - z
             fx, fy, fz = lights[n, L_FACING], lights[n, L_FACING + 1], lights[n, L_FACING + 2]

@@ -29,7 +29,8 @@ def labels(triangle: Ints, owners: Ints, values: Any, out: Any) -> None:
 
 @kernel
 def facings(
-    rays: Floats, triangle: Ints, u: Floats, v: Floats, static: Floats, moving: Floats, start: int, stop: int, out: Floats
+    rays: Floats, triangle: Ints, u: Floats, v: Floats, static: Floats, moving: Floats, start: int, stop: int,
+    out: Floats,
 ) -> None:  # fmt: skip
     """Write (N, 3) unit normals towards the viewer of the pixels from `start` to `stop`; 0 for the background.
 

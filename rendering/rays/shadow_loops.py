@@ -1,8 +1,8 @@
 """Compiled loops of shadow maps: triangles are drawn into them with bounds, and points are looked up.
 
 A map is a picture that a light has of the things: for each texel, bounds of how near they are to the light. Nearness is
-the inverse depth for a lamp, and the height towards the sun. Bounds hold for the whole texel, and for what touches it at
-a corner, so that what they say of a point is what a ray would say.
+the inverse depth for a lamp, and the height towards the sun. Bounds hold for the whole texel, and for what touches it
+at a corner, so that what they say of a point is what a ray would say.
 """
 
 from typing import Any
@@ -25,7 +25,7 @@ LEAST_DEPTH = 0.7
 """Metres from a lamp from which on points are looked up: what is cut off is beyond the end of their rays."""
 
 TOO_NEAR = 4.0
-"""Nearness to a lamp up to which a triangle is said to cast a shadow: nearer ones may lie beyond the end of the rays."""
+"""Nearness to a lamp up to which a triangle is said to cast a shadow: nearer ones may lie beyond the rays' end."""
 
 DARK, LIT, UNSURE = 0, 1, 2
 

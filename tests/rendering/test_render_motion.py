@@ -16,7 +16,7 @@ from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import Writer, film, record, times
 from hearth.rendering.people.motion import frames, spans
 from hearth.rendering.people.tracks import RELAX, blended
-from hearth.rendering.scene.routes import path, ways_of
+from hearth.rendering.scene.routes import led_on, path, ways_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
@@ -287,6 +287,23 @@ def test_one_squeezes_through_where_there_is_no_space_for_two():
     way = path(ways_of([ROOM], [ROOM, *shelves]), (-1.5, 1.0), (1.5, 1.0))
     assert way[-1] == (1.5, 1.0)
     assert not any(crosses(way, shelf) for shelf in shelves)
+
+
+def test_to_where_the_world_has_somebody_one_passes_between_things_however_near():
+    """By the spaces that bodies need no way leads through a gap of 15 cm; the straight line leads through a shelf."""
+    shelves = [
+        standing(2, "bookshelf", (0, 1, -1.0), (0.4, 2, 2)),
+        standing(3, "bookshelf", (0, 1, 1.1), (0.4, 2, 1.8)),
+    ]
+    floor, goal = ways_of([ROOM], [ROOM, *shelves]), (1.5, 1.0)
+    route = path(floor, (-1.5, 1.0), goal)
+    assert route[-1] != goal
+    led = led_on(floor, route, goal)
+    assert led[: len(route)] == route
+    assert led[-1] == goal
+    assert not any(crosses(led, shelf) for shelf in shelves)
+    assert led_on(None, route, goal) == (*route, goal)
+    assert led_on(floor, led, goal) == led
 
 
 def test_open_leaves_are_walked_around_and_closed_ones_are_not():
