@@ -1,4 +1,4 @@
-"""Compare with MuJoCo's software renderer: `python benchmarks/mujoco_speed.py [--home NAME] [--frames N]`.
+"""Compare with MuJoCo's software renderer: `python benchmarks/beside_mujoco.py [--home NAME] [--frames N]`.
 
 It needs the wheel `mujoco`, which nothing else here needs, and Mesa's software EGL. The scenario is that of
 `render_speed`: a person walks through the largest room, and ten things move; MuJoCo gets the same triangles, with one
