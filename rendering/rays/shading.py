@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,19 +177,20 @@ def expose(surface: SurfacePoints, geometry: Geometry, setting: Setting, noise: 
     own = NO_LIGHT if setting.fine else _own_groups(surface, geometry)
     if setting.day[light_rays.D_UP]:
         found = light_rays.aim_at_sun(points, surface.normals, surface.flats, setting.day, noise, out, index)
-        blocked = _blocked(parts, out[:found], 0.999, index[:found], own, setting.day[:3])
+        known = None if setting.fine else Looked(index[:found], own, setting.day[:3])
+        blocked = _blocked(parts, out[:found], 0.999, known)
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
             found = light_rays.aim_at_light(points, surface.normals, surface.flats, light, noise, out, index)
-            where = light[WHERE]
-            blocked = _blocked(parts, out[:found], 0.97, index[:found], own, where, lamp=True)
+            known = None if setting.fine else Looked(index[:found], own, light[WHERE])
+            blocked = _blocked(parts, out[:found], 0.97, known, lamp=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
             lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
     for number in range(AROUND if setting.fine else 0):
         found = light_rays.aim_around(points, surface.flats, noise, number, np.float32(number / AROUND), out, index)
-        blocked = _blocked(parts, out[:found], 0.999, index[:found], NO_LIGHT, setting.day[:0])
+        blocked = _blocked(parts, out[:found], 0.999)
         light_rays.darken(index[:found], blocked, seen, seen.shape[1] - 1, np.uint8(255 // AROUND))
     return Exposure(surface.pixels, points.copy(), near, seen, lit)
 
@@ -211,11 +213,21 @@ def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
     return own
 
 
+class Looked(NamedTuple):
+    """What rays to a light are looked up by: see `shadow_maps.occluded`."""
+
+    index: Ints
+    own: Ints
+    light: Floats
+
+
 def _blocked(
-    parts: Sequence[Part], rays: Floats, far: float, index: Ints, own: Ints, light: Floats, *, lamp: bool = False
+    parts: Sequence[Part], rays: Floats, far: float, known: Looked | None = None, *, lamp: bool = False
 ) -> NDArray[np.bool_]:
-    """(N,) whether rays are blocked; lamps do not block a lamp's rays; see `shadow_maps.occluded`."""
-    found: NDArray[np.bool_] = occluded(parts[0], rays, far, index, own, light, lamp=lamp)
+    """(N,) whether rays are blocked; lamps do not block a lamp's rays."""
+    stays = parts[0]
+    caster = stays.shadows if lamp else stays.caster
+    found = caster.occluded(rays, far) if known is None else occluded(caster, stays.shadow_maps, rays, far, *known)
     for moves in parts[1:]:
         some = scratch("meeting", len(rays), dtype=np.int32)
         some = some[: light_rays.meeting(rays, found, moves.boxes, some)]

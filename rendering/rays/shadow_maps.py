@@ -8,19 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from threading import Lock
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hearth.rendering.arrays import Floats, Ints
 from hearth.rendering.rays import shadow_loops as loops
+from hearth.rendering.rays.casting import Caster
 from hearth.rendering.rays.memory import scratch
 from hearth.rendering.rays.threads import each
 from hearth.rendering.rays.unshaded_groups import unshaded_groups
-
-if TYPE_CHECKING:
-    from hearth.rendering.scene.triangles import Part
 
 WORTH = 600_000
 """Rays to a light from which on its map is made: about what making it costs."""
@@ -58,23 +56,28 @@ class ShadowMap(NamedTuple):
 
 @dataclass(eq=False)
 class ShadowMaps:
-    """The maps of a part's lights, and how often each light was asked for.
+    """The maps of some things' lights, and how often each light was asked for.
 
     Attributes:
-        part: the static things.
-        groups: (T,) of their triangles that do not shade each other.
+        corners: (T, 3, 3) of the things' triangles.
+        owner: (T,) index of each triangle's thing.
+        lamps: (things,) whether each is a lamp that is on, which casts no shadow by lamps.
+        asked: rays so far, by light: a lamp's place and the area that it lights, or the direction to the sun.
+        made: the maps by light.
     """
 
-    part: Part
+    corners: Floats
+    owner: NDArray[np.int32]
+    lamps: NDArray[np.bool_]
     asked: dict[LampArea, int] = field(default_factory=dict)
     made: dict[LampArea, ShadowMap] = field(default_factory=dict)
     lock: Any = field(default_factory=Lock)
     _groups: Ints | None = None
 
     def groups(self) -> Ints:
-        """The groups; made at their first use."""
+        """(T,) of the triangles that do not shade each other, see `unshaded_groups`; made at their first use."""
         if self._groups is None:
-            self._groups = unshaded_groups(self.part.mesh.corners, self.part.owner)
+            self._groups = unshaded_groups(self.corners, self.owner)
         return self._groups
 
     def of(self, light: Floats, rays: int) -> ShadowMap | None:
@@ -102,19 +105,18 @@ class ShadowMaps:
 
     def _lamp(self, light: Floats) -> ShadowMap:
         place, (west, east, south, north) = light[:3].astype(np.float64), light[3:7]
-        low, high = self.part.mesh.corners.min(axis=1), self.part.mesh.corners.max(axis=1)
+        low, high = self.corners.min(axis=1), self.corners.max(axis=1)
         near = (low[:, 0] <= max(east, place[0])) & (high[:, 0] >= min(west, place[0]))
         near &= (low[:, 2] <= max(north, place[2])) & (high[:, 2] >= min(south, place[2]))
-        lamps = np.array([thing.lamp for thing in self.part.things], np.bool_)
-        drawn = np.flatnonzero(near & ~lamps[self.part.owner])
+        drawn = np.flatnonzero(near & ~self.lamps[self.owner])
         bounds = _empty(6, CUBE, CUBE)
         for face in range(6):
             own = [values[face] for values in bounds]
-            loops.draw_cube(self.part.mesh.corners, drawn, self.groups(), place, face, *own)
+            loops.draw_cube(self.corners, drawn, self.groups(), place, face, *own)
         return ShadowMap(*bounds)
 
     def _sun(self, way: Floats) -> ShadowMap:
-        corners, sun = self.part.mesh.corners, way.astype(np.float64)
+        corners, sun = self.corners, way.astype(np.float64)
         right = np.cross((0.0, 1.0, 0.0), sun)
         right /= max(float(np.linalg.norm(right)), 1e-9)
         up = np.cross(sun, right)
@@ -136,19 +138,19 @@ def _empty(*shape: int) -> tuple[Floats, Floats, Floats, Ints]:
     return np.full(shape, far), np.full(shape, far), np.full(shape, far), np.full(shape, -1, np.int32)
 
 
-def occluded(part: Part, rays: Floats, far: float, index: Ints, own: Ints, light: Floats, *, lamp: bool) -> Any:
+def occluded(
+    caster: Caster, maps: ShadowMaps, rays: Floats, far: float, index: Ints, own: Ints, light: Floats
+) -> NDArray[np.bool_]:
     """(N,) whether static things block rays to a light; like `Caster.occluded`, but most are looked up.
 
     Args:
-        part: the things.
+        caster, maps: of the things.
         rays: (N, 6), with the share `far` at which they end.
         index: (N,) the points that they begin at.
         own: (M,) groups that cannot shade the points; (0,) to cast all rays.
         light: see `ShadowMaps.of`.
-        lamp: whether it is a lamp; lamps do not block its rays.
     """
-    caster = part.shadows if lamp else part.caster
-    known = part.shadow_maps.of(light, len(rays)) if caster.count else None
+    known = maps.of(light, len(rays)) if caster.count else None
     if known is None or not len(own):
         return caster.occluded(rays, far)
     blocked: NDArray[np.bool_] = np.empty(len(rays), np.bool_)

@@ -72,6 +72,12 @@ def test_no_map_is_made_for_a_single_picture():
     assert not shown.static.whole.shadow_maps.made
 
 
+def test_fine_pictures_whose_shadows_are_soft_ask_for_no_map():
+    shown = scene(0)
+    render(shown, CAMERA, ("rgb",), quality="fine")
+    assert not shown.static.whole.shadow_maps.asked
+
+
 def test_a_lookup_is_certain_only_within_its_bounds():
     """Nearer than all else of its texel: lit. Behind what covers the texel: dark. Its own body does not shade it."""
     near, far, slack = np.float32(0.9), np.float32(0.5), np.float32(1e-5)
