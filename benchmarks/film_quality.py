@@ -5,11 +5,12 @@
 Programs of the embedded corpus, each in the next of our homes. Bodies are judged at ten poses a second, pictures at
 two: walks through solids; steps in which the person and what the step is about can be recognised (1.5 % and 0.1 % of
 the picture, less than half hidden); pictures with something nearer than 0.7 m that fills 15 %; lengths of shots. With
-`--list`, each fault.
+`--list`, each fault. After `--minutes M` no further pair is begun; the first row says how many were judged.
 """
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
@@ -120,10 +121,15 @@ def main() -> None:
     known.add_argument("--no-pictures", action="store_true")
     known.add_argument("--episodes", type=Path)
     known.add_argument("--list", action="store_true")
+    known.add_argument("--minutes", type=float, default=1e9)
     asked = known.parse_args()
     every = pairs([str(path) for path in corpus()], default(), asked.seed)
     drawn = islice(episodes(asked.episodes) if asked.episodes else every, asked.pairs)
-    found = [judged(pair, asked.seed, not asked.no_pictures) for pair in drawn]
+    began, found = time.perf_counter(), []
+    for pair in drawn:
+        found.append(judged(pair, asked.seed, not asked.no_pictures))
+        if time.perf_counter() - began > 60 * asked.minutes:
+            break
     if asked.list:
         faults(found)
     for figure in figures(found):

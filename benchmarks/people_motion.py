@@ -14,8 +14,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from collections import Counter
 from collections.abc import Iterator
+from functools import lru_cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -184,8 +186,6 @@ def _solids(trajectory: Trajectory, tick: int, shown: list[Frame], found: Found)
     apart |= {node for frame in shown for holds in frame.holds.values() for node in holds}
     things = [*scene.things, *scene.static.things]
     solid = [t for t in things if t.id not in apart and not any(part in t.class_name for part in SOFT)]
-    corners = np.concatenate([placed(thing).corners for thing in solid])
-    owners = np.repeat(np.arange(len(solid)), [len(placed(thing)) for thing in solid])
     names, points = [], []
     for frame in shown:
         for actor in frame.actors:
@@ -196,6 +196,10 @@ def _solids(trajectory: Trajectory, tick: int, shown: list[Frame], found: Found)
                     points.append(at[name + side])
     if not points:
         return
+    # What a point is inside of has a box that the point is inside of.
+    near = [k for k, thing in enumerate(solid) if _reaches(thing, np.array(points))]
+    corners = np.concatenate([placed(solid[k]).corners for k in near]) if near else np.zeros((0, 3, 3), np.float32)
+    owners = np.repeat(np.array(near, np.int64), [len(placed(solid[k])) for k in near])
     number = np.array(points).shape[0] // sum(len(frame.actors) for frame in shown)
     inside = _inside(corners, owners, np.array(points, np.float32))
     for row, arms in zip(inside.reshape(-1, number), np.array(names).reshape(-1, number), strict=True):
@@ -206,8 +210,22 @@ def _solids(trajectory: Trajectory, tick: int, shown: list[Frame], found: Found)
                 found.places[f"{kind} in {solid[owner].class_name}"] += 1
 
 
+@lru_cache(maxsize=4096)
+def _extent(thing: Thing) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    low, high = placed(thing).bounds()
+    return low - 1e-3, high + 1e-3
+
+
+def _reaches(thing: Thing, points: NDArray[Any]) -> bool:
+    """Whether a thing's box contains any of some points."""
+    low, high = _extent(thing)
+    return bool(((points >= low) & (points <= high)).all(axis=1).any())
+
+
 def _inside(corners: NDArray[Any], owners: NDArray[Any], points: NDArray[Any]) -> NDArray[np.int64]:
     """The thing whose surfaces most rays from each point leave more often than they enter; -1 for none."""
+    if not len(corners):
+        return np.full(len(points), -1)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     scene, count = Caster.of(corners).scene, int(owners.max()) + 1
     votes: Counter[int] = Counter()
@@ -232,13 +250,17 @@ def main() -> None:
     options.add_argument("--pairs", type=int, default=300)
     options.add_argument("--seed", type=int, default=0)
     options.add_argument("--json", type=Path)
+    options.add_argument("--minutes", type=float, default=1e9, help="after which no further pair is begun")
     options.add_argument("--worst", type=int, default=12, help="number of most frequent faults to print")
     chosen = options.parse_args()
     found = Found([], [], Counter(), [], [], [], Counter())
     count = 0
+    began = time.perf_counter()
     for _, trajectory in drawn(chosen.pairs, chosen.seed):
         measured(trajectory, found)
         count += 1
+        if time.perf_counter() - began > 60 * chosen.minutes:
+            break
     figures = summary(found, count)
     for name, value in figures.items():
         print(f"{name:44} {value:.4g}")

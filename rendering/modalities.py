@@ -112,9 +112,12 @@ def _classes(shot: Shot, quality: str) -> Image:
 def _normals(shot: Shot, quality: str) -> Image:
     out = np.empty((len(shot.rays), 3), np.float32)
 
+    _, triangle, u, v = shot.hits
+    rows = (shot.geometry.static.rows, shot.geometry.moving.rows)
+
     def work(chunk: NDArray[np.int32]) -> None:
-        surface = shading.located(chunk, shot.rays, shot.hits, shot.geometry)
-        maps.facings(chunk, surface.normals, out)
+        part = int(chunk[0]), int(chunk[-1]) + 1
+        maps.facings(shot.rays, triangle, u, v, *rows, *part, out)
 
     each(work, shading.chunks(everywhere(len(shot.rays))))
     return shot.image(out)

@@ -11,7 +11,7 @@ from hearth.rendering.cameras.visibility import objects_of
 from hearth.rendering.film.snapshots import AUTO, Trajectory
 from hearth.rendering.film.video import CameraSelector
 from hearth.rendering.people.motion import frames
-from hearth.rendering.rays.shot import shoot
+from hearth.rendering.rays.still_cameras import StillCameras
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.program import Step
 
@@ -56,10 +56,11 @@ def film_quality(trajectory: Trajectory, home: EnvironmentGraph, view: str = AUT
     keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
     shown: dict[tuple[int, int], bool] = {}
     cameras: list[Camera] = []
+    pictures = StillCameras()
     blocked = 0
     for frame in frames(trajectory, RATE, trajectory.variation.speed):
         cameras.append(selector.camera(frame))
-        shot = shoot(frame.scene, cameras[-1])
+        shot = pictures.shoot(frame.scene, cameras[-1])
         blocked += in_the_way(shot)
         for step in frame.steps:
             key = frame.tick, step.agent

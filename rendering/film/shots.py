@@ -19,7 +19,7 @@ from hearth.rendering.cameras.visibility import objects_of
 from hearth.rendering.film.cuts import Acts, States, Worths, best_cut
 from hearth.rendering.film.snapshots import Trajectory, named_nodes
 from hearth.rendering.people.motion import Frame, frames
-from hearth.rendering.rays.shot import Shot, shoot
+from hearth.rendering.rays.still_cameras import StillCameras
 from hearth.schemas.graph import Box, EnvironmentGraph, Spot
 from hearth.schemas.program import Step
 from hearth.schemas.vocabulary import ROOM_CATEGORY
@@ -102,6 +102,7 @@ class Planner:
         self.rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY and node.box}
         self.keyframes = {keyframe.tick: keyframe for keyframe in trajectory.keyframes}
         self.obstacles: dict[int, Obstacles] = {}
+        self.pictures = StillCameras()
         self.moments = list(self._moments())
         self.ticks = [moment.frame.tick for moment in self.moments]
         self.agents = sorted({agent for number in range(len(self.moments)) for agent in self.acting(number)})[:MOST]
@@ -253,7 +254,7 @@ class Planner:
         """Whether a camera's picture at a moment shows the act of an agent, by its pixels."""
         frame = self.moments[number].frame
         step = next((step for step in frame.steps if step.agent == agent), None)
-        shot: Shot = shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
+        shot = self.pictures.shoot(frame.scene, replace(camera, width=JUDGED[0], height=JUDGED[1]))
         objects = objects_of(step, self.trajectory, self.keyframes[frame.tick]) if step else ()
         return not in_the_way(shot) and shows(shot, frame.actors[agent].node.id, objects)
 

@@ -41,8 +41,9 @@ class Mesh:
         """Lowest and highest corner of the bounding box; zeros for an empty mesh."""
         if not len(self):
             return np.zeros(3, np.float32), np.zeros(3, np.float32)
-        points = self.corners.reshape(-1, 3)
-        return points.min(axis=0), points.max(axis=0)
+        # Numbers that lie side by side are compared several times as fast.
+        points = np.ascontiguousarray(self.corners.reshape(-1, 3).T)
+        return points.min(axis=1), points.max(axis=1)
 
 
 def empty() -> Mesh:

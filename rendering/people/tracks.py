@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import atan2, degrees, hypot, pi, sin
+from math import atan2, degrees, hypot, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from hearth.rendering.people.gait import Gait, Place, angle, between, eased, mov
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.reaching import posed, reach_for
 from hearth.rendering.people.skeleton import PELVIS_ON_SEAT, effort_of
-from hearth.rendering.scene.routes import WalkableFloor, path
+from hearth.rendering.scene.routes import WalkableFloor, led_on, path
 from hearth.rendering.scene.solids import Solids
 from hearth.schemas.graph import Point, Spot
 from hearth.schemas.program import Step
@@ -33,6 +33,9 @@ RELAX, RISE, LAY, REACH, BACK, HOLD = 0.3, 1.2, 1.8, 0.6, 0.4, 0.5
 
 HEADS, HANDS = 1.1, 1.7
 """Greatest speeds of heads and hands in blends of poses, metres per second."""
+
+QUICKENING = 9.0
+"""Greatest acceleration of heads and hands in blends of poses, metres per second squared."""
 
 AT_BED = 0.5
 """Metres from where one stands beside a bed to the hips of who sits on its edge."""
@@ -143,11 +146,13 @@ def _approach(segments: list[Segment], one: Actor, other: Actor, step: Step | No
         one = _got_up(segments, one, ways)
     if after == "standing":
         there = replace(other, body_pose=_with_hands(BodyPose(tucked=other.body_pose.tucked), one.body_pose))
-        return _walked(segments, one, there, path(ways, one.spot, other.spot), speed, keyframe.places.solids)
+        route = led_on(ways, path(ways, one.spot, other.spot), other.spot)
+        return _walked(segments, one, there, route, speed, keyframe.places.solids)
     stop = _beside(other, ways, one.spot)
     side = other if after == "sitting" else _on_edge(other, stop)
     turned = replace(side, spot=stop, body_pose=_with_hands(BodyPose(), one.body_pose), place=0)
-    turned = _walked(segments, one, turned, path(ways, one.spot, stop), speed, keyframe.places.solids)
+    route = led_on(ways, path(ways, one.spot, stop), stop)
+    turned = _walked(segments, one, turned, route, speed, keyframe.places.solids)
     down = replace(side, body_pose=_with_hands(BodyPose("sitting", other.body_pose.seat), one.body_pose))
     segments.append(_seating(turned, down))
     there = replace(other, body_pose=_with_hands(other.body_pose, one.body_pose))
@@ -161,7 +166,6 @@ def _walked(
 ) -> Actor:
     """Append turns and a walk to where another actor stands; returns the actor there, with arms as they are then."""
     arms = one.body_pose
-    route = route if hypot(route[-1][0] - other.spot[0], route[-1][1] - other.spot[1]) < 0.01 else (*route, other.spot)
     moves = movements(Place(*one.spot, one.yaw), route, speed, other.yaw)
     if moves:
         gait = Gait(one, moves, lambda places: arms_on_the_way(one, places, solids), other.body_pose.tucked)
@@ -255,7 +259,9 @@ def _seconds(one: Actor, other: Actor) -> float:
     least = 0.0
     for name, speed in (("head", HEADS), ("hand_r", HANDS), ("hand_l", HANDS)):
         start, end = (np.array(actor.world(tuple(found[name]))) for actor, found in ((one, a), (other, b)))
-        least = max(least, float(np.linalg.norm(end - start)) * pi / 2 / speed)
+        far = float(np.linalg.norm(end - start))
+        # An eased motion is fastest in its middle, and quickens most at its ends.
+        least = max(least, far * pi / 2 / speed, pi * sqrt(far / 2 / QUICKENING))
     return least
 
 

@@ -27,7 +27,23 @@ from hearth.rendering.rays.kernels import (
     kernel,
     root,
 )
-from hearth.rendering.rays.light_rays import D_AMBIENT, D_HORIZON, D_PLAIN, D_SKY, D_ZENITH, FAINT
+from hearth.rendering.rays.light_rays import (
+    D_AMBIENT,
+    D_COLOR,
+    D_HORIZON,
+    D_PLAIN,
+    D_SKY,
+    D_SUN,
+    D_UP,
+    D_ZENITH,
+    FAINT,
+    L_AREA,
+    L_COLOR,
+    L_FACING,
+    L_PLACE,
+    L_WINDOW,
+    reaching,
+)
 
 GROUND = np.float32(0.55)
 """Brightness of the plain background around a home in views from above."""
@@ -43,61 +59,74 @@ TONE_SCALE = np.float32(TONE_STEPS / 4.0)
 
 
 @kernel
-def ambient(normals: Floats, seen: Any, day: Floats, light: Floats) -> None:
-    """Fill in (M, 3) ambient light: more from above, less in corners."""
-    level, last = day[D_AMBIENT], seen.shape[1] - 1
-    for k in range(len(normals)):
-        found = level * (ONE + np.float32(0.22) * normals[k, 1] + np.float32(0.06) * normals[k, 0])
-        found *= np.float32(0.15) + np.float32(0.85) * np.float32(seen[k, last]) * SHARE
-        light[k, 0], light[k, 1], light[k, 2] = found, found * np.float32(0.985), found * np.float32(0.96)
+def glint(
+    shine: Any, wx: Any, wy: Any, wz: Any, nx: Any, ny: Any, nz: Any, vx: Any, vy: Any, vz: Any
+) -> Any:  # fmt: skip
+    """The share of a light that a polished surface with a normal n reflects; w leads to the light, v from the viewer.
+
+    Faint ones are 0.
+    """
+    norm = ONE / root(dot3(wx, wy, wz, wx, wy, wz))
+    hx, hy, hz = wx * norm - vx, wy * norm - vy, wz * norm - vz
+    norm = ONE / max(root(dot3(hx, hy, hz, hx, hy, hz)), np.float32(1e-6))
+    cosine = dot3(hx, hy, hz, nx, ny, nz) * norm
+    top, square = shine * shine * np.float32(1.2), cosine * cosine
+    if cosine <= ZERO or top * square * square * square * square < np.float32(1e-3):
+        return ZERO
+    return top * np.float32(np.exp((np.float32(8) + np.float32(70) * shine) * np.float32(np.log(cosine))))
 
 
 @kernel
-def add(power: Floats, seen: Any, column: int, color: Floats, light: Floats) -> None:
-    """Add a light to the incoming light."""
-    r, g, b = color[0], color[1], color[2]
-    for k in range(len(power)):
-        found = power[k] * np.float32(seen[k, column]) * SHARE
-        light[k, 0] += found * r
-        light[k, 1] += found * g
-        light[k, 2] += found * b
-
-
-@kernel
-def shiny(rows: Floats, index: Ints) -> int:
-    """Fill in the indices of points with a reflecting surface; returns their number."""
-    count = 0
-    for k in range(len(rows)):
-        if rows[k, SHINE] > ZERO:
-            index[count] = k
-            count += 1
-    return count
-
-
-@kernel
-def add_glints(
-    index: Ints, rows: Floats, points: Floats, normals: Floats, views: Floats, power: Floats, seen: Any, column: int,
-    place: Floats, color: Floats, gloss: Floats,
+def lighten(
+    points: Floats, normals: Floats, flats: Floats, views: Floats, rows: Floats, seen: Any, day: Floats, lights: Floats,
+    near: Ints, light: Floats, gloss: Floats,
 ) -> None:  # fmt: skip
-    """Add a light's specular reflection on polished surfaces; faint ones are skipped."""
-    least = FAINT / max(color[0], TINY)
-    for j in range(len(index)):
-        k = index[j]
-        shine = rows[k, SHINE]
-        if power[k] <= least or seen[k, column] == 0 or shine <= np.float32(0.05):
-            continue
-        wx, wy, wz = place[0] - points[k, 0], place[1] - points[k, 1], place[2] - points[k, 2]
-        norm = ONE / root(dot3(wx, wy, wz, wx, wy, wz))
-        hx, hy, hz = wx * norm - views[k, 0], wy * norm - views[k, 1], wz * norm - views[k, 2]
-        norm = ONE / max(root(dot3(hx, hy, hz, hx, hy, hz)), np.float32(1e-6))
-        cosine = dot3(hx, hy, hz, normals[k, 0], normals[k, 1], normals[k, 2]) * norm
-        top, square = shine * shine * np.float32(1.2), cosine * cosine
-        if cosine <= ZERO or top * square * square * square * square < np.float32(1e-3):
-            continue
-        bright = np.float32(np.exp((np.float32(8) + np.float32(70) * shine) * np.float32(np.log(cosine))))
-        bright *= top * power[k] * np.float32(seen[k, column]) * SHARE
-        for c in range(3):
-            gloss[k, c] += bright * color[c]
+    """Fill in (M, 3) incoming light and reflections.
+
+    Args:
+        points, normals, flats, views, rows: of the M points, as `locate` gives them.
+        seen: (M, lights + 2) visibility: of the sun, of each light, and of ambient light.
+        day, lights: rows of the day and of the lights.
+        near: the lights that may reach the points.
+        light, gloss: filled. Ambient light is more from above, less in corners.
+    """
+    level, last, up = day[D_AMBIENT], seen.shape[1] - 1, day[D_UP] > ZERO
+    sx, sy, sz = day[D_SUN], day[D_SUN + 1], day[D_SUN + 2]
+    for k in range(len(points)):
+        nx, ny, nz, shine = normals[k, 0], normals[k, 1], normals[k, 2], rows[k, SHINE]
+        x, y, z = points[k, 0], points[k, 1], points[k, 2]
+        r = level * (ONE + np.float32(0.22) * ny + np.float32(0.06) * nx)
+        r *= np.float32(0.15) + np.float32(0.85) * np.float32(seen[k, last]) * SHARE
+        g, b = r * np.float32(0.985), r * np.float32(0.96)
+        shine_r, shine_g, shine_b = ZERO, ZERO, ZERO
+        if up and seen[k, 0] > 0 and dot3(flats[k, 0], flats[k, 1], flats[k, 2], sx, sy, sz) > ZERO:
+            found = max(dot3(nx, ny, nz, sx, sy, sz), ZERO) * np.float32(seen[k, 0]) * SHARE
+            r += found * day[D_COLOR]
+            g += found * day[D_COLOR + 1]
+            b += found * day[D_COLOR + 2]
+        for j in range(len(near)):
+            n = near[j]
+            if seen[k, n + 1] == 0:
+                continue
+            if not (
+                lights[n, L_AREA] < x < lights[n, L_AREA + 1] and lights[n, L_AREA + 2] < z < lights[n, L_AREA + 3]
+            ):
+                continue
+            wx, wy, wz = lights[n, L_PLACE] - x, lights[n, L_PLACE + 1] - y, lights[n, L_PLACE + 2] - z
+            fx, fy, fz = lights[n, L_FACING], lights[n, L_FACING + 1], lights[n, L_FACING + 2]
+            power = reaching(wx, wy, wz, nx, ny, nz, lights[n, L_WINDOW] > ZERO, fx, fy, fz)
+            found = power * np.float32(seen[k, n + 1]) * SHARE
+            red, green, blue = lights[n, L_COLOR], lights[n, L_COLOR + 1], lights[n, L_COLOR + 2]
+            r += found * red
+            g += found * green
+            b += found * blue
+            if shine > np.float32(0.05) and power > FAINT / max(red, TINY):
+                found *= glint(shine, wx, wy, wz, nx, ny, nz, views[k, 0], views[k, 1], views[k, 2])
+                shine_r += found * red
+                shine_g += found * green
+                shine_b += found * blue
+        light[k, 0], light[k, 1], light[k, 2] = r, g, b
+        gloss[k, 0], gloss[k, 1], gloss[k, 2] = shine_r, shine_g, shine_b
 
 
 @kernel

@@ -99,16 +99,9 @@ def locate(
 
 
 @kernel
-def facing_sun(normals: Floats, flats: Floats, day: Floats, power: Floats) -> None:
-    """Fill in (M,) the sun's strength at points, before shadows."""
-    sx, sy, sz = day[D_SUN], day[D_SUN + 1], day[D_SUN + 2]
-    for k in range(len(normals)):
-        found = max(dot3(normals[k, 0], normals[k, 1], normals[k, 2], sx, sy, sz), ZERO)
-        power[k] = found if dot3(flats[k, 0], flats[k, 1], flats[k, 2], sx, sy, sz) > ZERO else ZERO
-
-
-@kernel
-def aim_at_sun(points: Floats, power: Floats, day: Floats, noise: Floats, out: Floats, index: Ints) -> int:
+def aim_at_sun(
+    points: Floats, normals: Floats, flats: Floats, day: Floats, noise: Floats, out: Floats, index: Ints
+) -> int:
     """Fill in rays to the sun and the indices of their points, for points that it may light; returns their number.
 
     `noise`, (M, 2) from 0 to 1, softens the edges of shadows; (0, 2) leaves them hard.
@@ -116,7 +109,9 @@ def aim_at_sun(points: Floats, power: Floats, day: Floats, noise: Floats, out: F
     count, soft = 0, len(noise) > 0
     x, y, z = day[D_SUN], day[D_SUN + 1], day[D_SUN + 2]
     for k in range(len(points)):
-        if power[k] <= ZERO:
+        if dot3(flats[k, 0], flats[k, 1], flats[k, 2], x, y, z) <= ZERO:
+            continue
+        if dot3(normals[k, 0], normals[k, 1], normals[k, 2], x, y, z) <= ZERO:
             continue
         one, other = (noise[k, 0] - HALF, noise[k, 1] - HALF) if soft else (ZERO, ZERO)
         out[count, 0], out[count, 1], out[count, 2] = points[k, 0], points[k, 1], points[k, 2]
@@ -147,26 +142,16 @@ def strength(window: bool, cosine: Any, leaving: Any, square: Any) -> Any:
 
 
 @kernel
-def reach(points: Floats, normals: Floats, light: Floats, power: Floats) -> None:
-    """Fill in (M,) a light's strength at points, before shadows."""
-    lx, ly, lz, window = light[L_PLACE], light[L_PLACE + 1], light[L_PLACE + 2], light[L_WINDOW] > ZERO
-    fx, fy, fz = light[L_FACING], light[L_FACING + 1], light[L_FACING + 2]
-    west, east, south, north = light[L_AREA], light[L_AREA + 1], light[L_AREA + 2], light[L_AREA + 3]
-    for k in range(len(points)):
-        x, y, z = points[k, 0], points[k, 1], points[k, 2]
-        if not (west < x < east and south < z < north):
-            power[k] = ZERO
-            continue
-        wx, wy, wz = lx - x, ly - y, lz - z
-        square = dot3(wx, wy, wz, wx, wy, wz)
-        norm = ONE / root(square)
-        cosine = dot3(normals[k, 0], normals[k, 1], normals[k, 2], wx, wy, wz) * norm
-        power[k] = strength(window, cosine, -dot3(fx, fy, fz, wx, wy, wz) * norm, square)
+def reaching(wx: Any, wy: Any, wz: Any, nx: Any, ny: Any, nz: Any, window: bool, fx: Any, fy: Any, fz: Any) -> Any:
+    """A light's strength, before shadows, at a point with a normal n, from which w leads to it; a window faces f."""
+    square = dot3(wx, wy, wz, wx, wy, wz)
+    norm = ONE / root(square)
+    return strength(window, dot3(nx, ny, nz, wx, wy, wz) * norm, -dot3(fx, fy, fz, wx, wy, wz) * norm, square)
 
 
 @kernel
 def aim_at_light(
-    points: Floats, flats: Floats, power: Floats, light: Floats, noise: Floats, out: Floats, index: Ints
+    points: Floats, normals: Floats, flats: Floats, light: Floats, noise: Floats, out: Floats, index: Ints
 ) -> int:
     """Fill in rays to a light and the indices of their points, for points that it may light; returns their number.
 
@@ -175,10 +160,12 @@ def aim_at_light(
     count, soft, least = 0, len(noise) > 0, FAINT / max(light[L_COLOR], TINY)
     lx, ly, lz = light[L_PLACE], light[L_PLACE + 1], light[L_PLACE + 2]
     sx, sy, sz = light[L_SPAN], light[L_SPAN + 1], light[L_SPAN + 2]
+    fx, fy, fz, window = light[L_FACING], light[L_FACING + 1], light[L_FACING + 2], light[L_WINDOW] > ZERO
+    west, east, south, north = light[L_AREA], light[L_AREA + 1], light[L_AREA + 2], light[L_AREA + 3]
     for k in range(len(points)):
-        if power[k] <= least:
-            continue
         x, y, z = points[k, 0], points[k, 1], points[k, 2]
+        if not (west < x < east and south < z < north):
+            continue
         wx, wy, wz = lx - x, ly - y, lz - z
         if soft:
             third = (noise[k, 0] + noise[k, 1]) % ONE
@@ -186,6 +173,9 @@ def aim_at_light(
             wy += (noise[k, 1] * TWO - ONE) * sy
             wz += ((noise[k, 0] if sx < sz else third) * TWO - ONE) * sz
         if dot3(flats[k, 0], flats[k, 1], flats[k, 2], wx, wy, wz) <= ZERO:
+            continue
+        nx, ny, nz = normals[k, 0], normals[k, 1], normals[k, 2]
+        if reaching(lx - x, ly - y, lz - z, nx, ny, nz, window, fx, fy, fz) <= least:
             continue
         out[count, 0], out[count, 1], out[count, 2] = x, y, z
         out[count, 3], out[count, 4], out[count, 5] = wx, wy, wz

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from hearth.rendering.arrays import Floats, Ints
-from hearth.rendering.rays.kernels import HALF, ONE, ZERO, dot3, kernel, root
+from hearth.rendering.rays.kernels import FLAT, HALF, NORMAL, NORMAL_U, NORMAL_V, ONE, ZERO, dot3, kernel, root
+from hearth.rendering.rays.light_rays import side_of
 
 
 @kernel
@@ -27,12 +28,28 @@ def labels(triangle: Ints, owners: Ints, values: Any, out: Any) -> None:
 
 
 @kernel
-def facings(pixels: Ints, normals: Floats, out: Floats) -> None:
-    """Write (N, 3) unit normals of some pixels from (M, 3) normals of any length; 0 for the background."""
-    for k in range(len(pixels)):
-        i = pixels[k]
-        x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
-        norm = ONE / max(root(dot3(x, y, z, x, y, z)), np.float32(1e-9))
+def facings(
+    rays: Floats, triangle: Ints, u: Floats, v: Floats, static: Floats, moving: Floats, start: int, stop: int,
+    out: Floats,
+) -> None:  # fmt: skip
+    """Write (N, 3) unit normals towards the viewer of the pixels from `start` to `stop`; 0 for the background.
+
+    `static` and `moving` are rows of triangles; the others are of all pixels. The normals are those of `locate`.
+    """
+    first = len(static)
+    for i in range(start, stop):
+        t = triangle[i]
+        out[i, 0] = out[i, 1] = out[i, 2] = ZERO
+        if t < 0:
+            continue
+        row = static[t] if t < first else moving[t - first]
+        fx, fy, fz = row[FLAT], row[FLAT + 1], row[FLAT + 2]
+        sign = side_of(fx, fy, fz, rays[i, 3], rays[i, 4], rays[i, 5])
+        x = row[NORMAL] + row[NORMAL_U] * u[i] + row[NORMAL_V] * v[i]
+        y = row[NORMAL + 1] + row[NORMAL_U + 1] * u[i] + row[NORMAL_V + 1] * v[i]
+        z = row[NORMAL + 2] + row[NORMAL_U + 2] * u[i] + row[NORMAL_V + 2] * v[i]
+        sign = -side_of(x, y, z, fx * sign, fy * sign, fz * sign)
+        norm = sign / max(root(dot3(x, y, z, x, y, z)), np.float32(1e-9))
         out[i, 0], out[i, 1], out[i, 2] = x * norm, y * norm, z * norm
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +19,11 @@ from hearth.rendering.models.textures import decode, texels
 from hearth.rendering.rays import lamplight as loops
 from hearth.rendering.rays import light_rays
 from hearth.rendering.rays.casting import Hits
-from hearth.rendering.rays.kernels import COLUMNS, gather_rows
+from hearth.rendering.rays.kernels import COLUMNS, FLAT, gather_rows
 from hearth.rendering.rays.light_rays import OPEN
 from hearth.rendering.rays.memory import scratch
+from hearth.rendering.rays.shadow_loops import own_groups
+from hearth.rendering.rays.shadow_maps import occluded
 from hearth.rendering.rays.threads import each
 from hearth.rendering.scene.lights import Daylight, Light
 from hearth.rendering.scene.triangles import Geometry, Part
@@ -104,6 +107,7 @@ class SurfacePoints:
         normals, flats: (M, 3) smooth and flat normals towards the viewer; flat ones are 0 for the background.
         views: (M, 3) unit vectors along the rays.
         bounds: least and greatest x and z of the points.
+        triangles: (M,) the triangles that they lie on.
     """
 
     pixels: Ints
@@ -113,6 +117,7 @@ class SurfacePoints:
     flats: Floats
     views: Floats
     bounds: Floats
+    triangles: Ints
 
 
 def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str = "spots") -> SurfacePoints:
@@ -123,7 +128,7 @@ def located(pixels: Ints, rays: Floats, hits: Hits, geometry: Geometry, use: str
     points, normals, flats, views = scratch(use, 4, count, 3)
     bounds = np.empty(4, np.float32)
     light_rays.locate(pixels, rays, hits.distance, hits.u, hits.v, rows, points, normals, flats, views, bounds)
-    return SurfacePoints(pixels, rows, points, normals, flats, views, bounds)
+    return SurfacePoints(pixels, rows, points, normals, flats, views, bounds, hits.triangle[pixels])
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,20 +171,21 @@ def expose(surface: SurfacePoints, geometry: Geometry, setting: Setting, noise: 
     near = setting.reaching(surface.bounds)
     seen = np.full((count, len(setting.lights) + 2), OPEN, np.uint8)
     lit: dict[int, Ints] = {}
-    out, index, power = scratch("rays", count, 6), scratch("index", count, dtype=np.int32), scratch("power", count)
+    out, index = scratch("rays", count, 6), scratch("index", count, dtype=np.int32)
     # Soft shadow rays are random and can't be repeated: they are cast at static and moving things at once.
     parts = (geometry.static, geometry.moving) if setting.fine else (geometry.static,)
+    own = NO_LIGHT if setting.fine else _own_groups(surface, geometry)
     if setting.day[light_rays.D_UP]:
-        light_rays.facing_sun(surface.normals, surface.flats, setting.day, power)
-        found = light_rays.aim_at_sun(points, power, setting.day, noise, out, index)
-        blocked = _blocked(parts, out[:found], 0.999)
+        found = light_rays.aim_at_sun(points, surface.normals, surface.flats, setting.day, noise, out, index)
+        known = None if setting.fine else Looked(index[:found], own, setting.day[:3])
+        blocked = _blocked(parts, out[:found], 0.999, known)
         lit[SUN] = _marked(seen, SUN, index[:found], blocked, np.uint8(0))
     for number in near.tolist():
         if setting.shadowed(number):
             light = setting.rows[number]
-            light_rays.reach(points, surface.normals, light, power)
-            found = light_rays.aim_at_light(points, surface.flats, power, light, noise, out, index)
-            blocked = _blocked(parts, out[:found], 0.97, lamps=True)
+            found = light_rays.aim_at_light(points, surface.normals, surface.flats, light, noise, out, index)
+            known = None if setting.fine else Looked(index[:found], own, light[WHERE])
+            blocked = _blocked(parts, out[:found], 0.97, known, lamp=True)
             value = np.uint8(0) if setting.lights[number].facing is None else DIM
             lit[number + 1] = _marked(seen, number + 1, index[:found], blocked, value)
     for number in range(AROUND if setting.fine else 0):
@@ -193,15 +199,40 @@ AROUND = 1
 """Rays per point over its hemisphere in fine pictures."""
 
 
-def _blocked(parts: Sequence[Part], rays: Floats, far: float, lamps: bool = False) -> NDArray[np.bool_]:
-    """(N,) whether rays are blocked; with `lamps`, lamps do not block."""
+WHERE = [*range(light_rays.L_PLACE, light_rays.L_PLACE + 3), *range(light_rays.L_AREA, light_rays.L_AREA + 4)]
+"""Columns of a light's row with its place and the area that it lights."""
+
+
+def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
+    """(M,) groups that cannot shade some points; (0,) while there are no shadow maps."""
+    maps = geometry.static.shadow_maps
+    if not maps.made:
+        return NO_LIGHT
+    own = scratch("own groups", len(surface.pixels), dtype=np.int32)
+    own_groups(surface.triangles, maps.groups(), surface.rows, surface.flats, FLAT, own)
+    return own
+
+
+class Looked(NamedTuple):
+    """What rays to a light are looked up by: see `shadow_maps.occluded`."""
+
+    index: Ints
+    own: Ints
+    light: Floats
+
+
+def _blocked(
+    parts: Sequence[Part], rays: Floats, far: float, known: Looked | None = None, *, lamp: bool = False
+) -> NDArray[np.bool_]:
+    """(N,) whether rays are blocked; lamps do not block a lamp's rays."""
     stays = parts[0]
-    found = (stays.shadows if lamps else stays.caster).occluded(rays, far)
+    caster = stays.shadows if lamp else stays.caster
+    found = caster.occluded(rays, far) if known is None else occluded(caster, stays.shadow_maps, rays, far, *known)
     for moves in parts[1:]:
-        index = scratch("meeting", len(rays), dtype=np.int32)
-        index = index[: light_rays.meeting(rays, found, moves.boxes, index)]
-        if len(index):
-            found[index] = (moves.shadows if lamps else moves.caster).occluded(rays[index], far)
+        some = scratch("meeting", len(rays), dtype=np.int32)
+        some = some[: light_rays.meeting(rays, found, moves.boxes, some)]
+        if len(some):
+            found[some] = (moves.shadows if lamp else moves.caster).occluded(rays[some], far)
     return found
 
 
@@ -255,22 +286,9 @@ def paint(
         out: (N, 3) sRGB of all pixels, filled.
     """
     count, day = len(surface.pixels), setting.day
-    light, gloss, power = scratch("light", count, 3), scratch("gloss", count, 3), scratch("power", count)
-    gloss[:] = 0
-    loops.ambient(surface.normals, seen, day, light)
-    if day[light_rays.D_UP]:
-        light_rays.facing_sun(surface.normals, surface.flats, day, power)
-        loops.add(power, seen, SUN, day[light_rays.D_COLOR :], light)
-    polished = scratch("index", count, dtype=np.int32)
-    polished = polished[: loops.shiny(surface.rows, polished)]
-    for number in near.tolist():
-        row = setting.rows[number]
-        color = row[light_rays.L_COLOR :]
-        light_rays.reach(surface.points, surface.normals, row, power)
-        loops.add(power, seen, number + 1, color, light)
-        if len(polished):
-            faces = (surface.rows, surface.points, surface.normals, surface.views)
-            loops.add_glints(polished, *faces, power, seen, number + 1, row, color, gloss)
+    light, gloss = scratch("light", count, 3), scratch("gloss", count, 3)
+    places = (surface.points, surface.normals, surface.flats, surface.views, surface.rows)
+    loops.lighten(*places, seen, day, setting.rows, near, light, gloss)
     faces = (surface.rows, surface.normals, surface.flats, surface.views)
     atlas = (texels(), decode(), tones(), out)
     where = (surface.pixels, rays, hits.distance, hits.u, hits.v)
@@ -296,6 +314,7 @@ def whole(
     pixels: Sequence[Ints], rays: Floats, hits: Hits, geometry: Geometry, setting: Setting, out: Bytes
 ) -> list[Exposure]:
     """Draft colours of pixels, chunk by chunk; returns the exposures with static occlusion."""
+    geometry.static.shadow_maps.make()
 
     def work(chunk: Ints) -> Exposure:
         surface = located(chunk, rays, hits, geometry)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import dist
 
@@ -48,6 +48,11 @@ class WalkableFloor:
     roomy: Cells
     wide: Ways
     narrow: Ways
+
+    @cached_property
+    def tight(self) -> Ways:
+        """All cells where nothing stands, however near something is."""
+        return Ways(replace(self.wide.floor, walkable=self.free))
 
     @cached_property
     def regions(self) -> NDArray[np.int32]:
@@ -169,6 +174,22 @@ def path(floor: WalkableFloor | None, start: Spot, goal: Spot, others: Sequence[
         if found is not None:
             return found
     return _nearest(floor, start, goal)
+
+
+def led_on(floor: WalkableFloor | None, route: Sequence[Spot], goal: Spot) -> tuple[Spot, ...]:
+    """A route that may end before its goal, led on to it.
+
+    Where the world has somebody whom no way leads to by what is drawn, such as beside an open oven, one passes between
+    the things, however near they are. Only where there is no free floor at all, the rest is the straight line.
+    """
+    if dist(route[-1], goal) < SAME:
+        return tuple(route)
+    found = None if floor is None else _found(floor, floor.tight, route[-1], goal, ())
+    return (*route, *(found[1:] if found else (goal,)))
+
+
+SAME = 0.01
+"""Metres up to which two spots are one."""
 
 
 def _found(

@@ -13,6 +13,7 @@ from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
 from hearth.rendering.rays.casting import Caster, Hits
 from hearth.rendering.rays.kernels import COLUMNS, nearer, triangle_rows
+from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 
 Numbers = NDArray[np.integer[Any]]
@@ -54,10 +55,20 @@ class Part:
         return Caster.of(self.mesh.corners)
 
     @cached_property
+    def _lamps(self) -> NDArray[np.bool_]:
+        """(things,) whether each is a lamp that is on."""
+        return np.array([thing.lamp for thing in self.things], np.bool_)
+
+    @cached_property
     def shadows(self) -> Caster:
         """A caster for shadows of lamps: all things but lamps that are on."""
-        lamps = np.array([thing.lamp for thing in self.things], np.bool_)
+        lamps = self._lamps
         return Caster.of(self.mesh.corners[~lamps[self.owner]]) if lamps.any() else self.caster
+
+    @cached_property
+    def shadow_maps(self) -> ShadowMaps:
+        """What lights see of the things."""
+        return ShadowMaps(self.mesh.corners, self.owner, self._lamps)
 
     @cached_property
     def rows(self) -> Floats:

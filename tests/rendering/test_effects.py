@@ -1,5 +1,7 @@
 """Effects of states: light, pictures that change, trembling, steam; the same at the same time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,12 @@ def test_a_coffee_maker_trembles_and_steams_where_it_stands():
     spots = np.array([each[-1].position for each in shown])
     assert 0.002 < np.abs(spots).max() <= EFFECTS["coffee_maker"]["ON"].shake
     assert {one.id for each in shown for one in each} == {7}
+
+
+def test_toast_rises_from_a_toaster_and_its_lever_with_it():
+    look = thing("toaster").model.look
+    low, high = (draw(Model("toaster", replace(look, moment=moment))).bounds()[1][1] for moment in (8, 9))
+    assert high > low + 0.2 * look.size[1]
 
 
 def lights(class_name, states, yaw=90.0):

@@ -1,6 +1,7 @@
 """Films: people walk around furniture, feet stay put, things change when hands arrive, time adds up."""
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from math import hypot
 
@@ -14,7 +15,8 @@ from hearth.rendering.film.player import page
 from hearth.rendering.film.snapshots import trajectory_of
 from hearth.rendering.film.video import Writer, film, record, times
 from hearth.rendering.people.motion import frames, spans
-from hearth.rendering.scene.routes import path, ways_of
+from hearth.rendering.people.tracks import RELAX, blended
+from hearth.rendering.scene.routes import led_on, path, ways_of
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.syntax import parse_program
@@ -112,6 +114,19 @@ def test_nobody_jumps(shown):
     for a, b, c in zip(found, found[1:], found[2:], strict=False):
         for name in ("head", "pelvis", "hand_r", "hand_l"):
             assert np.linalg.norm(c[name] - 2 * b[name] + a[name]) < 0.15, name
+
+
+@pytest.mark.parametrize("far", [0.15, 0.3, 0.45])
+@pytest.mark.parametrize("phase", [0.01, 0.03, 0.05, 0.08])
+def test_hands_neither_start_nor_stop_at_once(shown, far, phase):
+    """Even in the shortest blends, and whenever the frames are taken."""
+    actor = shown[0].actors[0]
+    one, other = (replace(actor, body_pose=replace(actor.body_pose, right=(x, 1.1, 0.35))) for x in (0.1, 0.1 - far))
+    blend = blended(one, other, RELAX)
+    still = [one] * 2
+    moving = [blend.at(time / blend.seconds) for time in np.arange(phase, blend.seconds, 0.1)]
+    found = [joints(each)["hand_r"] for each in (*still, *moving, other, other)]
+    assert max(np.linalg.norm(c - 2 * b + a) for a, b, c in zip(found, found[1:], found[2:], strict=False)) < 0.12
 
 
 def test_a_held_cup_is_in_the_palm(shown):
@@ -272,6 +287,23 @@ def test_one_squeezes_through_where_there_is_no_space_for_two():
     way = path(ways_of([ROOM], [ROOM, *shelves]), (-1.5, 1.0), (1.5, 1.0))
     assert way[-1] == (1.5, 1.0)
     assert not any(crosses(way, shelf) for shelf in shelves)
+
+
+def test_to_where_the_world_has_somebody_one_passes_between_things_however_near():
+    """By the spaces that bodies need no way leads through a gap of 15 cm; the straight line leads through a shelf."""
+    shelves = [
+        standing(2, "bookshelf", (0, 1, -1.0), (0.4, 2, 2)),
+        standing(3, "bookshelf", (0, 1, 1.1), (0.4, 2, 1.8)),
+    ]
+    floor, goal = ways_of([ROOM], [ROOM, *shelves]), (1.5, 1.0)
+    route = path(floor, (-1.5, 1.0), goal)
+    assert route[-1] != goal
+    led = led_on(floor, route, goal)
+    assert led[: len(route)] == route
+    assert led[-1] == goal
+    assert not any(crosses(led, shelf) for shelf in shelves)
+    assert led_on(None, route, goal) == (*route, goal)
+    assert led_on(floor, led, goal) == led
 
 
 def test_open_leaves_are_walked_around_and_closed_ones_are_not():
