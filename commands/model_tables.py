@@ -57,10 +57,7 @@ def table(
         _compared(data, models or (), split, beam, sketches, as_json)
         return
     if number == "5.1":
-        from hearth.models.sketches.dataset_table import dataset_table
-
-        found = dataset_table(data)
-        output.emit(found) if as_json else output.records([each._asdict() for each in found])
+        _statistics(data, as_json)
         return
     if number.startswith("5."):
         from hearth.models.sketches import sketch_tables
@@ -76,6 +73,14 @@ def table(
         output.emit(rows)
     else:
         _print(rows, _columns(number))
+
+
+def _statistics(dataset: Any, as_json: bool) -> None:
+    """Table 5.1."""
+    from hearth.models.sketches.dataset_table import dataset_table
+
+    found = dataset_table(dataset)
+    output.emit(found) if as_json else output.records([each._asdict() for each in found])
 
 
 def _of_films(number: str, dataset: Any, models: Sequence[str], beam: int, seed: int, as_json: bool) -> None:

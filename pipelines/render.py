@@ -173,15 +173,15 @@ def _demonstrated(
     case: CaseRow, execution: Execution, place: DrawableHome, context: Context
 ) -> Iterator[DemonstratedRow]:
     """Write a demonstration's arrays, and give the rows of its pictures."""
-    from hearth.rendering.film import demonstrations
+    from hearth.rendering.film import pictures_from_above
 
     job, known = context.job, context.homes.knowledge
     numbers = {thing.name: thing.id for thing in known.objects.values()}
-    found = demonstrations.demonstration(execution, place.graph, known, numbers, job.settings.seed)
-    file = f"{FRAMES}/{_folder(case['execution_id'])}/{demonstrations.FILE}"
+    found = pictures_from_above.demonstration(execution, place.graph, known, numbers, job.settings.seed)
+    file = f"{FRAMES}/{_folder(case['execution_id'])}/{pictures_from_above.FILE}"
     path = job.folder / file
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(path, demonstrations.stored(found))
+    write_bytes(path, pictures_from_above.stored(found))
     for number in range(len(found.class_ids)):
         yield {
             "execution_id": case["execution_id"],

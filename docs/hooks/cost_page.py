@@ -42,33 +42,25 @@ def measured() -> dict[str, float]:
 
 
 def sizes(section: str, what: str) -> dict[int, float]:
-    """A figure of whole runs by their size: `34,875 programs: largest process`.
-
-    Raises:
-        LookupError: results.json has none.
-    """
+    """A figure of whole runs by their size: `34,875 programs: largest process`; none where none was run."""
     rows = json.loads(RESULTS.read_text("utf-8")).get(section, {}).get("figures", ())
     found = {}
     for row in rows:
         size, _, rest = row["name"].partition(" ")
         if rest == what:
             found[int(size.replace(",", ""))] = float(row["value"])
-    if not found:
-        raise LookupError(f"{section}: {what}")
     return dict(sorted(found.items()))
 
 
 def whole() -> list[str]:
-    """What whole runs took: programs built, episodes played and done again."""
-    lines = [
-        "| whole runs on two processors | time | processor time of each | largest process |",
-        "|---|---:|---:|---:|",
-    ]
+    """What whole runs took: programs built, episodes played and done again; nothing where none was run."""
+    lines = []
     for section, what, time, each, memory in WHOLE_RUNS:
         spent, most = sizes(section, each), sizes(section, memory)
         for size, seconds in sizes(section, time).items():
             lines.append(f"| {size:,} {what} | {hours(seconds)} | {spent[size]:.1f} ms | {most[size]:,.0f} MB |")
-    return lines
+    head = "| whole runs on two processors | time | processor time of each | largest process |"
+    return ["What was run whole has all of it:", "", head, "|---|---:|---:|---:|", *lines, ""] if lines else []
 
 
 WHOLE_RUNS = (
@@ -97,11 +89,18 @@ WHOLE_RUNS = (
 """Section, what is counted, and the names of time, processor time and memory."""
 
 
-def kept() -> float:
-    """Bytes that publishing keeps of a program: the slope between the smallest and the largest build."""
+def memory() -> list[str]:
+    """What publishing keeps of a program: the slope between the smallest and the largest build, if there are two."""
     found = sizes("scale", "programs: publish: largest process")
+    if len(found) < 2:
+        return []
     (few, small), (many, large) = min(found.items()), max(found.items())
-    return 1e6 * (large - small) / (many - few)
+    kept = 1e6 * (large - small) / (many - few)
+    return [
+        "Memory of workers does not grow with the dataset. The process that publishes keeps"
+        f" {kept / 1000:.1f} kB a program, which at {WHOLE:,} programs is {kept * WHOLE / 1e9:.0f} GB: one machine",
+        "of the cluster needs them.",
+    ]
 
 
 def hours(seconds: float) -> str:
@@ -123,7 +122,7 @@ def page() -> str:
         "# Cost at scale",
         "",
         "What ten million programs and ten million episodes take, worked out from what was measured on one machine",
-        "of two processors ([Speed](speed.md)). Nothing was run at that size; the last table was run.",
+        "of two processors ([Speed](speed.md)). Nothing was run at that size.",
         "",
         "| measured | |",
         "|---|---|",
@@ -157,13 +156,11 @@ def page() -> str:
         "```",
         "",
         "Not in these numbers: what one process does at the end (near duplicates over all programs, the joined tables",
-        "and the catalog), pictures, and the network. What was run whole has all of it:",
+        "and the catalog), pictures, and the network.",
         "",
         *whole(),
-        "",
-        "Memory of workers does not grow with the dataset. The process that publishes keeps"
-        f" {kept() / 1000:.1f} kB a program, which at {WHOLE:,} programs is {kept() * WHOLE / 1e9:.0f} GB: one machine",
-        "of the cluster needs them. `python benchmarks/scale.py` and `python benchmarks/challenge_scale.py` print",
-        "seconds, memory and bytes for other sizes.",
+        *memory(),
+        "`python benchmarks/scale.py` and `python benchmarks/challenge_scale.py` print seconds, memory and bytes of",
+        "whole runs of any size.",
     ]
     return "\n".join(lines) + "\n"

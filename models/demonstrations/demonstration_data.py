@@ -99,7 +99,7 @@ def is_demonstration(text: str) -> bool:
 
 
 def arrays(data: bytes, file: str) -> Pictures:
-    """The pictures of an .npz file as `rendering.film.demonstrations` stores them.
+    """The pictures of an .npz file as `rendering.film.pictures_from_above` stores them.
 
     Raises:
         HearthError: DAMAGED_FILE, if it is something else.

@@ -93,7 +93,7 @@ def test_convex_bodies_and_planes_are_groups_and_other_bodies_are_not():
     groups = unshaded_groups(one, np.zeros(len(one), np.int32))
     assert len(set(groups.tolist())) == 1
     assert groups[0] % 2 == 0
-    # Without one of its faces, turned inwards, it is no convex body as seen from in front.
+    # Without one of its faces, turned inwards, it is not a convex body as seen from in front.
     inside = np.ascontiguousarray(one[:, ::-1])
     groups = unshaded_groups(inside, np.zeros(len(one), np.int32))
     assert (groups % 2 == 1).all()

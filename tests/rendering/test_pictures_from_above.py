@@ -14,7 +14,7 @@ from hearth.kb.loading.load import default
 
 pytest.importorskip("open3d", exc_type=ImportError)
 
-from hearth.rendering.film import demonstrations
+from hearth.rendering.film import pictures_from_above
 from hearth.rendering.film.snapshots import snapshots
 from hearth.rendering.scene.with_geometry import with_geometry
 
@@ -35,7 +35,7 @@ def _numbers():
 
 @pytest.fixture(scope="module")
 def found(performed):
-    return demonstrations.demonstration(*performed, default(), _numbers())
+    return pictures_from_above.demonstration(*performed, default(), _numbers())
 
 
 def test_there_is_a_picture_at_the_start_and_after_each_tick(found):
@@ -64,9 +64,9 @@ def test_who_acts_is_seen_where_they_are(found):
 
 
 def test_the_same_run_gives_the_same_bytes_and_they_are_read_back(performed, found):
-    again = demonstrations.demonstration(*performed, default(), _numbers())
-    data = demonstrations.stored(found)
-    assert data == demonstrations.stored(again)
+    again = pictures_from_above.demonstration(*performed, default(), _numbers())
+    data = pictures_from_above.stored(found)
+    assert data == pictures_from_above.stored(again)
     with np.load(BytesIO(data), allow_pickle=False) as arrays:
         assert np.array_equal(arrays["class_ids"], found.class_ids)
         assert np.array_equal(np.cumsum(arrays["rgb_changes"], axis=0, dtype=np.uint8), found.rgb)
