@@ -18,7 +18,8 @@ def best_places(values: np.ndarray, most: int = 1) -> list[int]:
         values: scores, (N,), N > 0.
         most: places at most.
     """
-    left, found = values.astype(np.float64), []
+    left = values.astype(np.float64)
+    found: list[int] = []
     for _ in range(min(most, len(left))):
         best = left.max()
         if found and best == -np.inf:

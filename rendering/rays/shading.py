@@ -216,7 +216,7 @@ def _own_groups(surface: SurfacePoints, geometry: Geometry) -> Ints:
 class Looked(NamedTuple):
     """What rays to a light are looked up by: see `shadow_maps.occluded`."""
 
-    index: Ints
+    places: Ints
     own: Ints
     light: Floats
 
