@@ -27,12 +27,14 @@ def asked(eight):
     return [each.request for each in eight]
 
 
-def test_the_answer_is_the_program_with_the_best_expected_score(trained, asked):
-    for request, answer in zip(asked[:3], trained.predict(asked[:3]), strict=True):
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_the_answer_is_the_program_with_the_best_expected_score(trained, asked, share):
+    model = dataclasses.replace(trained, settings=dataclasses.replace(trained.settings, share=share))
+    for request, answer in zip(asked, model.predict(asked), strict=True):
         written = [*trained.writer.predict([request]), *trained.writer.drawn(request, 6)]
         ((programs, weights),) = trained.neighbours.candidates([request])
-        every = [(one, 0.5 / 7) for one in written] + [
-            (one, 0.5 * weight / sum(weights)) for one, weight in zip(programs, weights, strict=True)
+        every = [(one, (1 - share) / 7) for one in written] + [
+            (one, share * weight / sum(weights)) for one, weight in zip(programs, weights, strict=True)
         ]
 
         def expected(program, every=every):
@@ -41,6 +43,12 @@ def test_the_answer_is_the_program_with_the_best_expected_score(trained, asked):
 
         assert expected(answer) == pytest.approx(max(expected(one) for one, _ in every))
         assert len({*written}) > 1
+
+
+def test_the_network_and_the_neighbours_both_count(trained, asked):
+    shares = [dataclasses.replace(trained.settings, share=share) for share in (0.0, 1.0)]
+    one, other = (dataclasses.replace(trained, settings=each).predict(asked) for each in shares)
+    assert one != other
 
 
 def test_an_answer_depends_on_its_text_alone(trained, asked):
