@@ -141,7 +141,7 @@ def tables(
 
     What is trained already is kept, so that the same command goes on after a stop; with the usual budget it takes a
     night. Each table is written into the folder as JSON, too. 4.4 is made twice: for pairs of tasks, and for
-    paraphrases, that are not in training. Tables of films are left out where there is no dataset of clips.
+    paraphrases, that are held out of training. Tables of films need a dataset of clips, and are left out without one.
 
     \b
     Examples:

@@ -12,7 +12,7 @@ SAME = 1e-4
 
 
 def best_places(values: np.ndarray, most: int = 1) -> list[int]:
-    """The places of the greatest values, `most` at most; of equal ones the first, and -inf only if there is no other.
+    """The places of the `most` greatest values; of equal ones the first. -inf is taken only if all values are -inf.
 
     Args:
         values: scores, (N,), N > 0.

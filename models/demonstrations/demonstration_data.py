@@ -83,7 +83,7 @@ def read_pictures(path: Path) -> Pictures:
     """The pictures of a file, or of a folder with one.
 
     Raises:
-        HearthError: there is no such file; DAMAGED_FILE, if it is another.
+        HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
     """
     file = path / FILE if path.is_dir() else path
     return arrays(read_input(file, LARGEST), str(file))

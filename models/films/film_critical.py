@@ -41,7 +41,7 @@ class FilmCritical(Settings):
         """Train by policy gradient, at a tenth of the rate; the best epoch is the one with the best validation LCS.
 
         Raises:
-            HearthError: there is no first phase, or it is another model; errors of `Clips.of`.
+            HearthError: the checkpoint of the first phase is missing, or holds another model; errors of `Clips.of`.
         """
         model = restore(self.start)[1]
         if not isinstance(model, TrainedFilmWriter):

@@ -59,7 +59,7 @@ def read_masks(path: Path) -> NDArray[np.uint16]:
     """(T, H, W) class numbers of a film of a dataset of clips (`clips.npz`).
 
     Raises:
-        HearthError: there is no such file; DAMAGED_FILE, if it is another.
+        HearthError: MISSING_FILE; DAMAGED_FILE, if the file holds something else.
     """
     return film_array(BytesIO(read_input(path, LARGEST)), str(path))
 

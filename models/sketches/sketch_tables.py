@@ -90,7 +90,7 @@ def table(
         seen: reports progress.
 
     Raises:
-        HearthError: BAD_ARGUMENT, if there is no such table, or none of the models of 5.4 or 5.5 writes such sketches.
+        HearthError: BAD_ARGUMENT, if the table is unknown, or no model of 5.4 or 5.5 writes its sketches.
     """
     if number not in TABLES:
         raise HearthError.of(Code.BAD_ARGUMENT, f"no table `{number}` of programs from sketches",
