@@ -6,7 +6,7 @@ from hearth.grounding.binding import Binding, bind
 from hearth.grounding.environments.default_state import prepared
 from hearth.grounding.environments.multi_agent import sample_together
 from hearth.grounding.environments.sampling import Environment, sample
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution, run
@@ -65,7 +65,8 @@ def attempt(
         else sample_together(program, home, wanted, seed, rules)
     )
     if isinstance(sampled, Failure):
-        return sampled
+        # Environments are sampled without places: the home says what is in the way of a move by metres.
+        return found if sampled.code is Code.NOT_SIMULATED else sampled
     environment, execution = sampled
     return Trial(execution, environment, found)
 

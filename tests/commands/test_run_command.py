@@ -172,6 +172,13 @@ def test_run_prints_where_the_four_moves_lead(tmp_path):
     assert found[2].split(" m,")[0] != found[1].split(" m,")[0]
 
 
+def test_run_says_what_is_in_the_way_of_a_move(tmp_path):
+    file = tmp_path / "blocked.txt"
+    file.write_text("Move\nAbout.\n\n\n[Walk] <fridge> (1)\n[Walkforward]\n")
+    result = call("run", file, "--home", "maple")
+    assert result.exit_code == 1 and "NO_PATH: tick 2, [Walkforward]" in result.output, result.output
+
+
 def test_run_takes_with_the_hand_that_is_said(tmp_path):
     file = tmp_path / "left.txt"
     file.write_text("Take\nMilk.\n\n\n[Walk] <fridge> (1)\n[Open] <fridge> (1)\n[Grab] <milk> (1) {hand=left}\n")
